@@ -3,12 +3,12 @@
  * NUMBER_LIMIT are errors here. */
 #include "call/argument.h"
 
+#include "base/suggestion.h"
 #include "base/unreachable.h"
 #include "call/display_colour.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
-#include "sandbox/suggestion.h"
 #include "settings/settings.h"
 
 #include <assert.h>
@@ -33,11 +33,71 @@ static const char *argument_path_text(const struct argument_path *argument_path,
     return out;
 }
 
+/* How a value of a kind is made, by the Lua type that is given in its place: the first row that fits. */
+enum { ANY_TYPE = -2, LIST_OF_NODES = 50, HANDLE = 100 };
+static const struct {
+    enum kind kind;
+    int given; /* a type of Lua, LIST_OF_NODES or ANY_TYPE; of handles HANDLE + their type */
+    const char *words;
+} made[] = {
+    {KIND_MATERIAL, ANY_TYPE, "gr.material{kd = {r, g, b}} makes a material"},
+    {KIND_MATERIALS, ANY_TYPE, "write {name = material}, or a list {material, ...}"},
+    {KIND_FOG, ANY_TYPE, "gr.uniform_fog{density = ..., colour = {r, g, b}} makes a fog"},
+    {KIND_NODE, HANDLE + HANDLE_LIGHT, "lights belong in the field lights of gr.render"},
+    {KIND_NODE, HANDLE + HANDLE_MATERIAL, "a shape has the material, as in gr.sphere(material)"},
+    {KIND_NODE, LIST_OF_NODES,
+     "gr.node{children = {...}} makes one node of a list, and add_child takes one node each time"},
+    {KIND_NODE, LUA_TTABLE, "gr.mesh(material, verts, faces) makes a node of tables of numbers"},
+    {KIND_NODE, LUA_TFUNCTION, "call the function, as in gr.sphere(material)"},
+    {KIND_NODE, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
+    {KIND_NODES, HANDLE + HANDLE_NODE, "write it in braces, as in {node}"},
+    {KIND_NODES, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
+    {KIND_LIGHTS, HANDLE + HANDLE_LIGHT, "write it in braces, as in {light}"},
+    {KIND_LIGHTS, ANY_TYPE, "gr.light{position = {x, y, z}, colour = {r, g, b}} makes a light"},
+    {KIND_IMAGE, ANY_TYPE, "gr.texture('file.png') makes a texture"},
+    {KIND_BACKGROUND, HANDLE + HANDLE_TEXTURE, "gr.sky_map{image = texture} makes a sky"},
+    {KIND_COLOUR, HANDLE + HANDLE_MATERIAL, "a material is the argument of a shape, as in gr.sphere(material)"},
+    {KIND_COLOUR, LUA_TSTRING, "red is {1, 0, 0} or '#ff0000'"},
+    {KIND_COLOUR, LUA_TNUMBER, "white is {1, 1, 1}"},
+    {KIND_POINT, LUA_TNUMBER, "write the three numbers in braces"},
+    {KIND_DIRECTION, LUA_TNUMBER, "write the three numbers in braces"},
+    {KIND_TEXT, HANDLE + HANDLE_NODE, "nodes in a node are its children, as in gr.node{children = {...}}"},
+    {KIND_TEXT, LIST_OF_NODES, "nodes in a node are its children, as in gr.node{children = {...}}"},
+    {KIND_BOOLEAN, LUA_TSTRING, "they are written without quotes"},
+    {KIND_FUNCTION, ANY_TYPE, "write function(p) return ... end"},
+    {KIND_CALLBACK, ANY_TYPE, "write function(t) return ... end"},
+};
+
+static int given_type(lua_State *L, int index) {
+    const struct handle *handle = handle_at(L, index);
+    if (handle)
+        return HANDLE + (int)handle->type;
+    int type = lua_type(L, index);
+    if (type != LUA_TTABLE)
+        return type;
+    lua_rawgeti(L, index, 1);
+    handle = handle_at(L, -1);
+    lua_pop(L, 1);
+    return handle && handle->type == HANDLE_NODE ? LIST_OF_NODES : type;
+}
+
 _Noreturn static void wrong_type(struct script_context *c, const struct argument_path *argument_path,
                                  const char *wanted, int index) {
-    char words[128];
-    const char *given = value_words(c->sandbox.lua, index);
-    sandbox_raise(&c->sandbox, "%s must be %s, not %s", argument_path_text(argument_path, words), wanted, given);
+    char words[128], hint[256] = "";
+    lua_State *L = c->sandbox.lua;
+    const struct script_parameter *p = argument_path->parameter;
+    index = lua_absindex(L, index);
+    const char *given = value_words(L, index);
+    int type = given_type(L, index);
+    bool is_whole = argument_path->i == 0 || p->kind == KIND_NODES || p->kind == KIND_LIGHTS;
+    bool is_file = is_whole && type == LUA_TSTRING && (p->flags & OR_TEXTURE) && strchr(lua_tostring(L, index), '.');
+    if (is_file)
+        snprintf(hint, sizeof hint, "; gr.texture('%.100s') makes a texture of a file", lua_tostring(L, index));
+    for (size_t i = 0; is_whole && i < sizeof made / sizeof *made && hint[0] == '\0'; i++)
+        if (made[i].kind == p->kind && (made[i].given == ANY_TYPE || made[i].given == type))
+            snprintf(hint, sizeof hint, "; %s", made[i].words);
+    sandbox_raise(&c->sandbox, "%s must be %s, not %s%s", argument_path_text(argument_path, words), wanted, given,
+                  hint);
 }
 
 /* "a > 0 and b < 180" in words. */
@@ -90,12 +150,39 @@ static double read_whole(struct script_context *c, int index, const struct argum
     return x;
 }
 
+/* Pushes {1, 2, 3} of {x = 1, y = 2, z = 3}, or of the letters of a colour or a quaternion; false: there are no such
+ * names, and nothing is pushed. */
+static bool push_named_tuple(lua_State *L, int index, int count) {
+    static const char *const names[] = {"xyz", "rgb", "wxyz", "xz", "xy", "uv"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        int found = 0;
+        if (strlen(names[i]) != (size_t)count)
+            continue;
+        lua_createtable(L, count, 0);
+        for (; found < count; found++) {
+            lua_pushlstring(L, &names[i][found], 1);
+            if (lua_rawget(L, index) == LUA_TNIL)
+                break;
+            lua_rawseti(L, -2, found + 1);
+        }
+        if (found == count)
+            return true;
+        lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
+    }
+    return false;
+}
+
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
 static void read_tuple(struct script_context *c, int index, struct argument_path argument_path, int count,
                        double *out) {
     lua_State *L = c->sandbox.lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
+    if (length == 0 && push_named_tuple(L, index, count)) {
+        read_tuple(c, lua_gettop(L), argument_path, count, out);
+        lua_pop(L, 1);
+        return;
+    }
     if (length != (lua_Unsigned)count)
         sandbox_raise(&c->sandbox, "%s must have %d numbers, not %llu", argument_path_text(&argument_path, words),
                       count, (unsigned long long)length);
@@ -645,8 +732,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         if (lua_type(L, index) != LUA_TSTRING)
             value->vector = read_vector(c, index, &argument_path);
         else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
-            sandbox_raise(&c->sandbox, "%s must be %s, not '%.100s'", argument_path_text(&argument_path, words),
-                          kind_words(p->kind), value->text);
+            sandbox_raise(&c->sandbox, "%s must be %s, not '%.100s'; %s", argument_path_text(&argument_path, words),
+                          kind_words(p->kind), value->text,
+                          strchr(value->text, '.') ? "gr.sky_map{image = ...} makes a sky of a picture"
+                                                   : "red is {1, 0, 0} or '#ff0000'");
         return true;
     case KIND_FOG:
         value->fog = read_handle(c, index, &argument_path, HANDLE_FOG);

@@ -3,6 +3,7 @@
 
 #include "math/elementary.h"
 
+#include <lauxlib.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,6 +28,16 @@ void context_push_function(lua_State *L, const char *name) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &functions);
     lua_getfield(L, -1, name);
     lua_replace(L, -2);
+}
+
+bool context_is_gr(lua_State *L, int index) {
+    if (!lua_istable(L, index) || !lua_getmetatable(L, index)) /* few tables have one */
+        return false;
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_getfield(L, -1, "gr");
+    bool same = lua_rawequal(L, index, -1);
+    lua_pop(L, 3);
+    return same;
 }
 
 void context_note_line(struct script_context *context) {

@@ -14,6 +14,7 @@ struct script_context {
     struct scene scene;
     struct handles handles;
     const struct script_function *function; /* the one that runs */
+    bool draws;                             /* the function `draw` of gr.frames runs */
     struct function_warnings *warned;
     const char *line_source; /* context_note_line: the source that scene.file is of */
     struct lenient *lenient; /* NULL without --lenient */
@@ -29,6 +30,9 @@ void context_begin_call(struct script_context *context, const struct script_func
  * pushes one of them. */
 void context_keep_functions(lua_State *L);
 void context_push_function(lua_State *L, const char *name);
+
+/* Whether a value is the table gr, as the first argument of gr:sphere(...) is. */
+bool context_is_gr(lua_State *L, int index);
 
 enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8, WARNED_RADIANS = 16 };
 /* Warns once for each function and bit. */

@@ -5,8 +5,8 @@
 #include "compat/dialect.h"
 
 #include "base/file.h"
+#include "base/suggestion.h"
 #include "call/handle.h"
-#include "sandbox/suggestion.h"
 
 #include <lauxlib.h>
 #include <stdio.h>

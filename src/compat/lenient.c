@@ -8,12 +8,12 @@
 #include "compat/lenient.h"
 
 #include "base/hash.h"
+#include "base/suggestion.h"
 #include "call/argument.h"
 #include "call/arguments.h"
 #include "compat/lenient_handles.h"
 #include "compat/lenient_picture.h"
 #include "compat/lenient_values_internal.h"
-#include "sandbox/suggestion.h"
 
 #include <lauxlib.h>
 #include <stdarg.h>
@@ -297,16 +297,6 @@ static void push_convertible(struct script_context *c, const struct script_funct
     lua_pushnil(L);
 }
 
-static bool is_gr(lua_State *L, int index) {
-    if (!lua_istable(L, index))
-        return false;
-    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
-    lua_getfield(L, -1, "gr");
-    bool same = lua_rawequal(L, index, -1);
-    lua_pop(L, 2);
-    return same;
-}
-
 /* Positional arguments become the fields of the table at `named`. wanted: the parameters that need a value. */
 static void name_positional(struct script_context *c, const struct script_function *function, int first, int named,
                             bool wanted[PARAMETER_LIMIT]) {
@@ -314,7 +304,7 @@ static void name_positional(struct script_context *c, const struct script_functi
     struct match empty = {.argument_count = 0}, best = empty;
     const struct script_value none[PARAMETER_LIMIT] = {{0}};
     for (int i = first; i < named && empty.argument_count < MATCHED_MAX; i++)
-        if (i > first || !is_gr(L, i)) /* gr:sphere() */
+        if (i > first || !context_is_gr(L, i)) /* gr:sphere() */
             empty.arguments[empty.argument_count++] = i;
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
         struct match m = empty;

@@ -338,13 +338,38 @@ static bool check_numbers(const struct model *model, struct error *error) {
     return true;
 }
 
+static const char *const extensions[] = {"obj", "ply", "stl", "gltf", "glb"};
+
+/* The extension without ".gz", and its length. */
+static const char *extension_of(const char *path, size_t *length) {
+    size_t end = strlen(path);
+    if (end > 3 && strcasecmp(path + end - 3, ".gz") == 0)
+        end -= 3;
+    size_t dot = end;
+    while (dot > 0 && path[dot - 1] != '.' && path[dot - 1] != '/')
+        dot--;
+    *length = dot > 0 && path[dot - 1] == '.' ? end - dot : 0;
+    return path + dot;
+}
+
+static bool is_word(const char *text, size_t length, const char *word) {
+    return strlen(word) == length && strncasecmp(text, word, length) == 0;
+}
+
 /* Makes meshes from the tables, and one node for files without nodes. */
 static bool model_finish(struct model *model, struct error *error) {
     size_t faces = 0;
     for (size_t i = 0; i < model->meshes.count; i++)
         faces += model_meshes(model)[i].starts.count;
-    if (faces == 0)
-        return error_set(error, ERROR_SCENE, "%s: no faces in this file", model->path);
+    if (faces == 0) {
+        size_t length;
+        const char *extension = extension_of(model->path, &length);
+        bool is_known = length == 0;
+        for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+            is_known = is_known || is_word(extension, length, extensions[i]);
+        return error_set(error, ERROR_SCENE, "%s: no faces in this file%s", model->path,
+                         is_known ? "" : "; gray reads OBJ, PLY, STL and glTF files");
+    }
     if (!check_numbers(model, error))
         return false;
     for (size_t i = 0; i < model->meshes.count; i++)
@@ -362,22 +387,6 @@ static bool model_finish(struct model *model, struct error *error) {
 /* --- which kind of file --- */
 
 enum kind { KIND_OBJ, KIND_PLY, KIND_STL_TEXT, KIND_STL_BINARY, KIND_GLTF };
-
-/* The extension without ".gz", and its length. */
-static const char *extension_of(const char *path, size_t *length) {
-    size_t end = strlen(path);
-    if (end > 3 && strcasecmp(path + end - 3, ".gz") == 0)
-        end -= 3;
-    size_t dot = end;
-    while (dot > 0 && path[dot - 1] != '.' && path[dot - 1] != '/')
-        dot--;
-    *length = dot > 0 && path[dot - 1] == '.' ? end - dot : 0;
-    return path + dot;
-}
-
-static bool is_word(const char *text, size_t length, const char *word) {
-    return strlen(word) == length && strncasecmp(text, word, length) == 0;
-}
 
 static bool holds(const uint8_t *data, size_t size, const char *word) {
     size_t length = strlen(word);
@@ -415,7 +424,22 @@ static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
     return KIND_OBJ;
 }
 
+/* What a failed download leaves in place of a model. */
+static const char *web_page_words(const uint8_t *data, size_t size) {
+    static const char *const starts[][2] = {{"<!doctype html", "is a web page (HTML), not a model"},
+                                            {"<html", "is a web page (HTML), not a model"},
+                                            {"<?xml", "is an XML file; gray reads OBJ, PLY, STL and glTF files"},
+                                            {"version https://git-lfs", "is a pointer of Git LFS, not the model"}};
+    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++)
+        if (size >= strlen(starts[i][0]) && strncasecmp((const char *)data, starts[i][0], strlen(starts[i][0])) == 0)
+            return starts[i][1];
+    return NULL;
+}
+
 static bool load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
+    const char *page = web_page_words(data, size);
+    if (page)
+        return error_set(error, ERROR_SCENE, "%s: %s", model->path, page);
     switch (kind_of(model->path, data, size)) {
     case KIND_OBJ:
         return obj_load(model, (const char *)data, size, error);

@@ -15,6 +15,7 @@
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "output/merge.h"
+#include "output/picture_files.h"
 #include "script/document.h"
 #include "session/options.h"
 #include "session/text.h"
@@ -154,7 +155,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     /* A closed pipe and a limit on file sizes are write errors and do not end the process. */
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
-    if (!options_parse(&options, argc, argv, &arena, &error)) {
+    if (!options_parse(&options, argc, argv, &arena, &error) || !picture_files_check_output(&options, &error)) {
         char line[sizeof error.text + 16];
         (void)snprintf(line, sizeof line, "gray: %s", error.text);
         text_print_line(stderr, line);

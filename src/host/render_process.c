@@ -366,7 +366,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return false;
     picture->x0 = area.x0, picture->y0 = area.y0, picture->width = area.width, picture->height = area.height;
     if (warning[0] != '\0')
-        render_process_warn(process, warning);
+        render_process_warn_at(process, work->request->where, warning);
     picture->shown =
         (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width, picture->y0 + picture->height};
     uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;

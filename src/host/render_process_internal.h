@@ -82,6 +82,8 @@ void effects_note(struct picture_work *work);
 /* Counts a finished frame; at the end of a run a notice about an animation of one frame, or of equal ones. */
 void effects_count_frame(struct picture_work *work);
 void effects_note_frames(struct render_process *process);
+/* The same about a picture; where: of its request. */
+void render_process_warn_at(struct render_process *process, const char *where, const char *text);
 void render_process_warn_of_nan(struct render_process *process, const struct world *world);
 void render_process_fill_report(const struct picture_work *work, const struct film *film,
                                 struct picture_report *report);

@@ -98,6 +98,12 @@ void render_process_report_replaced(const struct render_process *process) {
     }
 }
 
+void render_process_warn_at(struct render_process *process, const char *where, const char *text) {
+    char line[1024];
+    (void)snprintf(line, sizeof line, "%.700s: %s", where, text);
+    warn_once(process, text, line);
+}
+
 /* After a picture: reports the functions that returned NaN at a hit. */
 void render_process_warn_of_nan(struct render_process *process, const struct world *world) {
     char line[1024];

@@ -111,19 +111,56 @@ static enum ending ending_of(const char *name) {
     return digits ? ENDING_NONE : ENDING_OTHER;
 }
 
-/* The extension of a format that gray does not write, as in -o x.jpg. */
-static bool is_foreign_picture(const char *name) {
-    static const char *const endings[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga",
-                                          ".ppm", ".avif", ".jxl", ".mkv",  ".avi", ".mov"};
-    const char *dot = strrchr(last_part(name), '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
-        if (strcasecmp(dot, endings[i]) == 0)
-            return true;
-    return false;
+static bool is_there(const char *name) {
+    struct file_identity identity;
+    return file_identity_of(name, &identity);
+}
+
+/* Something that is no picture, which later checks refuse by its contents or write to. */
+static bool is_no_picture(const char *name) {
+    uint8_t head[64];
+    struct file_source source;
+    struct error ignored;
+    if (!is_there(name) || !file_is_regular(name) || !file_source_open(&source, name, &ignored))
+        return is_there(name);
+    size_t size = source.size < sizeof head ? (size_t)source.size : sizeof head;
+    bool is_picture = file_source_read(&source, 0, head, size) && picture_file_is(head, size);
+    file_source_close(&source);
+    return !is_picture;
+}
+
+bool picture_files_check_output(const struct options *options, struct error *error) {
+    static const char *const animations[] = {ANIMATION_FORMATS(LIST_WORD)};
+    char name[NAME_LIMIT], extensions[PICTURE_EXTENSIONS_SIZE], moving[128] = "";
+    bool free_name = !options->output || strcmp(options->output, "-") == 0 || options->force;
+    if (free_name || options->animation != ANIMATION_NONE || !output_name(options->output, 1, name, NAME_LIMIT) ||
+        ending_of(name) != ENDING_OTHER || is_no_picture(name))
+        return true;
+    for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++)
+        snprintf(moving + strlen(moving), sizeof moving - strlen(moving), "%s%s", moving[0] ? ", " : "", animations[i]);
+    return error_set(
+        error, ERROR_USAGE,
+        "-o %.600s: gray writes no %.100s files; a name ends in %s, or for animations in %s (--force writes "
+        "a PNG file with any name)",
+        options->output, strrchr(name, '.'), picture_extensions(extensions), moving);
 }
 
 static bool name_is_too_long(struct error *error) {
     return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
+}
+
+/* `given` is the name as it was written. */
+static bool add_ending(struct picture_files *files, const char *given, char name[NAME_LIMIT],
+                       char notice[NAME_LIMIT + 128], struct error *error) {
+    size_t length = strlen(name);
+    if (length + sizeof ".png" > NAME_LIMIT)
+        return name_is_too_long(error);
+    memcpy(name + length, ".png", sizeof ".png");
+    if (!files->ending_noticed)
+        (void)snprintf(notice, NAME_LIMIT + 128,
+                       "gray: notice: '%.1500s' has no ending of a picture and becomes %.1500s", given, name);
+    files->ending_noticed = true;
+    return true;
 }
 
 static bool name_from_script(struct picture_files *files, const char *from_script, char name[NAME_LIMIT],
@@ -144,18 +181,12 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
     bool lenient = files->options->script.lenient;
     char extensions[PICTURE_EXTENSIONS_SIZE];
     if (ending == ENDING_OTHER && !lenient)
-        return error_set(error, ERROR_SCENE, "%.600s: the name of a picture ends in %s (-o FILE allows any name)",
+        return error_set(error, ERROR_SCENE, "%.600s: the name of a picture ends in %s (-o FILE chooses another one)",
                          from_script, picture_extensions(extensions));
-    const char *added = ending == ENDING_PICTURE ? "" : ".png";
-    if (length + strlen(added) >= NAME_LIMIT)
+    if (length >= NAME_LIMIT)
         return name_is_too_long(error);
-    (void)snprintf(name, NAME_LIMIT, "%s%s", from_script, added);
-    if (added[0] && !files->ending_noticed) {
-        files->ending_noticed = true;
-        (void)snprintf(notice, NAME_LIMIT + 128,
-                       "gray: notice: '%.1500s' has no ending of a picture and becomes %.1500s", from_script, name);
-    }
-    return true;
+    memcpy(name, from_script, length + 1);
+    return ending == ENDING_PICTURE || add_ending(files, from_script, name, notice, error);
 }
 
 bool animation_folder(const char *animation, char out[NAME_LIMIT]) {
@@ -196,12 +227,8 @@ bool picture_files_name(struct picture_files *files, const struct picture_label 
     if (output) {
         if (!output_name(output, label->number, name, NAME_LIMIT))
             return name_is_too_long(error);
-        char extensions[PICTURE_EXTENSIONS_SIZE];
-        if (is_foreign_picture(name) && !files->ending_noticed) {
-            files->ending_noticed = true;
-            (void)snprintf(notice, NAME_LIMIT + 128, "gray: notice: %.3000s will be a PNG file; gray writes %s", name,
-                           picture_extensions(extensions));
-        }
+        if (strcmp(output, "-") != 0 && ending_of(name) == ENDING_NONE && !is_there(name))
+            return add_ending(files, output, name, notice, error);
         return true;
     }
     if (files->folders_error.kind != ERROR_NONE) {

@@ -47,6 +47,8 @@ struct picture_label {
     unsigned number;
     unsigned frame;
 };
+/* Before the run: false with an error if -o FILE has the ending of a format that gray does not write. */
+bool picture_files_check_output(const struct options *options, struct error *error);
 /* Its name. notice: a line to report, or empty. */
 bool picture_files_name(struct picture_files *files, const struct picture_label *label, char name[NAME_LIMIT],
                         char notice[NAME_LIMIT + 128], struct error *error);

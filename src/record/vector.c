@@ -161,6 +161,11 @@ static int make_vector(lua_State *L) {
         lua_pushvalue(L, 1);
         lua_pushvalue(L, 1);
     }
+    if (lua_gettop(L) > 1 && lua_type(L, 1) == LUA_TTABLE)
+        return luaL_error(L,
+                          "gr.vec takes three numbers or one vector; the first of %d arguments is a vector, as is the "
+                          "point that a function of a material gets",
+                          lua_gettop(L));
     (void)push_point(L, 1);
     push_vector(L);
     return 1;

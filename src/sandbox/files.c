@@ -5,8 +5,9 @@
 #include "sandbox/files.h"
 
 #include "base/file.h"
+#include "base/suggestion.h"
+#include "sandbox/other_files_internal.h"
 #include "sandbox/sandbox.h"
-#include "sandbox/suggestion.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -130,6 +131,12 @@ static bool not_found(struct sandbox *sandbox, const char *name, struct error *e
         snprintf(looked_in, sizeof looked_in, " (looked in %.*s, ., %sAssets, %s../Assets)", length - 1, folder, folder,
                  folder);
     const char *meant = suggestion.best;
+    if (name[0] == '~')
+        return error_set(
+            error, ERROR_SCENE,
+            "cannot find '%s': '~' is not expanded; write the whole path of your home folder, and allow it "
+            "with --allow-read DIR",
+            name);
     return error_set(error, ERROR_SCENE, "cannot find '%s'%s%s%s%s", name, name[0] == '/' ? "" : looked_in,
                      meant ? "; did you mean '" : "", meant ? meant : "", meant ? "'?" : "");
 }
@@ -204,6 +211,38 @@ static void adopt_library(lua_State *L, const char *path) {
         lua_pop(L, 1); /* byte code (without the sandbox) may have no globals */
 }
 
+/* The name of a file without its folder and its ending; NULL without memory. */
+static const char *stem_of(struct sandbox *sandbox, const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return arena_format(&sandbox->call, "%.*s", dot ? (int)(dot - name) : (int)strlen(name), name);
+}
+
+const char *files_hint_of_missing_scene(struct sandbox *sandbox) {
+    const char *path = sandbox->files.path, *slash = strrchr(path, '/'), *found, *stem = stem_of(sandbox, path);
+    const char *hint = other_command_words(slash ? slash + 1 : path);
+    const char *with_ending = arena_format(&sandbox->call, "%s.lua", path);
+    struct file_identity identity;
+    struct suggestion suggestion;
+    if (!stem || !with_ending || file_identity_of(path, &identity))
+        return "";
+    const char *meant = file_is_regular(with_ending) ? with_ending : NULL;
+    suggest_begin(&suggestion, stem);
+    if (!hint && !meant && /* lists the files */
+        search_find(&sandbox->files.search, sandbox->path_policy, sandbox->files.folder, path, &found)) {
+        for (uint32_t i = 0; i < sandbox->files.search.count; i++) {
+            const char *file = sandbox->files.search.files[i], *other = stem_of(sandbox, file);
+            size_t before = suggestion.distance, length = strlen(file);
+            if (other && length > 4 && strcmp(file + length - 4, ".lua") == 0)
+                suggest_offer(&suggestion, other);
+            meant = suggestion.distance < before ? file : meant;
+        }
+    }
+    hint = meant  ? arena_format(&sandbox->call, "; did you mean '%s'?", meant)
+           : hint ? arena_format(&sandbox->call, "; %s", hint)
+                  : "";
+    return hint ? hint : "";
+}
+
 /* Pushes the chunk, or a message. Raises only before the file is mapped, so the file is always unmapped. A first line
  * that starts with # is skipped, but not its line end, so that line numbers stay correct. */
 int files_load(lua_State *L, const char *path) {
@@ -239,7 +278,14 @@ int files_load(lua_State *L, const char *path) {
         text = end ? end : text;
     }
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options->no_sandbox ? "bt" : "t");
+    const char *other = status == LUA_ERRSYNTAX && strcmp(path, sandbox->files.path) == 0
+                            ? other_file_words(path, bytes.data, bytes.size)
+                            : NULL;
     file_unmap(&bytes);
+    if (other) {
+        lua_pushfstring(L, "%s: %s", path, other);
+        lua_replace(L, -2);
+    }
     if (status == LUA_OK && !is_dialect(sandbox, path)) /* a dialect has the globals of the scene */
         adopt_library(L, path);
     return status;

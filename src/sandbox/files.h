@@ -50,5 +50,7 @@ const struct path_policy *files_policy(const struct sandbox *sandbox, const char
 int files_load(lua_State *L, const char *path);
 /* File names that Lua has shortened are written in full again at the start of a message. */
 const char *files_unshorten(struct sandbox *sandbox, const char *message); /* NULL without memory */
+/* After the error of a scene that cannot be read: "; did you mean ...", if it is not there. Else "". */
+const char *files_hint_of_missing_scene(struct sandbox *sandbox);
 
 #endif

@@ -5,17 +5,17 @@
 #include "sandbox/hints.h"
 
 #include "base/file.h"
+#include "base/suggestion.h"
 #include "sandbox/lexer.h"
 #include "sandbox/libraries_internal.h"
 #include "sandbox/sandbox.h"
-#include "sandbox/suggestion.h"
 #include "sandbox/syntax_hints_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXT_LIMIT = 4096, NAMES_LIMIT = 2000, NAME_SIZE = 64 };
+enum { TEXT_LIMIT = 4096, NAMES_LIMIT = 2000, NAME_SIZE = 64, HINT_BYTES_LIMIT = 1 << 26 };
 
 /* The running function, and the text from its line on; a copy in the arena of the call. */
 struct running {
@@ -31,6 +31,7 @@ static bool read_text_up_to(struct sandbox *sandbox, struct running *running, co
     if (!path_policy_map(files_policy(sandbox, path), path, FILE_LIMIT, &bytes, &error))
         return false;
     const char *from = (const char *)bytes.data, *end = from + bytes.size;
+    sandbox->hint_bytes += bytes.size;
     for (int line = 1; from && line < running->at.currentline; line++) {
         from = memchr(from, '\n', (size_t)(end - from));
         from += from != NULL;
@@ -205,18 +206,54 @@ static bool visit_nil(const struct running *running, const struct token *w, void
     return is_variable(w, name) && is_nil_global(running, name) && !is_declared_here(running, name);
 }
 
-struct field {
-    const char *name;
+struct field_search {
+    const char *const *names;
+    const char *rest, *function;
+    const char *field; /* whose list the tokens are in; NULL: none */
+    int depth, entry;
+    struct nil_field *out;
     char value[NAME_SIZE];
 };
 
-/* field = VARIABLE, where the variable is nil. */
+/* Whether w[1] is a name of its own: `VARIABLE ,` and not `VARIABLE . name`, VARIABLE(...) or `VARIABLE + 1`. */
+static bool is_whole_value(const struct running *running, const struct token *w, char name[NAME_SIZE]) {
+    bool ends = token_is_symbol(&w[2], ',') || token_is_symbol(&w[2], '}') || token_is_symbol(&w[2], ';');
+    return ends && copy_name(&w[1], name) && is_nil_global(running, name);
+}
+
+/* FIELD = VARIABLE and FIELD = {VARIABLE, ...}, where the variable is nil. */
 static bool visit_field(const struct running *running, const struct token *w, void *wanted) {
-    struct field *field = wanted;
-    bool is_field = token_is(&w[0], TOKEN_NAME, field->name) && token_is_symbol(&w[1], '=');
-    bool ends = !token_is_symbol(&w[3], '.') && !token_is_symbol(&w[3], '[') && !token_is_symbol(&w[3], '(') &&
-                w[3].kind != TOKEN_NAME && w[3].kind != TOKEN_STRING;
-    return is_field && ends && copy_name(&w[2], field->value) && is_nil_global(running, field->value);
+    struct field_search *search = wanted;
+    if (search->field) { /* in the list of a field, after its brace */
+        bool opens = token_is_symbol(&w[1], '{') || token_is_symbol(&w[1], '(') || token_is_symbol(&w[1], '[');
+        bool closes = token_is_symbol(&w[1], '}') || token_is_symbol(&w[1], ')') || token_is_symbol(&w[1], ']');
+        search->depth += opens - closes;
+        search->entry += search->depth == 1 && token_is_symbol(&w[1], ',');
+        bool begins = token_is_symbol(&w[0], '{') || token_is_symbol(&w[0], ',');
+        *search->out = (struct nil_field){search->field, search->entry, NULL};
+        if (search->depth == 1 && begins && is_whole_value(running, w, search->value))
+            return true;
+        search->field = search->depth > 0 ? search->field : NULL;
+        return false;
+    }
+    if (search->rest && token_is(&w[0], TOKEN_NAME, search->function) && token_is_symbol(&w[1], '{'))
+        *search =
+            (struct field_search){search->names, search->rest, search->function, search->rest, 1, 1, search->out, ""};
+    if (!token_is_symbol(&w[1], '='))
+        return false;
+    for (const char *const *name = search->names; *name; name++) {
+        if (!token_is(&w[0], TOKEN_NAME, *name))
+            continue;
+        *search->out = (struct nil_field){*name, 0, NULL};
+        if (is_whole_value(running, w + 1, search->value))
+            return true;
+        if (token_is_symbol(&w[2], '{')) {
+            search->field = *name;
+            search->depth = 0;
+            search->entry = 1;
+        }
+    }
+    return false;
 }
 
 static int compare_names(const void *a, const void *b) {
@@ -292,13 +329,15 @@ const char *hint_of_nil(struct sandbox *sandbox) {
     return nil_words(sandbox, &running, name);
 }
 
-void hint_check_field(struct sandbox *sandbox, const char *name) {
+bool hint_find_nil_field(struct sandbox *sandbox, const char *const *names, const char *rest, struct nil_field *out) {
     struct running running;
-    struct field field = {.name = name};
-    if (!sandbox_is_new_line(sandbox)) /* a loop */
-        return;
-    if (find_running(sandbox, sandbox->lua, &running) && find_token(&running, visit_field, &field))
-        sandbox_raise(sandbox, "%s is missing%s", name, nil_words(sandbox, &running, field.value));
+    struct field_search search = {.names = names, .rest = rest, .function = sandbox->running.name, .out = out};
+    if (sandbox->hint_bytes > HINT_BYTES_LIMIT) /* a long generated script is not read for each of its lines */
+        return false;
+    if (!find_running(sandbox, sandbox->lua, &running) || !find_token(&running, visit_field, &search))
+        return false;
+    out->words = nil_words(sandbox, &running, search.value);
+    return true;
 }
 
 /* Errors of Lua. */

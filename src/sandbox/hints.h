@@ -9,8 +9,15 @@ struct sandbox;
 
 /* "; 'redd' is nil, did you mean 'red'?": about the first name in the running call that is an undefined global. */
 const char *hint_of_nil(struct sandbox *sandbox);
-/* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
-void hint_check_field(struct sandbox *sandbox, const char *name);
+/* FIELD = VARIABLE, or FIELD = {..., VARIABLE, ...}, with an undefined global. */
+struct nil_field {
+    const char *field;
+    int entry; /* of the list, from 1; 0: the field is the variable */
+    const char *words;
+};
+/* The first one in the running call whose field is among the names, which end with NULL; once for each line and
+ * function. rest: the field of entries without names, as in FUNCTION{a, b}; NULL: there are none. */
+bool hint_find_nil_field(struct sandbox *sandbox, const char *const *names, const char *rest, struct nil_field *out);
 /* Whether the running call has a colon before the name of this method. */
 bool hint_has_colon(struct sandbox *sandbox, const char *method);
 /* A hint for a syntax error, for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is

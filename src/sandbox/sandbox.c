@@ -139,14 +139,14 @@ const char *sandbox_relocate(lua_State *L, const char *message) {
                            lua_pushlstring(L, full, length - 2), full + first);
 }
 
-bool sandbox_is_new_line(struct sandbox *sandbox) {
+bool sandbox_is_new_line(struct sandbox *sandbox, const void *key) {
     lua_Debug frame;
     if (!sandbox_find_frame(sandbox->lua, &frame))
         return true;
-    const struct script_line line = {frame.source, frame.currentline};
-    uint64_t hash = hash_bytes(&line.source, sizeof line.source, (uint64_t)line.number);
+    const struct script_line line = {frame.source, key, frame.currentline};
+    uint64_t hash = hash_bytes(&line, offsetof(struct script_line, number), (uint64_t)line.number);
     struct script_line *slot = &sandbox->checked_lines[hash % CHECKED_LINES];
-    bool is_new = slot->source != line.source || slot->number != line.number;
+    bool is_new = slot->source != line.source || slot->key != line.key || slot->number != line.number;
     *slot = line;
     return is_new;
 }

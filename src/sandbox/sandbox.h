@@ -37,6 +37,7 @@ struct running_function {
 /* A line of a script; the source by its address in the Lua state. */
 struct script_line {
     const char *source;
+    const void *key;
     int number;
 };
 
@@ -58,6 +59,7 @@ struct sandbox {
     struct running_function running;
     char error_suffix[SUFFIX_SIZE];    /* at the end of errors: " (frame 7)", or "" */
     struct script_line *checked_lines; /* sandbox_is_new_line: CHECKED_LINES of them, in `keep` */
+    size_t hint_bytes;                 /* of scripts read again for hints */
     char raised[1536];                 /* the last error of a C function, without its position */
     char refused[512];                 /* why io.open returned nil the last time, or "" */
     bool unforgivable;                 /* --lenient would not continue after it */
@@ -95,7 +97,7 @@ void sandbox_where(const struct sandbox *sandbox, char *out, size_t size);
  * same. May push values. */
 const char *sandbox_relocate(lua_State *L, const char *message);
 /* False if the current line was checked before. It may also be true then, because only some lines are stored. */
-bool sandbox_is_new_line(struct sandbox *sandbox);
+bool sandbox_is_new_line(struct sandbox *sandbox, const void *key);
 
 /* "gr.sphere: TEXT (node 'eye')", always one line. */
 void sandbox_compose(const struct sandbox *sandbox, const char *text, char *out, size_t size);

@@ -3,15 +3,16 @@
  * --lenient ghosts. */
 #include "script/dispatch_internal.h"
 
+#include "base/suggestion.h"
 #include "base/version.h"
 #include "call/arguments.h"
 #include "compat/lenient.h"
 #include "compat/lenient_handles.h"
 #include "formats/font.h"
 #include "record/record.h"
-#include "sandbox/suggestion.h"
 #include "script/gr_frames_internal.h"
 #include "script/table_internal.h"
+#include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -225,6 +226,9 @@ static void push_substitute(struct script_context *c, enum owner owner, const ch
 _Noreturn static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
     const char *before = owner_words(owner);
     c->sandbox.running.name = NULL;
+    const char *use = owner == OWNER_GR ? foreign_function(name) : foreign_method(name);
+    if (use)
+        sandbox_raise(&c->sandbox, "%s%.100s does not exist; use %s", before, name, use);
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
     for (int k = 0; k < function_count(); k++)
@@ -235,7 +239,7 @@ _Noreturn static void no_such_name(struct script_context *c, enum owner owner, c
     if (suggestion.best)
         sandbox_raise(&c->sandbox, "%s%.100s does not exist; did you mean %s%s?", before, name, before,
                       suggestion.best);
-    sandbox_raise(&c->sandbox, "%s%.100s does not exist", before, name);
+    sandbox_raise(&c->sandbox, "%s%.100s does not exist (gray --man lists all)", before, name);
 }
 
 /* gr.NAME for a name that does not exist. With --lenient the ghost is stored in the table, so there is one warning. */

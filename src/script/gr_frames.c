@@ -122,7 +122,7 @@ static void seed_frame(lua_State *L, uint32_t number) {
 /* Restores the state outside the animation, also after an error that the script has caught. */
 static int leave_frames(lua_State *L) {
     struct script_context *context = context_of(L);
-    script_of(context)->animation.runs = false;
+    script_of(context)->animation.runs = context->draws = false;
     context->handles.made = NULL;
     context->scene.kept_nodes = 0;
     set_frame(L, &script_of(context)->host->frame);
@@ -160,7 +160,9 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool r
     lua_pushvalue(L, draw);
     lua_pushnumber(L, frame_clock(frame));
     lua_pushinteger(L, frame->number);
+    context->draws = true;
     lua_call(L, 2, 1);
+    context->draws = false;
     context->sandbox.lua = L;
     context->sandbox.running = (struct running_function){.owner = "gr.", .name = "frames"};
     if (!lua_istable(L, -1))

@@ -1,12 +1,12 @@
 /* Meshes from tables and from files. Both are assets: equal tables, or the same file, give one mesh, so that a script
  * that builds its scene again for every picture does not build its meshes again. */
 #include "base/file.h"
+#include "base/suggestion.h"
 #include "compat/lenient.h"
 #include "compat/lenient_picture.h"
 #include "formats/font.h"
 #include "formats/model_node.h"
 #include "mesh/mesh_smooth.h"
-#include "sandbox/suggestion.h"
 #include "script/rows_internal.h"
 
 #include <math.h>

@@ -34,7 +34,7 @@ static bool gr_add_child(struct script_context *context, const struct script_val
                          parent == child ? "a node cannot be its own child"
                                          : "'%.200s' is below '%.200s': the nodes would form a cycle",
                          parent->name, child->name);
-    if (has_child(parent, child) && sandbox_is_new_line(&context->sandbox))
+    if (has_child(parent, child) && sandbox_is_new_line(&context->sandbox, "add_child"))
         sandbox_warn(&context->sandbox, "'%.200s' is a child of '%.200s' already: it is there twice, at the same place",
                      child->name, parent->name);
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);

@@ -259,7 +259,7 @@ static void note_lone_fields(struct script_context *context, const struct script
     for (size_t i = 0; i < COUNT(pairs); i++) {
         const struct script_value *needed = &args[pairs[i].needs];
         bool has = needed->given && (pairs[i].choice < 0 || needed->choice == pairs[i].choice);
-        if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox))
+        if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox, pairs))
             continue;
         const char *word = pairs[i].choice < 0 ? NULL : projections[pairs[i].choice];
         sandbox_where(&context->sandbox, where, sizeof where);

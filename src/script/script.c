@@ -331,13 +331,20 @@ static bool prepare(struct script *script, struct path_policy *path_policy, stru
     if (sandbox->options->lenient && !lenient_begin(&script->context))
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
-    if (!file_map(sandbox->files.path, FILE_LIMIT, &bytes, error))
+    bool is_there = file_map(sandbox->files.path, FILE_LIMIT, &bytes, error);
+    if (is_there)
+        file_unmap(&bytes);
+    else if (error->kind != ERROR_SCENE)
         return false;
-    file_unmap(&bytes);
+    struct error ignored;
     if (!sandbox->options->no_sandbox) {
-        if (!script_path_policy(sandbox->files.path, sandbox->options, path_policy, error))
+        if (!script_path_policy(sandbox->files.path, sandbox->options, path_policy, is_there ? error : &ignored))
             return false;
         sandbox->path_policy = path_policy;
+    }
+    if (!is_there) {
+        const struct error plain = *error;
+        return error_set(error, ERROR_SCENE, "%s%s", plain.text, files_hint_of_missing_scene(sandbox));
     }
     return dialect_find(sandbox, error) && choose_order(script, error);
 }

@@ -5,7 +5,9 @@
 
 #include "base/error.h"
 #include "base/isa.h"
+#include "base/suggestion.h"
 #include "film/aov.h"
+#include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <ctype.h>
@@ -15,6 +17,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { NAME_LIMIT_OF_OPTIONS = 32 };
 
 struct piece option_next_piece(const char **rest) {
     struct piece piece = {*rest, strcspn(*rest, "|")};
@@ -62,50 +66,27 @@ static const struct setting *find_option(struct piece name) {
     return NULL;
 }
 
-/* Edits (insert, delete, replace, swap of neighbours) between a word and a short name of the table; words with more
- * than 31 letters have a large distance. */
-static int name_distance(struct piece a, struct piece b) {
-    enum { LIMIT = 32 };
-    int rows[3][LIMIT];
-    assert(b.length < LIMIT);
-    if (a.length >= LIMIT)
-        return LIMIT;
-    int *before = rows[0], *last = rows[1], *row = rows[2];
-    for (size_t j = 0; j <= b.length; j++)
-        last[j] = (int)j;
-    for (size_t i = 1; i <= a.length; i++) {
-        row[0] = (int)i;
-        for (size_t j = 1; j <= b.length; j++) {
-            char x = dash_of(a.text[i - 1]), y = dash_of(b.text[j - 1]);
-            int best = last[j - 1] + (x != y);
-            if (last[j] + 1 < best)
-                best = last[j] + 1;
-            if (row[j - 1] + 1 < best)
-                best = row[j - 1] + 1;
-            if (i > 1 && j > 1 && x == b.text[j - 2] && a.text[i - 2] == y && before[j - 2] + 1 < best)
-                best = before[j - 2] + 1;
-            row[j] = best;
-        }
-        int *spare = before;
-        before = last;
-        last = row;
-        row = spare;
-    }
-    return last[b.length];
-}
-
-/* The displayed spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
+/* The spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
 static struct piece nearest_name(struct piece name) {
+    char word[NAME_LIMIT_OF_OPTIONS], bare[NAME_LIMIT_OF_OPTIONS];
     struct piece best = {"", 0};
-    int best_distance = name.length < 4 ? 2 : 3;
+    struct suggestion suggestion;
+    if (name.length >= sizeof word)
+        return best;
+    for (size_t i = 0; i < name.length; i++)
+        word[i] = name.text[i] == '_' ? '-' : name.text[i];
+    word[name.length] = '\0';
+    suggest_begin(&suggestion, word);
+    suggestion.distance = name.length < 4 ? 2 : 3;
     for (int i = 0; i < option_count(); i++) {
         for (const char *rest = option_names(i); *rest;) {
-            struct piece candidate = option_next_piece(&rest), bare = without_dashes(candidate);
-            int distance = name_distance(name, bare);
-            if (distance < best_distance && bare.length > 1) {
-                best_distance = distance;
+            struct piece candidate = option_next_piece(&rest), plain = without_dashes(candidate);
+            size_t before = suggestion.distance;
+            (void)snprintf(bare, sizeof bare, "%.*s", (int)plain.length, plain.text);
+            if (plain.length > 1)
+                suggest_offer(&suggestion, bare);
+            if (suggestion.distance < before)
                 best = candidate;
-            }
         }
     }
     return best;
@@ -281,16 +262,19 @@ static bool read_choice(const struct setting *option, void *base, const char *te
 /* name: of the option, or of --default and its field. */
 static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
     int shown = (int)name.length;
+    char unit[32] = ""; /* SECONDS, STOPS, PIXELS; other names of values have one letter */
+    if (option->value && strlen(option->value) > 1)
+        (void)snprintf(unit, sizeof unit, "%s, ", option->value);
     switch (option->kind) {
     case SETTING_CAUSTICS:
     case SETTING_WHOLE:
-        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown, name.text,
-                         option->low, option->high, text);
+        return error_set(error, ERROR_USAGE, "%.*s needs %sa whole number from %.0f to %.0f, not '%s'", shown,
+                         name.text, unit, option->low, option->high, text);
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, name.text,
-                             option->low, option->high, text);
-        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, name.text,
+            return error_set(error, ERROR_USAGE, "%.*s needs %sa number from %g to %g, not '%s'", shown, name.text,
+                             unit, option->low, option->high, text);
+        return error_set(error, ERROR_USAGE, "%.*s needs %sa number of at least %g, not '%s'", shown, name.text, unit,
                          option->low, text);
     case SETTING_BYTES:
         return error_set(error, ERROR_USAGE,
@@ -431,16 +415,13 @@ static struct piece shown_name(const struct setting *option) {
 /* No setting has the field: it may be the name of an option, or misspelt. */
 static bool unknown_field(struct piece name, struct error *error) {
     const struct setting *option = find_option(name);
-    const char *near = option ? option->field : NULL;
-    int best = name.length < 4 ? 2 : 3;
-    for (int i = 0; i < setting_field_count && !option; i++) {
-        const char *field = setting_table[i].field;
-        int distance = name_distance(name, (struct piece){field, strlen(field)});
-        if (distance < best) {
-            best = distance;
-            near = field;
-        }
-    }
+    char word[NAME_LIMIT_OF_OPTIONS];
+    struct suggestion suggestion;
+    (void)snprintf(word, sizeof word, "%.*s", (int)name.length, name.text);
+    suggest_begin(&suggestion, word);
+    for (int i = 0; i < setting_field_count; i++)
+        suggest_offer(&suggestion, setting_table[i].field);
+    const char *near = option ? option->field : suggestion.best;
     return error_set(error, ERROR_USAGE, "--default sets fields of gr.render that are settings, not '%.*s'%s%s%s",
                      (int)name.length, name.text, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
 }
@@ -497,11 +478,14 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
         if (same_name(name, (struct piece){removed_options[i].name, strlen(removed_options[i].name)}))
             return error_set(error, ERROR_USAGE, "there is no --%s any more: %s", removed_options[i].name,
                              removed_options[i].instead);
+    const char *use = foreign_option(name.text, name.length);
+    if (use)
+        return error_set(error, ERROR_USAGE, "there is no option '%s'; use %s", word, use);
     struct piece near = nearest_name(name);
     if (near.length == 0)
-        return error_set(error, ERROR_USAGE, "there is no option '%s'", word);
-    return error_set(error, ERROR_USAGE, "there is no option '%s'; did you mean %.*s?", word, (int)near.length,
-                     near.text);
+        return error_set(error, ERROR_USAGE, "there is no option '%s' (gray --help lists all)", word);
+    return error_set(error, ERROR_USAGE, "there is no option '%s'; did you mean %s%.*s?", word,
+                     near.text[0] == '-' ? "" : "--", (int)near.length, near.text);
 }
 
 /* What gray merge uses: the parts contain the results of all other options. */

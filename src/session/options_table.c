@@ -45,7 +45,7 @@ static const struct setting options_table[] = {
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "
      ".webp, .y4m, .mp4 or .webm."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,
-     "Let -o FILE replace a file that is not a picture."},
+     "Let -o FILE replace a file that is not a picture, and write a PNG file under a name with any ending."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-aa-targets", "X", "", NULL, FIELD(targets_prefix), 0, 0, 0,
      NULL, "For dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-pre-aa", "X", "", NULL, FIELD(first_pass_prefix), 0, 0, 0,

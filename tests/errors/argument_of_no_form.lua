@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.sphere: material or name must be a material or a string, not a boolean
+-- expect: SCRIPT:2: gr.sphere: material or name must be a material or a string, not a boolean; with names: gr.sphere{material = ..., centre = ..., radius = ...}
 gr.sphere(true)

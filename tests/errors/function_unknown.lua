@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.frobnicate does not exist
+-- expect: SCRIPT:2: gr.frobnicate does not exist (gray --man lists all)
 gr.frobnicate('a')

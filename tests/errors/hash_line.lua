@@ -1,3 +1,3 @@
 #!/usr/bin/env gray
--- expect: SCRIPT:3: gr.sphere: material or name must be a material or a string, not a boolean
+-- expect: SCRIPT:3: gr.sphere: material or name must be a material or a string, not a boolean; with names: gr.sphere{material = ..., centre = ..., radius = ...}
 gr.sphere(true)

@@ -107,12 +107,14 @@ TEST(a_picture_that_replaces_another_of_the_run_is_a_notice) {
     notes_not(RENDER(""), "replaces"); /* that of an earlier run */
 }
 
-TEST(an_ending_that_is_not_written_is_named) {
-    struct test_result result = test_gray_scene(RENDER(""), "-o x.JPG scene.lua", NULL);
-    CHECK_EQ_INT(result.status, 0);
-    CHECK(strstr(result.err, "gray: notice: x.JPG will be a PNG file; gray writes .png, "));
-    free(result.out);
-    free(result.err);
+TEST(an_ending_that_is_not_written_is_an_error_before_the_run) {
+    test_write_text(test_path("scene.lua"), "print('runs')");
+    test_shell("$gray -o x.JPG scene.lua", 2, "gray: -o x.JPG: gray writes no .JPG files; a name ends in .png, ");
+    test_shell("$gray -o x.JPG scene.lua 2>&1 | grep runs", 1, "");
+    test_write_text(test_path("scene.lua"), RENDER(""));
+    test_shell("rm -f x*; $gray -o x.JPG --force scene.lua && head -c 4 x.JPG", 0, "PNG");
+    test_shell("$gray -o x scene.lua && head -c 4 x.png", 0, "gray: notice: 'x' has no ending of a picture");
+    test_shell("$gray -q -o /dev/null scene.lua && $gray -q -o - scene.lua | head -c 4", 0, "PNG");
     says("gr.render(gr.sphere(gr.material({1, 1, 1})), 'x.jpg', 4, 4, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
          "gr.render: x.jpg: the name of a picture ends in .png, ");
 }

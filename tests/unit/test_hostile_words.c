@@ -540,9 +540,11 @@ TEST(hostile_words_of_a_scene_and_of_the_program_keep_their_order) {
                                     "io.stderr:write('five\\n')\n"
                                     "io.stderr:write('gra')\n";
     static const char *const wanted = "one\n2 3.5\ngr\n"
-                                      "scene.lua:2: warning: gr.sphere: arguments after name are ignored (node 's')\n"
+                                      "scene.lua:2: warning: gr.sphere: arguments after name are ignored; with names: "
+                                      "gr.sphere{material = ..., centre = ..., radius = ...} (node 's')\n"
                                       "een\nfour\n"
-                                      "scene.lua:4: warning: gr.cube: arguments after name are ignored (node 'c')\n"
+                                      "scene.lua:4: warning: gr.cube: arguments after name are ignored; with names: "
+                                      "gr.cube{material = ..., corner = ..., size = ...} (node 'c')\n"
                                       "five\ngra\n"
                                       "scene.lua: no picture was rendered, because the script did not call gr.render\n";
     static const char *const arguments[] = {"scene.lua", "--no-fork scene.lua"};

@@ -376,8 +376,12 @@ TEST(hostile_pictures_never_replace_what_scripts_write) {
 
 TEST(hostile_names_of_the_command_line_spare_what_is_no_picture) {
     static const struct attack rows[] = {
-        {.name = "an unknown ending is PNG", .options = "-o x.ppm", .scene = "p'y.png'", .after = "picture x.ppm"},
-        {.name = "no ending is PNG", .options = "-o x", .scene = "p'y.png'", .notices = -1, .after = "picture x"},
+        {.name = "an unknown ending", .options = "-o x.ppm", .scene = "p'y.png'", .status = 2, .says = ".ppm"},
+        {.name = "an unknown ending with --force is PNG",
+         .options = "--force -o x.ppm",
+         .scene = "p'y.png'",
+         .after = "picture x.ppm"},
+        {.name = "no ending is PNG", .options = "-o x", .scene = "p'y.png'", .notices = 1, .after = "picture x.png"},
         {.name = "a hidden name outside",
          .options = "-o ../out/.x.png",
          .scene = "p'y.png'",

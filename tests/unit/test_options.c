@@ -183,8 +183,8 @@ TEST(a_misspelt_option_is_answered_with_the_nearest_name) {
     refused("--siez 3x3 s.lua", "there is no option '--siez'; did you mean --size?");
     refused("--gui --check s.lua",
             "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
-    refused("--zebra s.lua", "there is no option '--zebra'");
-    refused("-old s.lua", "there is no option '-old'");
+    refused("--zebra s.lua", "there is no option '--zebra' (gray --help lists all)");
+    refused("-old s.lua", "there is no option '-old' (gray --help lists all)");
 }
 
 TEST(values_outside_their_range_are_refused_with_the_range) {
@@ -269,7 +269,7 @@ TEST(numbers_of_paths_that_mean_nothing_are_refused) {
     refused("--noise nan s.lua", "--noise needs a number from 1e-06 to 10, not 'nan'");
     refused("--noise inf s.lua", "--noise needs a number from 1e-06 to 10, not 'inf'");
     refused("--spp 1000000000 --time-limit 2 s.lua", "--spp needs a whole number from 1 to 16777216, not '1000000000'");
-    refused("--time-limit nan s.lua", "--time-limit needs a number from 0.001 to 1e+09, not 'nan'");
+    refused("--time-limit nan s.lua", "--time-limit needs SECONDS, a number from 0.001 to 1e+09, not 'nan'");
     refused("--max-depth -1 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '-1'");
     refused("--max-depth 1000000000 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '1000000000'");
     refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");

@@ -175,11 +175,11 @@ TEST(words_at_the_borders_of_what_is_read_are_taken_or_refused) {
     expect("-D _a=1 x", NULL);
     expect("-D {=1 x", "-D needs name=value with a Lua name, not '{=1'");
     expect("-D [=1 x", "-D needs name=value with a Lua name, not '[=1'");
-    expect("-D5=1 x", "there is no option '-D5=1'");
-    expect("-x x", "there is no option '-x'");
-    expect("-=5 x", "there is no option '-=5'");
+    expect("-D5=1 x", "there is no option '-D5=1' (gray --help lists all)");
+    expect("-x x", "there is no option '-x' (gray --help lists all)");
+    expect("-=5 x", "there is no option '-=5' (gray --help lists all)");
     expect("--an-option-with-a-name-that-is-longer-than-any x",
-           "there is no option '--an-option-with-a-name-that-is-longer-than-any'");
+           "there is no option '--an-option-with-a-name-that-is-longer-than-any' (gray --help lists all)");
     expect("--help=5", "--help takes no value");
     expect("--lenient=yes x", NULL);
     CHECK(!output_name("picture-%d.png", 1, name, sizeof name));

@@ -1,7 +1,7 @@
 /* "Did you mean": the optimal string alignment form of the Damerau-Levenshtein distance (insert, delete, replace, swap
  * of neighbours), letters compared without case. A suggestion is made when at most a third of the word, and at least
  * one letter, has to change. Words longer than WORD_LIMIT are ignored. */
-#include "sandbox/suggestion.h"
+#include "base/suggestion.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -48,5 +48,18 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate) {
                                        of the candidates */
         suggestion->distance = d;
         suggestion->best = candidate;
+    }
+    bool contains = strstr(suggestion->word, candidate) || strstr(candidate, suggestion->word);
+    for (size_t rank = contains ? d / 3 : d, i = 0; i < SUGGESTIONS_NEAR; i++) {
+        if (suggestion->near[i] && suggestion->near_distance[i] <= rank)
+            continue;
+        const char *moved = suggestion->near[i];
+        size_t moved_rank = suggestion->near_distance[i];
+        suggestion->near[i] = candidate;
+        suggestion->near_distance[i] = rank;
+        if (!moved)
+            break;
+        candidate = moved;
+        rank = moved_rank;
     }
 }
