@@ -339,7 +339,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
     for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
         const struct script_parameter *p = &function->parameters[index];
         if (!optional && lua_isnoneornil(L, slot)) {
-            if (lua_gettop(L) < slot && hint_has_colon(&c->sandbox, function->name))
+            if (lua_gettop(L) < first && hint_has_colon(&c->sandbox, function->name))
                 sandbox_raise(&c->sandbox, "%s is missing: nothing was given, or a function that returned nothing",
                               p->name);
             if (function->owner == OWNER_NODE && lua_gettop(L) < first)
