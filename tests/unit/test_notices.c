@@ -56,7 +56,7 @@ TEST(a_field_without_effect_has_one_notice_for_its_line) {
     prints("", BALL PICTURE ", spp = 4}", "scene.lua:2: gr.render: spp has no effect: it is for integrator path");
     prints("", BALL PICTURE ", blades = 5}", "blades has no effect without aperture");
     prints("", BALL PICTURE ", view_height = 5}", "view_height has no effect without projection = 'orthographic'");
-    prints("--integrator whitted", BALL PICTURE ", integrator = 'path', spp = 4}", "has no effect: a field");
+    prints("--integrator whitted", BALL PICTURE ", integrator = 'path', spp = 4}", "replaces the field integrator");
     prints("", BALL "s:add_child(gr.cube(gr.material{kd = {1, 0, 0}, ior = 1.5}))" PICTURE "}",
            "ior has no effect in a material without refract");
     prints("", BALL PICTURE ", spp = 4, integrator = 'path'}", NULL);
@@ -77,7 +77,8 @@ TEST(a_picture_of_nothing_has_a_notice) {
     prints("", "local s = gr.node('s')" PICTURE "}", "the node has no shapes");
     prints("", BALL PICTURE ", target = {0, 0, 99}}", "behind the eye");
     prints("", BALL PICTURE ", projection = 'orthographic', shift_x = 30}", "outside of the picture");
-    prints("", BALL "gr.render{node = s, file = 'x.png', width = 8, height = 6, eye = {0, 0, 8}}", "there is no light");
+    prints("", BALL "gr.render{node = s, file = 'x.png', width = 8, height = 6, eye = {0, 0, 8}, lights = {}}",
+           "there is no light");
     prints("--integrator path --spp 1",
            BALL "gr.render{node = s, file = 'x.png', width = 8, height = 6, eye = {0, 0, 8}, background = {0, 0, 0}}",
            "there is no light");
