@@ -527,7 +527,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     apply_settings(context->sandbox.options, args, &request);
     for (int i = 0; i < setting_field_count; i++)
         request.fields |= (uint64_t)args[RENDER_FIRST_SETTING + i].given << i;
-    note_lone_fields(context, args);
+    note_lone_fields(context, given);
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)
