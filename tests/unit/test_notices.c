@@ -56,7 +56,8 @@ TEST(a_field_without_effect_has_one_notice_for_its_line) {
     prints("", BALL PICTURE ", spp = 4}", "scene.lua:2: gr.render: spp has no effect: it is for integrator path");
     prints("", BALL PICTURE ", blades = 5}", "blades has no effect without aperture");
     prints("",
-           "gr.render{node = gr.sphere{}, file = 'x.png', width = 8, height = 6, lights = {gr.light({3, 5, 8}, {.9, "
+           "gr.render{node = gr.sphere(gr.material({.8, .2, .1})), file = 'x.png', width = 8, height = 6, lights = "
+           "{gr.light({3, 5, 8}, {.9, "
            ".9, .9})}}",
            NULL); /* what a fitted camera sets is not given */
     prints("", BALL PICTURE ", view_height = 5}", "view_height has no effect without projection = 'orthographic'");
