@@ -283,7 +283,7 @@ int files_load(lua_State *L, const char *path) {
                             : NULL;
     file_unmap(&bytes);
     if (other) {
-        lua_pushfstring(L, "%s: %s", path, other);
+        lua_pushstring(L, other); /* the name of the scene comes before it */
         lua_replace(L, -2);
     }
     if (status == LUA_OK && !is_dialect(sandbox, path)) /* a dialect has the globals of the scene */

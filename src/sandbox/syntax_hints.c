@@ -83,6 +83,10 @@ static const char *strange_character(struct sandbox *sandbox, const char *text, 
     }
     if (length == 2 && memcmp(text, "\xC2\xA0", 2) == 0)
         return "; there is a blank that does not break lines: use an ordinary one";
+    unsigned char first = (unsigned char)text[0]; /* of a character in UTF-8 */
+    int whole = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+    if (length != whole)
+        return "; the text is not in UTF-8";
     return arena_format(&sandbox->call, "; the character %.*s may stand in texts and comments only", length, text);
 }
 

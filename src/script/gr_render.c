@@ -463,7 +463,7 @@ static bool light_dark_picture(struct script_context *context, const struct scri
     struct scene *scene = &context->scene;
     bool studio = script->only_named_pictures && !args[RENDER_LIGHTS].given && !args[RENDER_AMBIENT].given &&
                   !args[RENDER_BACKGROUND].given && !args[RENDER_SKY].given;
-    if (studio && !studio_is_dark(request->root, &studio, error))
+    if (studio && !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
         return false;
     if (scene->studio != studio)
         scene_note_change(scene);

@@ -78,13 +78,25 @@ static bool shines(const struct material *material) {
     return material && (vec3_max_abs(material_emission_bound(material)) > 0 || material_origin(material)->phong.unlit);
 }
 
-bool studio_is_dark(const struct node *root, bool *dark, struct error *error) {
+bool studio_is_dark(const struct scene *scene, const struct node *root, struct arena *arena, bool *dark,
+                    struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
     enum scene_event event;
+    /* A node under many parents is looked at once: there may be more paths than anything can count. */
+    bool *seen = arena_alloc_array(arena, scene->node_total, sizeof *seen);
+    if (!seen)
+        return error_no_memory(error, "a scene");
     *dark = true;
     scene_traversal_begin(&t, root);
     while ((event = scene_traversal_next(&t)) < SCENE_END && *dark) {
         const struct node *node = scene_traversal_node(&t);
+        if (event != SCENE_ENTER)
+            continue;
+        if (seen[node->index]) {
+            scene_traversal_skip(&t);
+            continue;
+        }
+        seen[node->index] = true;
         *dark = !shines(node->kind == NODE_GEOMETRY || node->kind == NODE_CSG ? node->material : NULL);
         for (uint32_t i = 0; node->kind == NODE_GEOMETRY && !node->material && i < node->slot_count && *dark; i++)
             *dark = !shines(node->slots[i]);

@@ -24,7 +24,8 @@ struct framed {
 struct framed studio_frame(struct node *root, const struct framing *framing);
 
 /* Whether no material below the root emits light or is shown without light. Errors: no memory. */
-bool studio_is_dark(const struct node *root, bool *dark, struct error *error);
+bool studio_is_dark(const struct scene *scene, const struct node *root, struct arena *arena, bool *dark,
+                    struct error *error);
 
 enum { STUDIO_LIGHTS = 2 };
 /* Lights a request whose camera and settings are complete: key, fill and sky. `lights` is the caller's memory. */

@@ -193,7 +193,7 @@ TEST(hostile_parts_replace_only_parts) {
          .after = "maybepart x.png.1-of-1.part"},
         {.name = "a part that names a script",
          .before = "sh build.sh",
-         .shell = "$gray --shard 1/1 -o new/build.sh scene.lua; mv new/*.part p.part; rmdir new; "
+         .shell = "$gray --force --shard 1/1 -o new/build.sh scene.lua; mv new/*.part p.part; rmdir new; "
                   "mkdir new; cp build.sh new; $gray merge p.part",
          .scene = "p'y.png'",
          .status = ATTACK_WRONG,

@@ -31,7 +31,7 @@ static void see_solids(const char *text, void (*seen)(struct listener *listener,
 }
 
 #define BEGIN "local abs, min, max, sqrt = math.abs, gr.min, gr.max, math.sqrt local root = gr.node 'root' "
-#define END " gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}} "
+#define END " gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}, lights = {}} "
 
 /* --- distances --- */
 

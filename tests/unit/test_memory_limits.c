@@ -429,7 +429,7 @@ TEST(assets_of_earlier_scripts_do_not_add_up_without_end) {
 
 /* --- what is built for a picture --- */
 
-#define RENDER(more) "gr.render{node=n, file='o.png', width=8, height=8, eye={0, 0, 9}" more "}"
+#define RENDER(more) "gr.render{node=n, file='o.png', width=8, height=8, eye={0, 0, 9}, lights={}" more "}"
 #define DOUBLED(times)                                                                                                 \
     "local n = gr.node('leaf') n:add_child(gr.sphere{" MATERIAL "})\n"                                                 \
     "for i = 1, " #times " do local a, b = gr.node('a'), gr.node('b') a:translate(2 ^ i, 0, 0)\n"                      \
@@ -526,7 +526,8 @@ TEST(photons_that_need_more_memory_than_allowed_are_one_line) {
 /* --- the picture itself --- */
 
 TEST(a_picture_that_needs_more_memory_than_allowed_is_one_line) {
-    static const char format[] = "gr.render{node=gr.node('n'), file='o.%s', width=%d, height=%d, eye={0, 0, 9}}";
+    static const char format[] =
+        "gr.render{node=gr.node('n'), file='o.%s', width=%d, height=%d, eye={0, 0, 9}, lights={}}";
     static const struct {
         const char *extension;
         int width, height;
@@ -556,7 +557,8 @@ TEST(a_picture_that_needs_more_memory_than_allowed_is_one_line) {
 /* --- files of tiles --- */
 
 TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
-    static const char text[] = "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}";
+    static const char text[] =
+        "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}, lights={}}";
     static const char *const names[] = {"o.png.checkpoint", "o.png.1-of-2.part"};
     static const uint8_t head[16] = {'G', 'R', 'A', 'Y', 'T', 'I', 'L', 'E', TILE_FILE_FORMAT, 0, 0, 0, FILM_TILE};
     guard();
@@ -576,9 +578,10 @@ TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
 /* A huge file instead of a finished picture: it is read in blocks, and the picture is made again. */
 TEST(a_file_over_a_finished_picture_takes_no_memory) {
     static const char text[] =
-        "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}\n"
-        "if io.open('again.txt') then gr.render{node=gr.node('n'), file='p.png', width=8, height=8, eye={0, 0, 9}}\n"
-        "else gr.render{node=gr.node('n'), file='/nowhere/p.png', width=8, height=8, eye={0, 0, 9}} end";
+        "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}, lights={}}\n"
+        "if io.open('again.txt') then gr.render{node=gr.node('n'), file='p.png', width=8, height=8, eye={0, 0, 9}, "
+        "lights={}}\n"
+        "else gr.render{node=gr.node('n'), file='/nowhere/p.png', width=8, height=8, eye={0, 0, 9}, lights={}} end";
     long without = memory_of_nothing();
     struct test_result result = test_gray_scene(text, "-q --checkpoint c.tiles scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);

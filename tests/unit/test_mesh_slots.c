@@ -211,7 +211,8 @@ static void print_slots(struct listener *listener, const struct render_request *
 TEST(script_gives_parts_of_files_and_faces_of_tables_their_materials) {
     static const char text[] =
         "local function m(r) return gr.material({r, 0, 0}, {0, 0, 0}, 1) end\n"
-        "local function show(node) gr.render{node = node, file='a.png', width=1, height=1, eye={0,0,5}} end\n"
+        "local function show(node) gr.render{node = node, file='a.png', width=1, height=1, eye={0,0,5}, lights={}} "
+        "end\n"
         "show(gr.mesh{file='parts.obj', materials={['blue paint'] = m(7)}})\n"
         "show(gr.mesh{file='parts.obj', materials={red = m(8)}, material = m(9)})\n"
         "show(gr.mesh{file='groups.obj', materials={one = m(4), two = m(5)}})\n"

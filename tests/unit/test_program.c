@@ -593,8 +593,8 @@ TEST(the_mode_bits_of_a_picture_that_was_there_stay) {
 
 TEST(a_name_as_long_as_the_file_system_allows_can_be_written) {
     char name[256], arguments[512];
-    memset(name, 'n', 255);
-    name[255] = '\0';
+    memset(name, 'n', 251);
+    memcpy(name + 251, ".png", 5);
     (void)snprintf(arguments, sizeof arguments, "-o %s scene.lua", name);
     ends(test_gray_scene(SMALL, arguments, NULL), 0);
     struct test_picture picture = picture_of(name);
