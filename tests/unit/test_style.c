@@ -263,7 +263,8 @@ TEST(drawn_pictures_of_threads_shards_and_crops_have_the_same_bytes) {
 TEST(wrong_values_of_styles_are_refused) {
     test_write_text(test_path("scene.lua"), BALL);
     test_shell_errors("$gray -q scene.lua --style crayon", 2, "--style needs one of none|ink|toon|gooch, not 'crayon'");
-    test_shell_errors("$gray -q scene.lua --line-width 33", 2, "--line-width needs a number from 0 to 32, not '33'");
+    test_shell_errors("$gray -q scene.lua --line-width 33", 2,
+                      "--line-width needs PIXELS, a number from 0 to 32, not '33'");
     test_shell_errors("$gray -q scene.lua --toon-steps 0", 2,
                       "--toon-steps needs a whole number from 1 to 64, not '0'");
     test_shell_errors(
