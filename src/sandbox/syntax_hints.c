@@ -93,12 +93,13 @@ static const char *strange_character(struct sandbox *sandbox, const char *text, 
 /* The hint with the text of the token in place of each "@". */
 static const char *with_token(struct sandbox *sandbox, const char *hint, const struct token *token) {
     char out[256], *to = out;
+    const char *text = token->text ? token->text : ""; /* the first token of a script has none before it */
     size_t length = token->length < 40 ? token->length : 40;
-    if (memchr(token->text, '\n', length))
+    if (memchr(text, '\n', length))
         return "";
     for (; *hint && to + length + 1 < out + sizeof out; hint++) {
         if (*hint == '@') {
-            memcpy(to, token->text, length);
+            memcpy(to, text, length);
             to += length;
         } else {
             *to++ = *hint;
