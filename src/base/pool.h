@@ -39,8 +39,8 @@ void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context
 /* For long items: that call, if the worker is worker 0 and it is due. */
 void pool_poll(struct pool *pool, int worker);
 
-/* Something that threads wait for, of this process or, in shared memory, of another. Zero-initialised. Who changes what
- * they wait for signals it, and waits for nobody: a process that ends at any moment harms no other. */
+/* Something that threads wait for, of this process or, in shared memory, of another. Zero-initialised. Whoever changes
+ * what they wait for signals the event and never waits: a process that ends at any moment harms no other. */
 struct pool_event {
     _Atomic uint32_t signals;
 };

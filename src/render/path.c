@@ -228,7 +228,7 @@ static struct film *begin_tile(const struct path_tracer *tracer, const struct fi
     return own;
 }
 
-/* Unless the tile is to have no more samples, its state tells others which check it has passed. */
+/* Unless the tile is to have no more samples, its state is the check that it has passed. */
 static void end_check(struct film *film, const struct film *own, const struct worker *worker,
                       const struct rectangle *part, struct sample_range range) {
     uint32_t checks = 0;

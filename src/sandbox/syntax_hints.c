@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A neighbour is one of some words parted by blanks, or NAME: a name, VALUE: the end of a value. NULL: anything. */
+/* A neighbour is one of some words separated by blanks, or NAME: a name, VALUE: the end of a value. NULL: anything. */
 #define NAME "*name"
 #define VALUE "*value"
 

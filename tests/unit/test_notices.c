@@ -12,7 +12,7 @@
     "gr.render{node = s, file = 'x.png', width = 8, height = 6, eye = {0, 0, 8}, fov = 40, "                           \
     "lights = {gr.light({3, 5, 8}, {.9, .9, .9})}"
 
-/* The run prints these texts, parted by '|'; NULL: nothing. */
+/* The run prints these texts, separated by '|'; NULL: nothing. */
 static void prints(const char *options, const char *scene, const char *texts) {
     char arguments[256];
     (void)snprintf(arguments, sizeof arguments, "%s scene.lua", options);
