@@ -176,16 +176,7 @@ static void apply_setting(const struct setting *row, const struct script_value *
     case SETTING_LAYERS:
     case SETTING_CROP:
     case SETTING_STATS:
-    case SETTING_BYTES:
-    case SETTING_TEXT:
-    case SETTING_SIZE:
-    case SETTING_SHARD:
-    case SETTING_FRAMES:
-    case SETTING_ACTION:
-    case SETTING_PIXEL:
-    case SETTING_DEFINE:
-    case SETTING_DEFAULT:
-    case SETTING_FOLDER:
+        OPTION_KINDS(LIST_LABEL)
         break; /* options only */
     }
 }

@@ -110,16 +110,7 @@ static bool bits_are_valid(const struct setting *row, uint64_t bits) {
         return (bits & UINT32_MAX) <= (uint64_t)row->high;
     case SETTING_WHOLE:
     case SETTING_CAUSTICS:
-    case SETTING_BYTES:
-    case SETTING_TEXT:
-    case SETTING_SIZE:
-    case SETTING_SHARD:
-    case SETTING_FRAMES:
-    case SETTING_ACTION:
-    case SETTING_PIXEL:
-    case SETTING_DEFINE:
-    case SETTING_DEFAULT:
-    case SETTING_FOLDER:
+        OPTION_KINDS(LIST_LABEL)
         break;
     }
     return (number >= row->low && number <= row->high) || (number >= row->initial && number <= row->initial);

@@ -32,6 +32,19 @@ enum setting_kind {
     SETTING_FOLDER, /* `low` selects one of two lists */
 };
 
+/* The kinds that no setting has. */
+#define OPTION_KINDS(X)                                                                                                \
+    X(SETTING_BYTES)                                                                                                   \
+    X(SETTING_TEXT)                                                                                                    \
+    X(SETTING_SIZE)                                                                                                    \
+    X(SETTING_SHARD)                                                                                                   \
+    X(SETTING_FRAMES)                                                                                                  \
+    X(SETTING_ACTION)                                                                                                  \
+    X(SETTING_PIXEL)                                                                                                   \
+    X(SETTING_DEFINE)                                                                                                  \
+    X(SETTING_DEFAULT)                                                                                                 \
+    X(SETTING_FOLDER)
+
 struct setting {
     enum setting_kind kind;
     enum setting_change changes;
