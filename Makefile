@@ -106,7 +106,7 @@ OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MA
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
 GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
-TEST_SOURCES := $(sort $(wildcard tests/unit/*.c)) tests/harness.c tests/stage.c tests/attack.c tests/attack_files.c
+TEST_SOURCES := $(sort $(wildcard tests/unit/*.c tests/unit/*/*.c)) tests/harness.c tests/stage.c tests/attack.c tests/attack_files.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
 # What fuzzers feed; the tests feed it what was found before, under a name for each target.
 FUZZ_SOURCES := $(sort $(wildcard tests/fuzz/fuzz_*.c))
@@ -149,7 +149,7 @@ $(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECT)
 $(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
-$(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
+$(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
 $(BUILD)/tests/run: override LDLIBS += $(if $(WEBP_LIBS),-lwebpdemux)
 # The harness knows when a test starts a program.
 $(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)
@@ -178,7 +178,7 @@ $(BUILD)/src/sandbox/libraries.o: override CFLAGS += -fno-builtin
 # Tests of the release build are optimized less: they compile in half the time, and what they test is optimized as ever.
 $(TEST_OBJECTS): private override CFLAGS := $(CFLAGS:-O3=-O1)
 # Kernels in plain C are so long that gcc gives up telling a debugger where variables are, and says so.
-$(BUILD)/tests/unit/test_portable_kernel.o: private override CFLAGS += -g0
+$(BUILD)/tests/unit/accel/test_portable_kernel.o: private override CFLAGS += -g0
 
 # A change of compiler or flags rebuilds everything. WERROR=1 (the tests) makes warnings errors; it is not one of the
 # flags, so that make and make test share their objects. Without it a warning is shown and kept in a file beside the
@@ -271,7 +271,7 @@ $(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OB
 bench: all
 	@bench/run.sh
 format:
-	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch])
+	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/unit/*/*.[ch] tests/fuzz/*.[ch])
 
 # What install writes, below DESTDIR and PREFIX.
 PROGRAMS = gray $(if $(SDL_LIBS),gray-gui) $(if $(MPI_LIBS),gray-mpi)

@@ -1,7 +1,7 @@
 /* A picture of the sign of a function of x and y between -1 and 1, by tiles: a tile whose sign bounds decide is painted
  * at once, the others are divided and their program is shortened (M. Keeter, "Massively parallel rendering of complex
  * closed-form implicit surfaces", SIGGRAPH 2020). And a reader of the form in which that paper's example is published:
- * one operation a line, "_2a max _4 _7". For bench/expr.c and tests/unit/test_expr_prospero.c. */
+ * one operation a line, "_2a max _4 _7". For bench/expr.c and tests/unit/expr/test_expr_prospero.c. */
 #ifndef GRAY_BENCH_PROSPERO_H
 #define GRAY_BENCH_PROSPERO_H
 

@@ -8,7 +8,7 @@
  * normals that are visible (Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018). Points of the unit
  * disc lie dense at its rim, where the steep facets are. Fuzz: Estevez and Kulla, "Production Friendly Microfacet Sheen
  * BRDF", SIGGRAPH 2017 courses, with the visibility of Neubelt and Pettineo, "Crafting a Next-Gen Material Pipeline for
- * The Order: 1886", 2013; a closed sum over the hemisphere. tests/unit/test_openpbr.c does the sums again. */
+ * The Order: 1886", 2013; a closed sum over the hemisphere. tests/unit/material/test_openpbr.c does the sums again. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

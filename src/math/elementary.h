@@ -4,7 +4,7 @@
  * square root in double precision, rounding to nearest, and integer operations, nothing else.
  *
  * Errors are below 1 unit in the last place (el_tan: 1.05; el_exp, el_log and el_pow: 0.52; measured by
- * tests/unit/test_elementary.c), results in the subnormal range included. Special cases follow C11 Annex F: NaN,
+ * tests/unit/math/test_elementary.c), results in the subnormal range included. Special cases follow C11 Annex F: NaN,
  * infinities, signed zeros. A domain error gives a positive quiet NaN. errno is never touched; flags are unspecified.
  * Angles are in radians, of any size. */
 #ifndef GRAY_MATH_ELEMENTARY_H

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes the scenes of tests/lenient: each deviates in one way from what gray accepts, and --lenient must still make a
-picture of it. tests/unit/test_lenient.c renders all of them. Run it in this folder after a change of the list."""
+picture of it. tests/unit/script/test_lenient.c renders all of them. Run it in this folder after a change of the list."""
 
 HEAD = """local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 30)
 local root = gr.node('root')

@@ -1,7 +1,7 @@
 /* Files of every kind that use every feature of the readers, damaged in every place: each word replaced by unexpected
  * words, each byte changed, each tail cut off; and failures of each allocation and each system call. The result is a
  * model or one line that names the file. */
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include "base/fault.h"
 #include "formats/model_node.h"

@@ -1,7 +1,7 @@
 /* Packets of rays against the same rays one by one, to the bit, for every instruction set. */
 #include "accel/triangle_packet.h"
 #include "base/isa.h"
-#include "mesh_makers.h"
+#include "tests/unit/mesh_makers.h"
 
 static struct triangle_index *build(const struct triangle_set *set) {
     struct triangle_index *index = NULL;

@@ -3,7 +3,7 @@
 #include "base/fault.h"
 #include "image/exr.h"
 #include "image/image.h"
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include <math.h>
 

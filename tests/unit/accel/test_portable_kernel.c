@@ -1,6 +1,6 @@
 /* The triangle kernels as compiled for processors without SIMD. */
 #define GRAY_NO_SIMD
-#include "mesh_makers.h"
+#include "tests/unit/mesh_makers.h"
 
 #include "accel/triangle_kernels_internal.h"
 

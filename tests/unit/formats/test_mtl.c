@@ -1,5 +1,5 @@
 #include "mesh/mesh_internal.h"
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include "base/path_policy.h"
 #include "formats/model_node.h"

@@ -1,8 +1,8 @@
 /* Materials per face, culling, and methods of meshes in scripts. */
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
-#include "script_host.h"
 #include "tests/stage.h"
+#include "tests/unit/script_host.h"
 
 /* A cube whose six faces have slots 0 .. 5: -z, +z, -y, +y, -x, +x. */
 static struct mesh *cube(struct stage *s) {

@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <fnmatch.h>
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,13 +68,11 @@ static bool is_test_name(const char *word) {
  * only if it is installed. */
 static bool test_is_in_sources(const char *pattern) {
     bool found = false;
-    DIR *folder = opendir("tests/unit");
-    for (struct dirent *entry; folder && !found && (entry = readdir(folder)) != NULL;) {
-        char path[512], name[WORD];
-        if (fnmatch("test_*.c", entry->d_name, 0) != 0)
-            continue;
-        (void)snprintf(path, sizeof path, "tests/unit/%s", entry->d_name);
-        char *text = test_read_file(path, NULL);
+    glob_t sources;
+    CHECK(glob("tests/unit/*/test_*.c", 0, NULL, &sources) == 0);
+    for (size_t i = 0; i < sources.gl_pathc && !found; i++) {
+        char name[WORD];
+        char *text = test_read_file(sources.gl_pathv[i], NULL);
         for (const char *at = text; at && !found && (at = strstr(at, "\nTEST")) != NULL;) {
             at += strcspn(at, "(");
             size_t length = strcspn(at, ")");
@@ -86,8 +85,7 @@ static bool test_is_in_sources(const char *pattern) {
         }
         free(text);
     }
-    if (folder)
-        (void)closedir(folder);
+    globfree(&sources);
     return found;
 }
 

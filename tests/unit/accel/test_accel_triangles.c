@@ -1,7 +1,7 @@
 /* The index of triangles by itself: every instruction set, one voxel and many, any number of threads. */
 #include "accel/triangle_layout_internal.h"
 #include "base/isa.h"
-#include "mesh_makers.h"
+#include "tests/unit/mesh_makers.h"
 
 static struct triangle_index *build(const struct triangle_set *set, uint32_t voxels, struct pool *pool) {
     struct triangle_index *index = NULL;

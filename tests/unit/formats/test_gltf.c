@@ -1,4 +1,4 @@
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include "formats/model_node.h"
 #include "image/png_write.h"

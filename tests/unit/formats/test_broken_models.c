@@ -1,6 +1,6 @@
 /* Broken mesh files of every kind through the whole program: one script for each, one line for each, status 1. Claims
  * of a header are limited by the bytes that follow, so nothing here takes much time or memory. */
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 enum { CASES = 64, NAME = 40 };
 

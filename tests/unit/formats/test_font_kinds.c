@@ -5,7 +5,7 @@
 #include "base/fault.h"
 #include "base/mem.h"
 #include "formats/font.h"
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include <math.h>
 

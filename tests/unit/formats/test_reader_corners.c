@@ -1,7 +1,7 @@
 /* Corner cases of the readers, one short file each: accepted, or refused with these words. */
 #include "formats/decimal_internal.h"
 #include "image/image.h"
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include "base/fault.h"
 

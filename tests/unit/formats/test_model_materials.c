@@ -1,6 +1,6 @@
 /* The effect of the maps of MTL and glTF materials on a surface: inputs of the BSDF at a hit, by the formulas of the
  * formats. */
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #include "formats/model_node.h"
 #include "image/png_write.h"

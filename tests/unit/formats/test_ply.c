@@ -1,4 +1,4 @@
-#include "model_makers.h"
+#include "tests/unit/model_makers.h"
 
 #define HEAD "ply\nformat ascii 1.0\n"
 #define XYZ "property float x\nproperty float y\nproperty float z\n"

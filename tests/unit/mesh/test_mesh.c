@@ -1,6 +1,6 @@
 /* Meshes: closed or not, watertight, the index against a test of every triangle, and the description of hits. */
 #include "mesh/mesh_internal.h"
-#include "mesh_makers.h"
+#include "tests/unit/mesh_makers.h"
 
 static struct geom_scratch scratch_make(void) {
     struct geom_scratch scratch;
