@@ -6,6 +6,7 @@
 #include "base/suggestion.h"
 #include "base/unreachable.h"
 #include "call/display_colour.h"
+#include "math/elementary.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
@@ -170,6 +171,31 @@ static bool push_named_tuple(lua_State *L, int index, int count) {
         lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
     }
     return false;
+}
+
+/* {azimuth = ..., elevation = ...}: from north over east, and above the horizon. False: it has no such names. */
+static bool read_compass(struct script_context *c, int index, const struct argument_path *argument_path,
+                         struct vec3 *out) {
+    static const char *const names[] = {"azimuth", "elevation"};
+    lua_State *L = c->sandbox.lua;
+    double turns[2] = {0, 0}, sine[2], cosine[2];
+    int found = 0;
+    for (int k = 0; k < 2 && lua_istable(L, index); k++) {
+        lua_pushstring(L, names[k]);
+        if (lua_rawget(L, index) != LUA_TNIL) {
+            struct script_parameter one = {names[k], KIND_NUMBER, 0, k == 0 ? -360 : -90, k == 0 ? 360 : 90, .unit = NULL};
+            turns[k] = read_number(c, -1, &(struct argument_path){.parameter = &one});
+            found++;
+        }
+        lua_pop(L, 1);
+    }
+    if (found == 1)
+        wrong_type(c, argument_path, "a direction {x, y, z} or {azimuth = ..., elevation = ...}", index);
+    for (int k = 0; k < found; k++)
+        el_sincos(turns[k] * (PI / 180), &sine[k], &cosine[k]);
+    if (found == 2)
+        *out = vec3_make(sine[0] * cosine[1], sine[1], -cosine[0] * cosine[1]);
+    return found == 2;
 }
 
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
@@ -657,7 +683,12 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_AXIS:
         if ((p->flags & OR_CURVE) && lua_type(L, index) != LUA_TSTRING && !lua_isfunction(L, index))
             wrong_type(c, &argument_path, "a word or a function", index);
-        if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
+        if ((p->flags & OR_PAIR) && lua_istable(L, index)) {
+            double pair[2];
+            read_tuple(c, index, argument_path, 2, pair);
+            value->vector = vec3_make(pair[0], pair[1], 0);
+            value->count = 2;
+        } else if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
             value->number = read_number(c, index, &argument_path);
         else if ((p->flags & OR_CURVE) && lua_isfunction(L, index))
             value->curve = record_tone_curve(&c->sandbox, index, p->name);
@@ -673,6 +704,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_TRIPLE:
+        if ((p->flags & OR_COMPASS) && read_compass(c, index, &argument_path, &value->vector))
+            return true;
         value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_SIZE:
@@ -710,6 +743,11 @@ static bool read_value(struct script_context *c, int index, const struct script_
         read_materials(c, index, argument_path, value);
         return true;
     case KIND_IMAGE:
+        handle = handle_at(L, index);
+        if ((p->flags & OR_SKY) && handle && handle->type == HANDLE_SKY) {
+            value->sky = handle->pointer;
+            return true;
+        }
         if (lua_isstring(L, index)) {
             value->text = read_file_name(c, index, &argument_path);
             return true;
@@ -887,6 +925,7 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
     assert(wanted[kind]); /* every kind has a case */
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
-                   (flags & OR_CURVE ? LIKE_FUNCTION : 0);
+                   (flags & OR_CURVE ? LIKE_FUNCTION : 0) | (flags & OR_PAIR ? LIKE_TABLE : 0) |
+                   (flags & OR_SKY ? 1 << HANDLE_SKY : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }

@@ -156,6 +156,7 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .accel = work->job.settings.accel,
                                       .linear_colours = settings_linear(&work->job.settings),
                                       .encodes = work->job.settings.tone.srgb,
+                                      .classic = work->job.settings.integrator == INTEGRATOR_WHITTED,
                                       .cache = is_frame(work) ? &process->world_cache : NULL,
                                       .keeps_tables = notes_changes(work),
                                       .warn = render_process_warn,

@@ -102,12 +102,16 @@ static void describe_parameter(const struct script_parameter *p, char out[LINE_S
     bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
     choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
-    bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
-    size_t used =
-        (size_t)snprintf(out, LINE_SIZE, "%s (%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
-                         or_texture            ? " or a texture"
-                         : p->flags & OR_CURVE ? " or a function"
-                                               : "");
+    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE ? " or a texture"
+                       : p->flags & OR_CURVE                          ? " or a function"
+                       : p->flags & OR_COMPASS                        ? " or {azimuth = ..., elevation = ...}"
+                       : p->flags & OR_PAIR                           ? " or two numbers"
+                       : p->flags & OR_SKY                            ? " or a sky"
+                       : p->kind == KIND_NUMBER && choices[0]         ? " or "
+                                                                      : "";
+    size_t used = (size_t)snprintf(out, LINE_SIZE, "%s (%s%s%s", p->name,
+                                   p->kind == KIND_CHOICE ? choices : kind_words(p->kind), more,
+                                   p->kind == KIND_NUMBER ? choices : "");
     if (range[0])
         used += (size_t)snprintf(out + used, LINE_SIZE - used, ", %s", range);
     if (p->unit)
@@ -171,7 +175,8 @@ const char *script_manual(struct arena *arena) {
 static const char *annotation_kind(const struct script_parameter *p, char out[CHOICES_SIZE]) {
     switch (p->kind) {
     case KIND_NUMBER:
-        return "number";
+        choices_words(p, "|", out, CHOICES_SIZE);
+        return out[0] ? strcat(out, "|number") : "number";
     case KIND_WHOLE:
         return "integer";
     case KIND_BOOLEAN:
@@ -187,11 +192,14 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
         if (p->flags & OR_CURVE)
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
+        if (p->flags & OR_PAIR)
+            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number[]");
         return out;
     case KIND_COLOUR:
         return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";
-    case KIND_POINT:
     case KIND_DIRECTION:
+        return p->flags & OR_COMPASS ? "gr.triple|{azimuth: number, elevation: number}" : "gr.triple";
+    case KIND_POINT:
     case KIND_TRIPLE:
         return "gr.triple";
     case KIND_INTERVAL:
@@ -209,7 +217,9 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_MATERIAL:
         return "gr.material";
     case KIND_IMAGE:
-        return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
+        return p->flags & OR_TEXTURE ? "string|gr.texture|function"
+               : p->flags & OR_SKY   ? "string|gr.texture|gr.sky"
+                                     : "string|gr.texture";
     case KIND_BACKGROUND:
         return "gr.triple|string|gr.sky|gr.texture|function|'gradient'";
     case KIND_FOG:
@@ -253,6 +263,8 @@ static const char *annotation_type(const struct script_parameter *p, char out[CH
 }
 
 static const char *annotation_result(const struct script_function *function) {
+    if (function->passes)
+        return "gr.render.fields";
     switch (function->result) {
     case RESULT_NOTHING:
     case RESULT_FRAMES:
@@ -282,7 +294,8 @@ static const char *annotation_result(const struct script_function *function) {
 
 static void annotate_fields(struct document *document, const struct script_function *function) {
     const char *owner = function->owner == OWNER_NODE ? "node." : "";
-    add(document, "---@class gr.%s%s.fields\n", owner, function->name);
+    add(document, "---@class gr.%s%s.fields%s\n", owner, function->name,
+        function->passes ? ": gr.render.fields" : "");
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         char type[CHOICES_SIZE], line[LINE_SIZE];
