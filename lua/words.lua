@@ -114,15 +114,15 @@ function M.daylight(fields, sun)
     local out = further(fields, 'sun place time zone turbidity ground intensity')
     local intensity = fields.intensity or 1
     local sky = gr.clear_sky { sun = sun, turbidity = fields.turbidity, ground = fields.ground, intensity = intensity }
-    local lights = { gr.sky_light { sky = sky } }
+    local lights = {}
     if sun[2] > 0 then
         local colour = through_air(sun[2], fields.turbidity or 2.5)
         for k = 1, 3 do colour[k] = colour[k] * SUN * intensity end
-        lights[2] = gr.spherical_light {
+        lights[1] = gr.spherical_light {
             position = { sun[1] * FAR, sun[2] * FAR, sun[3] * FAR }, radius = FAR * sin(HALF), emission = colour, visible = true }
     end
     out.lights = fields.lights or lights
-    if fields.sky == nil then out.background = or_else(fields.background, sky) end
+    if fields.sky == nil and fields.background == nil then out.sky = sky end
     out.exposure = or_else(fields.exposure, 'auto')
     return out
 end

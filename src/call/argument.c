@@ -183,7 +183,8 @@ static bool read_compass(struct script_context *c, int index, const struct argum
     for (int k = 0; k < 2 && lua_istable(L, index); k++) {
         lua_pushstring(L, names[k]);
         if (lua_rawget(L, index) != LUA_TNIL) {
-            struct script_parameter one = {names[k], KIND_NUMBER, 0, k == 0 ? -360 : -90, k == 0 ? 360 : 90, .unit = NULL};
+            struct script_parameter one = {names[k],          KIND_NUMBER, 0, k == 0 ? -360 : -90,
+                                           k == 0 ? 360 : 90, .unit = NULL};
             turns[k] = read_number(c, -1, &(struct argument_path){.parameter = &one});
             found++;
         }
@@ -656,6 +657,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
     }
     switch (p->kind) {
     case KIND_NUMBER:
+        if (p->choices && p->choices[0] && lua_type(L, index) == LUA_TSTRING && !lua_isnumber(L, index)) {
+            value->number = p->high + 1 + read_choice(c, index, &argument_path);
+            return true;
+        }
         value->number = read_number(c, index, &argument_path);
         if (p->unit && strcmp(p->unit, "degrees") == 0)
             context_warn_of_radians(c, p->name, value->number);

@@ -110,9 +110,9 @@ enum {
     OR_PROFILE = 512,
     OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
     OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
-    OR_COMPASS = 4096, /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
-    OR_PAIR = 8192,    /* of KIND_CHOICE: also accepts two numbers; then `count` is 2, and they are in `vector` */
-    OR_SKY = 16384,    /* of KIND_IMAGE: also accepts a sky */
+    OR_COMPASS = 4096,  /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
+    OR_PAIR = 8192,     /* of KIND_CHOICE: also accepts two numbers; then `count` is 2, and they are in `vector` */
+    OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };

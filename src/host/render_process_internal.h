@@ -69,6 +69,8 @@ struct picture_work {
     char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
 };
 
+/* For a world of the picture, without a cache. */
+struct world_input render_process_world_input(const struct picture_work *work);
 void render_process_finish_output(const struct render_process *process);
 void render_process_report(const struct render_process *process, enum line_kind kind, const char *text);
 /* A line whose beginning the scene may have chosen. */

@@ -46,8 +46,9 @@ static double reflectance(double ior) {
     return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
 }
 
-/* A highlight stands for the mirror image of a light, spread by the roughness: (e + 8) / 8 is Blinn's normalisation, and
- * a quarter of his exponent looks alike in Phong's formula. ks also filters reflections, whose amount makes up for it.
+/* A highlight stands for the mirror image of a light, spread by the roughness: (e + 8) / 8 is Blinn's normalisation,
+ * and a quarter of his exponent looks alike in Phong's formula. ks also filters reflections, whose amount makes up for
+ * it.
  */
 bool openpbr_classic(const struct material *material, struct phong *out, bool *fresnel) {
     const struct phong *numbers = &material_origin(material)->phong;
@@ -83,7 +84,7 @@ bool openpbr_classic(const struct material *material, struct phong *out, bool *f
     out->kd = vec3_add(below, vec3_scale(fuzz, (1 - metal) * (1 - share)));
     out->ks = vec3_add(vec3_scale(vec3_all(weight), 1 - metal), vec3_scale(colour, metal));
     out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? fmin(share / weight, 1) : 0);
-    out->roughness = roughness;
+    out->roughness = out->reflect > 0 ? roughness : 0;
     return true;
 }
 

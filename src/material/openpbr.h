@@ -20,7 +20,7 @@ struct openpbr {
     struct vec3 fuzz_colour;
     bool deep; /* transmission_depth is above 0: the colour is that of the inside */
     bool thin_walled;
-    bool classic; /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */
+    bool classic;                      /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */
     struct vec3 tangent, coat_tangent; /* in the world; 0: along u */
 };
 

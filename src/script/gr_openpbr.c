@@ -344,7 +344,15 @@ static bool openpbr(struct script_context *context, const struct script_value *a
 }
 
 #define METAL_WORD(name, ...) " " name
-enum { METAL_NAME, METAL_ROUGHNESS, METAL_ANISOTROPY, METAL_TANGENT, METAL_NORMAL, METAL_GLOSSY_SAMPLES, METAL_CLASSIC };
+enum {
+    METAL_NAME,
+    METAL_ROUGHNESS,
+    METAL_ANISOTROPY,
+    METAL_TANGENT,
+    METAL_NORMAL,
+    METAL_GLOSSY_SAMPLES,
+    METAL_CLASSIC
+};
 static const struct script_parameter metal_parameters[] = {
     [METAL_NAME] = {"metal", KIND_CHOICE, 0, 0, 0, &(METALS(METAL_WORD))[1], NULL, NULL, "Its name."},
     [METAL_ROUGHNESS] = SHARE("roughness", "0", "Roughness; 0 is polished."),

@@ -1,5 +1,6 @@
-/* Short words for light and materials. Their rows are here, so that arguments are checked and documented as those of all
- * functions; lua/words.lua makes the result of other functions of gr. Only the position of the sun is computed here. */
+/* Short words for light and materials. Their rows are here, so that arguments are checked and documented as those of
+ * all functions; lua/words.lua makes the result of other functions of gr. Only the position of the sun is computed
+ * here. */
 #include "script/gr_words_internal.h"
 
 #include "call/arguments.h"
@@ -12,9 +13,7 @@
 #define COLOUR(otherwise, help)                                                                                        \
     { "colour", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, otherwise, help }
 #define ROUGHNESS(otherwise)                                                                                           \
-    {                                                                                                                  \
-        "roughness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, otherwise, "Roughness; 0 is polished."  \
-    }
+    { "roughness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, otherwise, "Roughness; 0 is polished." }
 #define FACTOR(name, help)                                                                                             \
     { name, KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", help }
 
@@ -158,7 +157,9 @@ static bool gr_daylight(struct script_context *context, const struct script_valu
         return error_set(error, ERROR_SCENE, "place must be {latitude, longitude}, at most 90 and 180 degrees");
     if (!read_time(&args[DAY_TIME], &time, error))
         return false;
-    time.zone = args[DAY_ZONE].given ? args[DAY_ZONE].number : place->count == 2 ? floor(longitude / 15 + 0.5) : known[2];
+    time.zone = args[DAY_ZONE].given ? args[DAY_ZONE].number
+                : place->count == 2  ? floor(longitude / 15 + 0.5)
+                                     : known[2];
     *sun = sky_sun(&time, latitude, longitude);
     return true;
 }

@@ -272,8 +272,9 @@ static bool value_error(const struct setting *option, struct piece name, const c
                          name.text, unit, option->low, option->high, text);
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs %sa number from %g to %g, not '%s'", shown, name.text,
-                             unit, option->low, option->high, text);
+            return error_set(error, ERROR_USAGE, "%.*s needs %sa number from %g to %g%s%s, not '%s'", shown, name.text,
+                             unit, option->low, option->high, option->words && option->words[0] ? ", or " : "",
+                             option->words ? option->words : "", text);
         return error_set(error, ERROR_USAGE, "%.*s needs %sa number of at least %g, not '%s'", shown, name.text, unit,
                          option->low, text);
     case SETTING_BYTES:
@@ -358,7 +359,8 @@ static bool read_value(const struct setting *option, const char *text, struct op
             *(int *)field = (int)integer;
         break;
     case SETTING_NUMBER:
-        ok = read_number(text, option->low, option->high, field);
+        *(double *)field = setting_number_of_word(option, text);
+        ok = *(double *)field > 0 || read_number(text, option->low, option->high, field);
         break;
     case SETTING_BYTES:
         ok = read_bytes(text, option->low, option->high, field);
