@@ -7,6 +7,7 @@
 #include "call/context.h"
 #include "material/metals.h"
 #include "script/rows_internal.h"
+#include "script/script_internal.h"
 
 #include <lauxlib.h>
 
@@ -69,7 +70,7 @@ static const struct script_parameter daylight_parameters[] = {
 static const struct script_parameter mirror_parameters[] = {COLOUR("{0.95, 0.95, 0.95}", "Colour of the reflection."),
                                                             ROUGHNESS("0")};
 static const struct script_parameter glass_parameters[] = {
-    {"colour", KIND_COLOUR, OPTIONAL, IN_RANGE(0, 1), NULL, "{1, 1, 1}", "Colour of white light after depth."},
+    {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ABOVE(0), NULL, "{1, 1, 1}", "Colour of white light after depth."},
     ROUGHNESS("0"),
     {"ior", KIND_NUMBER, OPTIONAL, IN_RANGE(1, 4), NULL, "1.5", "Index of refraction."},
     {"depth", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Distance inside after which light has colour."},
@@ -161,6 +162,8 @@ static bool gr_daylight(struct script_context *context, const struct script_valu
                 : place->count == 2  ? floor(longitude / 15 + 0.5)
                                      : known[2];
     *sun = sky_sun(&time, latitude, longitude);
+    if (sun->y < 0 && script_of(context)->animation.frame.number <= 1)
+        context_warn_once(context, WARNED_OTHER, "the sun is below the horizon at that time: it is night");
     return true;
 }
 
