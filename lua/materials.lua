@@ -7,7 +7,7 @@
 -- wood, veins by bent noise, cells).
 --
 --   local materials = require 'materials'
---   local table_top = gr.box {material = materials.named 'walnut', max = {2, 0.1, 1}}
+--   local table_top = gr.cylinder {material = materials.named 'walnut', from = {0, 0, 0}, to = {0, 0.1, 0}}
 --   local vase = gr.sphere {material = materials.named('celadon', {scale = 3})}
 --   for _, name in ipairs(materials.names()) do print(name, materials.families[name]) end
 

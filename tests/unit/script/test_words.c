@@ -224,7 +224,7 @@ static const char white_words[] =
 
 TEST(short_materials_reflect_no_more_light_than_arrives_with_both_integrators) {
     check_furnace(white_words, "-q --integrator whitted -ss 2 scene.lua", 136);
-    check_furnace(white_words, "-q --integrator path --spp 64 scene.lua", 140);
+    check_furnace(white_words, "-q --integrator path --spp 64 scene.lua", 160);
 }
 
 TEST(forty_materials_render_without_warnings_and_reflect_no_more_light_than_arrives) {
