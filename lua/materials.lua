@@ -34,7 +34,7 @@ local function veins(p, width, bend)
 end
 
 --- A pattern in two dimensions on the side of the object that faces along each axis, blended.
-local function around(p, normal, f)
+local function triplanar(p, normal, f)
     local x, y, z = normal.x ^ 4, normal.y ^ 4, normal.z ^ 4
     return (x * f(p.z, p.y) + y * f(p.x, p.z) + z * f(p.x, p.y)) / (x + y + z)
 end
@@ -305,11 +305,11 @@ function family.denim(e, at)
     end
     return { base_color = function(q, s)
         local p = at(q)
-        local over = around(p, s.normal, warp)
+        local over = triplanar(p, s.normal, warp)
         local faded = clamp(0.6 + 0.7 * noise(9 * p.x, 1.1 * p.y, 9 * p.z) + 0.5 * noise(2 * p), 0, 1.4)
         return mix(e.weft, e.warp * (0.7 + 0.6 * faded), over)
     end, base_diffuse_roughness = 1, specular_weight = 0.2, specular_roughness = 0.7, fuzz_weight = 0.25, fuzz_color = e.weft, fuzz_roughness = 0.6,
-        geometry_normal = gr.bump(function(q, s) return around(at(q), s.normal, warp) end, 0.012 * at.size) }
+        geometry_normal = gr.bump(function(q, s) return triplanar(at(q), s.normal, warp) end, 0.012 * at.size) }
 end
 
 function family.silk(e, at)

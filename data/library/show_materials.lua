@@ -24,7 +24,7 @@ for k, name in ipairs(materials.names()) do
     local node, family = sample(name), materials.families[name]
     if each then
         local is_clear = family == 'glass' or family == 'liquid'
-        show(node, 'materials/' .. name:gsub(' ', '_') .. '.png', 240, 240, is_clear and 64 or 24, { -0.25, -0.3, -1 })
+        show(node, 'materials/' .. name:gsub(' ', '_') .. '.png', 240, 240, is_clear and 32 or 12, { -0.25, -0.3, -1 })
     else
         local row, column = (k - 1) // 8, (k - 1) % 8
         all:add_child(node:translate(2.5 * (column - 3.5), 1.08, 2.9 * row))

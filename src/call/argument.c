@@ -5,8 +5,8 @@
 
 #include "base/suggestion.h"
 #include "base/unreachable.h"
+#include "call/compass.h"
 #include "call/display_colour.h"
-#include "math/elementary.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
@@ -171,32 +171,6 @@ static bool push_named_tuple(lua_State *L, int index, int count) {
         lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
     }
     return false;
-}
-
-/* {azimuth = ..., elevation = ...}: from north over east, and above the horizon. False: it has no such names. */
-static bool read_compass(struct script_context *c, int index, const struct argument_path *argument_path,
-                         struct vec3 *out) {
-    static const char *const names[] = {"azimuth", "elevation"};
-    lua_State *L = c->sandbox.lua;
-    double turns[2] = {0, 0}, sine[2], cosine[2];
-    int found = 0;
-    for (int k = 0; k < 2 && lua_istable(L, index); k++) {
-        lua_pushstring(L, names[k]);
-        if (lua_rawget(L, index) != LUA_TNIL) {
-            struct script_parameter one = {names[k],          KIND_NUMBER, 0, k == 0 ? -360 : -90,
-                                           k == 0 ? 360 : 90, .unit = NULL};
-            turns[k] = read_number(c, -1, &(struct argument_path){.parameter = &one});
-            found++;
-        }
-        lua_pop(L, 1);
-    }
-    if (found == 1)
-        wrong_type(c, argument_path, "a direction {x, y, z} or {azimuth = ..., elevation = ...}", index);
-    for (int k = 0; k < found; k++)
-        el_sincos(turns[k] * (PI / 180), &sine[k], &cosine[k]);
-    if (found == 2)
-        *out = vec3_make(sine[0] * cosine[1], sine[1], -cosine[0] * cosine[1]);
-    return found == 2;
 }
 
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
@@ -709,7 +683,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_TRIPLE:
-        if ((p->flags & OR_COMPASS) && read_compass(c, index, &argument_path, &value->vector))
+        if ((p->flags & OR_COMPASS) && compass_read(c, index, p->name, &value->vector))
             return true;
         value->vector = read_vector(c, index, &argument_path);
         return true;

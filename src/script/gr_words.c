@@ -30,7 +30,7 @@ static const struct script_parameter studio_parameters[] = {
 };
 
 /* Cities with latitude, longitude and time zone, without summer time. */
-#define PLACES(X)                                                                                                      \
+#define CITIES(X)                                                                                                      \
     X("berlin", 52.52, 13.40, 1)                                                                                       \
     X("cairo", 30.04, 31.24, 2)                                                                                        \
     X("cape_town", -33.92, 18.42, 2)                                                                                   \
@@ -47,15 +47,15 @@ static const struct script_parameter studio_parameters[] = {
     X("singapore", 1.35, 103.82, 8)                                                                                    \
     X("sydney", -33.87, 151.21, 10)                                                                                    \
     X("tokyo", 35.68, 139.69, 9)
-#define PLACE_WORD(name, ...) " " name
-#define PLACE_NUMBERS(name, latitude, longitude, zone) {latitude, longitude, zone},
+#define CITY_WORD(name, ...) " " name
+#define CITY_NUMBERS(name, latitude, longitude, zone) {latitude, longitude, zone},
 
-enum { DAY_SUN, DAY_PLACE, DAY_TIME, DAY_ZONE, DAY_TURBIDITY, DAY_GROUND, DAY_INTENSITY };
+enum { DAY_SUN, DAY_CITY, DAY_TIME, DAY_ZONE, DAY_TURBIDITY, DAY_GROUND, DAY_INTENSITY };
 static const struct script_parameter daylight_parameters[] = {
     [DAY_SUN] = {"sun", KIND_DIRECTION, OPTIONAL | OR_COMPASS, ANY, NULL, "{azimuth = 140, elevation = 40}",
                  "Direction to the sun: azimuth from north over east, elevation above the horizon; -z is north."},
-    [DAY_PLACE] = {"place", KIND_CHOICE, OPTIONAL | OR_PAIR, 0, 0, &(PLACES(PLACE_WORD))[1], NULL, NULL,
-                   "Instead of sun: a city, or {latitude, longitude} in degrees, north and east positive."},
+    [DAY_CITY] = {"place", KIND_CHOICE, OPTIONAL | OR_PAIR, 0, 0, &(CITIES(CITY_WORD))[1], NULL, NULL,
+                  "Instead of sun: a city, or {latitude, longitude} in degrees, north and east positive."},
     [DAY_TIME] = {"time", KIND_NUMBERS, OPTIONAL, ANY, NULL, "{2025, 6, 21, 15, 0}",
                   "With place: {year, month, day, hour, minute} of the clock there."},
     [DAY_ZONE] = {"zone", KIND_NUMBER, OPTIONAL, IN_RANGE(-14, 14), "hours", "that of place, without summer time",
@@ -135,31 +135,31 @@ static bool read_time(const struct script_value *time, struct sky_time *out, str
 /* The direction to the sun. */
 static bool gr_daylight(struct script_context *context, const struct script_value *args, struct script_result *result,
                         struct error *error) {
-    static const double places[][3] = {PLACES(PLACE_NUMBERS)};
+    static const double cities[][3] = {CITIES(CITY_NUMBERS)};
     static const struct vec3 usual = {0.49240387650610398, 0.64278760968653936, 0.58682408883346515};
-    const struct script_value *place = &args[DAY_PLACE];
+    const struct script_value *city = &args[DAY_CITY];
     struct vec3 *sun = arena_alloc(&context->sandbox.call, sizeof *sun);
     struct sky_time time;
     result->pointer = sun;
     if (!sun)
         return error_no_memory(error, "a sky");
-    if (args[DAY_SUN].given && (place->given || args[DAY_TIME].given || args[DAY_ZONE].given))
+    if (args[DAY_SUN].given && (city->given || args[DAY_TIME].given || args[DAY_ZONE].given))
         return error_set(error, ERROR_SCENE, "sun excludes place, time and zone");
     if (args[DAY_SUN].given && !(vec3_length(args[DAY_SUN].vector) > 0))
         return error_set(error, ERROR_SCENE, "sun must not be zero");
     *sun = args[DAY_SUN].given ? vec3_normalize(args[DAY_SUN].vector) : usual;
-    if (!place->given)
+    if (!city->given)
         return !(args[DAY_TIME].given || args[DAY_ZONE].given) ||
                error_set(error, ERROR_SCENE, "time and zone need place");
-    const double *known = places[place->count == 2 ? 0 : place->choice];
-    double latitude = place->count == 2 ? place->vector.x : known[0];
-    double longitude = place->count == 2 ? place->vector.y : known[1];
+    const double *known = cities[city->count == 2 ? 0 : city->choice];
+    double latitude = city->count == 2 ? city->vector.x : known[0];
+    double longitude = city->count == 2 ? city->vector.y : known[1];
     if (fabs(latitude) > 90 || fabs(longitude) > 180)
         return error_set(error, ERROR_SCENE, "place must be {latitude, longitude}, at most 90 and 180 degrees");
     if (!read_time(&args[DAY_TIME], &time, error))
         return false;
     time.zone = args[DAY_ZONE].given ? args[DAY_ZONE].number
-                : place->count == 2  ? floor(longitude / 15 + 0.5)
+                : city->count == 2   ? floor(longitude / 15 + 0.5)
                                      : known[2];
     *sun = sky_sun(&time, latitude, longitude);
     if (sun->y < 0 && script_of(context)->animation.frame.number <= 1)

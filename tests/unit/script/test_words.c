@@ -87,7 +87,7 @@ TEST(wrong_values_of_words_are_errors_that_say_what_is_right) {
         {"gr.studio{node = gr.sphere{}, swep = true}", "unknown field 'swep'; did you mean 'sweep'?"},
         {"gr.studio{node = gr.sphere{}, widht = 7}", "unknown field 'widht'; did you mean 'width'?"},
         {"gr.daylight{sun = {azimuth = 3}}", "sun must be a direction {x, y, z} or {azimuth = ..., elevation = ...}"},
-        {"gr.daylight{sun = {azimuth = 3, elevation = 95}}", "elevation must be between -90 and 90"},
+        {"gr.daylight{sun = {azimuth = 3, elevation = 95}}", "sun.elevation must be a number between -90 and 90"},
         {"gr.daylight{sun = {0, 0, 0}}", "sun must not be zero"},
         {"gr.daylight{sun = {0, 1, 0}, place = 'rome'}", "sun excludes place, time and zone"},
         {"gr.daylight{time = {2025, 6, 21}}", "time and zone need place"},
@@ -242,7 +242,7 @@ TEST(materials_are_found_by_name) {
 }
 
 /* Whitted's integrator with classic = true and without: about as bright, and several times faster. */
-TEST(classic_layers_look_like_the_layers) {
+TEST(classic_layers_resemble_the_layers) {
     static const char scene[] = "gr.render(gr.studio{node = gr.sphere{material = gr.openpbr_material{base_color = "
                                 "{0.6, 0.3, 0.1}, coat_weight = 1,\n"
                                 "classic = C}}, file = 'a.png', width = 24, height = 24, colour = 'linear'})";
