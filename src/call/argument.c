@@ -5,8 +5,8 @@
 
 #include "base/suggestion.h"
 #include "base/unreachable.h"
-#include "call/compass.h"
 #include "call/display_colour.h"
+#include "call/named_numbers_internal.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
@@ -151,35 +151,13 @@ static double read_whole(struct script_context *c, int index, const struct argum
     return x;
 }
 
-/* Pushes {1, 2, 3} of {x = 1, y = 2, z = 3}, or of the letters of a colour or a quaternion; false: there are no such
- * names, and nothing is pushed. */
-static bool push_named_tuple(lua_State *L, int index, int count) {
-    static const char *const names[] = {"xyz", "rgb", "wxyz", "xz", "xy", "uv"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        int found = 0;
-        if (strlen(names[i]) != (size_t)count)
-            continue;
-        lua_createtable(L, count, 0);
-        for (; found < count; found++) {
-            lua_pushlstring(L, &names[i][found], 1);
-            if (lua_rawget(L, index) == LUA_TNIL)
-                break;
-            lua_rawseti(L, -2, found + 1);
-        }
-        if (found == count)
-            return true;
-        lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
-    }
-    return false;
-}
-
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
 static void read_tuple(struct script_context *c, int index, struct argument_path argument_path, int count,
                        double *out) {
     lua_State *L = c->sandbox.lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
-    if (length == 0 && push_named_tuple(L, index, count)) {
+    if (length == 0 && named_numbers_push(L, index, count)) {
         read_tuple(c, lua_gettop(L), argument_path, count, out);
         lua_pop(L, 1);
         return;
@@ -215,13 +193,18 @@ static struct vec3 read_vector(struct script_context *c, int index, const struct
     return (struct vec3){x[0], x[1], x[2]};
 }
 
-static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+static struct vec3 read_pair(struct script_context *c, int index, const struct argument_path *argument_path) {
     double x[2];
-    char words[128];
     read_row(c, index, argument_path, 2, x);
-    if (x[0] > x[1])
-        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
     return (struct vec3){x[0], x[1], 0};
+}
+
+static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+    struct vec3 pair = read_pair(c, index, argument_path);
+    char words[128];
+    if (pair.x > pair.y)
+        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
+    return pair;
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
@@ -663,9 +646,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
         if ((p->flags & OR_CURVE) && lua_type(L, index) != LUA_TSTRING && !lua_isfunction(L, index))
             wrong_type(c, &argument_path, "a word or a function", index);
         if ((p->flags & OR_PAIR) && lua_istable(L, index)) {
-            double pair[2];
-            read_tuple(c, index, argument_path, 2, pair);
-            value->vector = vec3_make(pair[0], pair[1], 0);
+            value->vector = read_pair(c, index, &argument_path);
             value->count = 2;
         } else if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
             value->number = read_number(c, index, &argument_path);
@@ -704,13 +685,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     }
     case KIND_PAIR:
-        if (lua_istable(L, index)) {
-            double pair[2];
-            read_tuple(c, index, argument_path, 2, pair);
-            value->vector = vec3_make(pair[0], pair[1], 0);
-        } else {
+        if (lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
             value->vector.x = value->vector.y = read_number(c, index, &argument_path);
-        }
         return true;
     case KIND_NODE:
         value->node = read_handle(c, index, &argument_path, HANDLE_NODE);
@@ -723,14 +701,12 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     case KIND_IMAGE:
         handle = handle_at(L, index);
-        if ((p->flags & OR_SKY) && handle && handle->type == HANDLE_SKY) {
+        if ((p->flags & OR_SKY) && handle && handle->type == HANDLE_SKY)
             value->sky = handle->pointer;
-            return true;
-        }
-        if (lua_isstring(L, index)) {
+        else if (lua_isstring(L, index))
             value->text = read_file_name(c, index, &argument_path);
+        if (value->sky || value->text)
             return true;
-        }
         value->texture = read_handle(c, index, &argument_path, HANDLE_TEXTURE);
         value->image = value->texture ? image_of(value->texture) : NULL;
         if (value->texture && !value->image)

@@ -1,8 +1,29 @@
-#include "call/compass.h"
+#include "call/named_numbers_internal.h"
 
 #include "math/elementary.h"
 
 #include <math.h>
+#include <string.h>
+
+bool named_numbers_push(lua_State *L, int index, int count) {
+    static const char *const names[] = {"xyz", "rgb", "wxyz", "xz", "xy", "uv"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        int found = 0;
+        if (strlen(names[i]) != (size_t)count)
+            continue;
+        lua_createtable(L, count, 0);
+        for (; found < count; found++) {
+            lua_pushlstring(L, &names[i][found], 1);
+            if (lua_rawget(L, index) == LUA_TNIL)
+                break;
+            lua_rawseti(L, -2, found + 1);
+        }
+        if (found == count)
+            return true;
+        lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
+    }
+    return false;
+}
 
 bool compass_read(struct script_context *context, int index, const char *name, struct vec3 *out) {
     static const char *const names[] = {"azimuth", "elevation"};
