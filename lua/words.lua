@@ -85,14 +85,15 @@ function M.studio(fields)
         local radiance = light * intensity * math.pi * (distance / side) ^ 2
         return gr.area_light { corner = corner, v1 = v2, v2 = v1, samples = samples, emission = { radiance, radiance, radiance }, visible = true, one_sided = true }
     end
-    local sky = gr.sky_gradient { stops = { { -1, 0.1, 0.1, 0.1 }, { 0, 0.3, 0.3, 0.3 }, { 1, 0.16, 0.16, 0.16 } }, intensity = intensity }
     out.lights = fields.lights or {
         box(-48, 42, 5, 3.2, 0.75 * (fields.key or 1)),
         box(62, 20, 6, 3.2, 0.2 * (fields.fill or 1), 2),
         box(155, 58, 6, 2.4, 0.45 * (fields.rim or 1), 2),
-        gr.sky_light { sky = sky, samples = 2 },
     }
-    if fields.sky == nil then out.background = or_else(fields.background, sky) end
+    if fields.sky == nil and fields.background == nil then
+        out.background = gr.sky_gradient { stops = { { -1, 0.1, 0.1, 0.1 }, { 0, 0.3, 0.3, 0.3 }, { 1, 0.16, 0.16, 0.16 } }, intensity = intensity }
+        if not fields.lights then table.insert(out.lights, gr.sky_light { sky = out.background, samples = 2 }) end
+    end
     return out
 end
 
@@ -123,7 +124,8 @@ function M.daylight(fields, sun)
     end
     out.lights = fields.lights or lights
     if fields.sky == nil and fields.background == nil then out.sky = sky end
-    out.exposure = or_else(fields.exposure, 'auto')
+    local ending = type(fields.file) == 'string' and fields.file:match '%.(%a+)$'
+    if ending ~= 'exr' and ending ~= 'hdr' and ending ~= 'pfm' then out.exposure = or_else(fields.exposure, 'auto') end
     return out
 end
 

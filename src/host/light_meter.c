@@ -18,7 +18,7 @@ static int compare(const void *a, const void *b) {
 /* Bright surfaces, brighter than 19 of 20 pixels, come to lie a little below white; but the mean of the picture is at
  * least dark gray, even if windows then lose their details. Black pixels do not count. A 64th of a stop is not seen. */
 static double exposure_of(const struct film *film, double *luminances) {
-    const double bright = 0.8, dark = 0.1;
+    const double bright = 0.8, dark = 0.13;
     size_t count = 0;
     double sum = 0;
     for (size_t i = 0; i < (size_t)film->width * film->height; i++) {

@@ -73,7 +73,7 @@ enum {
 #define CLASSIC                                                                                                        \
     {                                                                                                                  \
         "classic", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                         \
-            "Whether Whitted's integrator shades it as a similar gr.material, several times faster."                   \
+            "Whether Whitted's integrator shades it as a similar gr.material, which is faster."                   \
     }
 #define NORMAL_HELP "A normal map or bump map: a result of gr.bump, or the file of a normal map."
 #define TANGENT_HELP "Direction along which the facets of an anisotropic surface are smooth, in the world."
