@@ -1283,7 +1283,7 @@ function gr.studio(node) end
 
 ---@class gr.daylight.fields: gr.render.fields
 ---@field sun? gr.triple|{azimuth: number, elevation: number} sun (a direction {x, y, z} or {azimuth = ..., elevation = ...}; default {azimuth = 140, elevation = 40}): Direction to the sun: azimuth from north over east, elevation above the horizon; -z is north.
----@field place? 'berlin'|'cairo'|'cape_town'|'delhi'|'london'|'los_angeles'|'moscow'|'nairobi'|'new_york'|'oslo'|'paris'|'rome'|'sao_paulo'|'singapore'|'sydney'|'tokyo'|number[] place ('berlin', 'cairo', 'cape_town', 'delhi', 'london', 'los_angeles', 'moscow', 'nairobi', 'new_york', 'oslo', 'paris', 'rome', 'sao_paulo', 'singapore', 'sydney', 'tokyo' or two numbers; optional): Instead of sun: a city, or {latitude, longitude} in degrees, north and east positive.
+---@field place? string|number[] place (a string or two numbers; optional): Instead of sun: a city, or {latitude, longitude} in degrees, north and east positive.
 ---@field time? number|number[] time (a number or a table of numbers; default {2025, 6, 21, 15, 0}): With place: {year, month, day, hour, minute} of the clock there.
 ---@field zone? number zone (a number, >= -14 and <= 14, in hours; default that of place, without summer time): Difference of that clock to Greenwich; positive is east.
 ---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.

@@ -5,6 +5,8 @@
 -- Daylight", SIGGRAPH 1999, here at one wavelength each for red, green and blue.
 -- Invariant: everything in a studio is a multiple of the size of the node, so that a scaled scene has the same picture.
 
+local check = require 'check'
+
 local M = {}
 
 local sin, cos, rad, max = math.sin, math.cos, math.rad, math.max
@@ -109,7 +111,55 @@ local function through_air(height, turbidity)
     return out
 end
 
-function M.daylight(fields, sun)
+-- Cities with latitude, longitude and time zone, without summer time.
+local places = {
+    berlin = { 52.52, 13.40, 1 }, cairo = { 30.04, 31.24, 2 }, cape_town = { -33.92, 18.42, 2 }, delhi = { 28.61, 77.21, 5.5 },
+    london = { 51.51, -0.13, 0 }, los_angeles = { 34.05, -118.24, -8 }, moscow = { 55.76, 37.62, 3 }, nairobi = { -1.29, 36.82, 3 },
+    new_york = { 40.71, -74.01, -5 }, oslo = { 59.91, 10.75, 1 }, paris = { 48.86, 2.35, 1 }, rome = { 41.90, 12.50, 1 },
+    sao_paulo = { -23.55, -46.63, -3 }, singapore = { 1.35, 103.82, 8 }, sydney = { -33.87, 151.21, 10 }, tokyo = { 35.68, 139.69, 9 },
+}
+
+--- The direction to the sun at a place and a time; sun_direction computes it of the day of the year.
+local function sun_at(fields, sun_direction)
+    local where, place, time = 'gr.daylight', fields.place, fields.time or { 2025, 6, 21, 15, 0 }
+    if type(place) == 'string' then
+        local names = {}
+        for name in pairs(places) do names[#names + 1] = name end
+        table.sort(names)
+        if not places[place] then
+            check.fail(where, ("place '%s' is not known; there are %s, and {latitude, longitude}"):format(place:sub(1, 40), table.concat(names, ', ')))
+        end
+        place = places[place]
+    end
+    local latitude, longitude = check.number(where, 'place[1]', place[1], -90, 90), check.number(where, 'place[2]', place[2], -180, 180)
+    if type(time) ~= 'table' or #time < 3 or #time > 5 then check.fail(where, 'time must be {year, month, day, hour, minute}') end
+    local year, month = check.whole(where, 'time[1], the year,', time[1], 1901, 2099), check.whole(where, 'time[2], the month,', time[2], 1, 12)
+    local days = { 31, year % 4 == 0 and 29 or 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31 }
+    local day = check.whole(where, 'time[3], the day,', time[3], 1, days[month])
+    for k = 1, month - 1 do day = day + days[k] end
+    local hour = check.number(where, 'time[4], the hour,', time[4], 0, 24, 12) + check.number(where, 'time[5], the minute,', time[5], 0, 60, 0) / 60
+    return { sun_direction(year, day, hour, fields.zone or place[3] or math.floor(longitude / 15 + 0.5), latitude, longitude) }
+end
+
+local function sun_of(fields, sun_direction)
+    local sun, has_time = fields.sun, fields.time ~= nil or fields.zone ~= nil
+    if sun and (fields.place or has_time) then check.fail('gr.daylight', 'sun excludes place, time and zone') end
+    if fields.place then return sun_at(fields, sun_direction) end
+    if has_time then check.fail('gr.daylight', 'time and zone need place') end
+    sun = sun or { azimuth = 140, elevation = 40 }
+    local azimuth, elevation = sun.azimuth, sun.elevation
+    if azimuth then
+        azimuth, elevation = rad(azimuth), rad(elevation)
+        return { sin(azimuth) * cos(elevation), sin(elevation), -cos(azimuth) * cos(elevation) }
+    end
+    local x, y, z = sun[1] or sun.x, sun[2] or sun.y, sun[3] or sun.z
+    local length = math.sqrt(x * x + y * y + z * z)
+    if length == 0 then check.fail('gr.daylight', 'sun must not be zero') end
+    return { x / length, y / length, z / length }
+end
+
+function M.daylight(fields, sun_direction)
+    local sun = sun_of(fields, sun_direction)
     -- Radiance as in gr.clear_sky: luminance in kcd/m^2 over 20. The disc of the sun is 0.533 degrees wide.
     local SUN <const>, HALF <const>, FAR <const> = 1.6e6 / 20, rad(0.533 / 2), 1e8
     local out = further(fields, 'sun place time zone turbidity ground intensity')

@@ -631,7 +631,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->boolean = lua_toboolean(L, index);
         return true;
     case KIND_TEXT:
-        value->text = read_text(c, index, &argument_path);
+        if ((p->flags & OR_PAIR) && lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
+            value->text = read_text(c, index, &argument_path);
         return true;
     case KIND_FILE:
         value->text = read_file_name(c, index, &argument_path);
@@ -645,10 +648,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_AXIS:
         if ((p->flags & OR_CURVE) && lua_type(L, index) != LUA_TSTRING && !lua_isfunction(L, index))
             wrong_type(c, &argument_path, "a word or a function", index);
-        if ((p->flags & OR_PAIR) && lua_istable(L, index)) {
-            value->vector = read_pair(c, index, &argument_path);
-            value->count = 2;
-        } else if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
+        if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
             value->number = read_number(c, index, &argument_path);
         else if ((p->flags & OR_CURVE) && lua_isfunction(L, index))
             value->curve = record_tone_curve(&c->sandbox, index, p->name);

@@ -111,7 +111,7 @@ enum {
     OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
     OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
     OR_COMPASS = 4096,  /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
-    OR_PAIR = 8192,     /* of KIND_CHOICE: also accepts two numbers; then `count` is 2, and they are in `vector` */
+    OR_PAIR = 8192,     /* of KIND_TEXT: also accepts two numbers */
     OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
@@ -145,7 +145,7 @@ enum result_kind {
 };
 
 struct script_result {
-    void *pointer; /* of the type of the result kind; owned by the scene or the assets. In Lua: a direction, or NULL */
+    void *pointer;           /* of the type of the result kind; owned by the scene or the assets */
     const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
 

@@ -101,7 +101,7 @@ _Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in answer(
 
 static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     if (function->in_lua)
-        return words_answer(L, function, result);
+        return words_answer(L, function);
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;

@@ -184,7 +184,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_TEXT:
     case KIND_FILE:
     case KIND_OUTPUT:
-        return "string";
+        return p->flags & OR_PAIR ? "string|number[]" : "string";
     case KIND_CHOICE:
     case KIND_AXIS:
         choices_words(p, "|", out, CHOICES_SIZE);
@@ -192,8 +192,6 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
         if (p->flags & OR_CURVE)
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
-        if (p->flags & OR_PAIR)
-            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number[]");
         return out;
     case KIND_COLOUR:
         return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";

@@ -6,8 +6,8 @@
 
 #include <lua.h>
 
-/* Calls the function of that name in lua/words.lua with the arguments of the call as one table, and with the direction
- * of the result, if there is one. Pushes what it returns; may raise. */
-int words_answer(lua_State *L, const struct script_function *function, const struct script_result *result);
+/* Calls the function of that name in lua/words.lua with the arguments of the call as one table. Pushes what it returns;
+ * may raise. */
+int words_answer(lua_State *L, const struct script_function *function);
 
 #endif
