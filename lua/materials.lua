@@ -53,7 +53,7 @@ function family.wood(e, at)
         return smooth(0.25, 0.9, t) * (1 - smooth(0.9, 1, t)), t
     end
     local function pores(p, t)
-        local streak = smooth(0.1, 0.3, threads(p, 34, 2)) + 0.6 * smooth(0.2, 0.4, threads(p * 1.7 + 3.1, 34, 1.6))
+        local streak = smooth(0.1, 0.32, threads(p, 48, 2)) + 0.6 * smooth(0.2, 0.4, threads(p * 1.7 + 3.1, 46, 1.6))
         return clamp(e.pores * streak * (1 - 0.6 * smooth(0.1, 0.6, t)), 0, 1)
     end
     local function colour(q)
@@ -68,7 +68,7 @@ function family.wood(e, at)
             local p = at(q)
             local _, t = rings(p)
             return -pores(p, t) + 0.2 * threads(p, 60, 2)
-        end, 0.003 * at.size) }
+        end, 0.0016 * at.size) }
 end
 
 function family.marble(e, at)
@@ -346,7 +346,7 @@ function family.milk(e)
 end
 
 local list = {
-    { 'oak', 'wood', early = c '#cfa872', late = c '#96683a', pore = c '#4a2f19', rings = 6, wild = 0.2, pores = 1, figure = 0.1 },
+    { 'oak', 'wood', early = c '#b98e58', late = c '#80552c', pore = c '#3c2512', rings = 7, wild = 0.18, pores = 0.95, figure = 0.1 },
     { 'pine', 'wood', early = c '#ecd0a0', late = c '#bf8443', pore = c '#9a6a38', rings = 5, wild = 0.22, pores = 0.06, figure = 0.03 },
     { 'walnut', 'wood', early = c '#86603f', late = c '#46301f', pore = c '#22150d', rings = 4.5, wild = 0.42, pores = 0.6, figure = 0.12 },
     { 'mahogany', 'wood', early = c '#9c4a2a', late = c '#6b2a16', pore = c '#240e08', rings = 3, wild = 0.6, pores = 0.8, figure = 0.4, coat = 1 },

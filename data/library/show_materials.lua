@@ -1,6 +1,6 @@
 -- TITLE: Library: forty materials by name
 -- Forty samples in a studio: woods, stones, metals, paints, ceramics, fabrics, liquids and glasses of the library. With
--- -D each=true a picture of each, as in docs/library.md.
+-- -D each=true a picture of each, as in docs/library.md; -D each=oak one of these.
 -- Author: gray project
 
 local materials = require 'materials'
@@ -22,10 +22,10 @@ end
 local all = gr.node 'materials'
 for k, name in ipairs(materials.names()) do
     local node, family = sample(name), materials.families[name]
-    if each then
+    if each == true or each == name then
         local is_clear = family == 'glass' or family == 'liquid'
         show(node, 'materials/' .. name:gsub(' ', '_') .. '.png', 240, 240, is_clear and 32 or 12, { -0.25, -0.3, -1 })
-    else
+    elseif not each then
         local row, column = (k - 1) // 8, (k - 1) % 8
         all:add_child(node:translate(2.5 * (column - 3.5), 1.08, 2.9 * row))
     end
