@@ -38,6 +38,17 @@ bool test_is_named(const char *pattern);
 #define TEST(test_name) TEST_DEFINE(test_name, TEST_FAST)
 #define TEST_LONG(test_name) TEST_DEFINE(test_name, TEST_SLOW)
 #define TEST_EXAMPLE(test_name) TEST_DEFINE(test_name, TEST_EXAMPLE)
+/* A claim in two sizes: `times` is 1 in make test, and `factor` in make test-long, where the name ends in _many_times.
+ */
+#define TEST_TIMES(test_name, factor)                                                                                  \
+    static void test_name##_of_size(int times);                                                                        \
+    TEST(test_name) {                                                                                                  \
+        test_name##_of_size(1);                                                                                        \
+    }                                                                                                                  \
+    TEST_LONG(test_name##_many_times) {                                                                                \
+        test_name##_of_size(factor);                                                                                   \
+    }                                                                                                                  \
+    static void test_name##_of_size(int times)
 
 void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 1, 2))); /* ends this test as skipped */

@@ -23,6 +23,7 @@ struct gallery {
     struct assets assets;
     int pictures;
     int max; /* numbers of an argument that are tried one by one */
+    bool is_long;
     bool finite, clamped;
     char first[160]; /* the position of the first number that is not finite */
 };
@@ -498,12 +499,19 @@ static void try_everywhere(struct gallery *gallery, const char *value, bool must
     for (int f = 0; f < function_count(); f++) {
         const struct script_function *function = function_at(f);
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count; p++) {
-            char call[CALL_SIZE], right[256], with[512];
+            char call[CALL_SIZE], right[256], with[512], all[512] = "";
             if (!is_numeric(function->parameters[p].kind) || !goes_with_the_others(function, p))
+                continue;
+            /* Millions of triangles; displacements_that_are_impossible_are_refused. */
+            if (!gallery->is_long && strcmp(function->name, "displace") == 0)
                 continue;
             right_text(&function->parameters[p], right, sizeof right);
             for (int which = -1; which < gallery->max && replace_number(right, which, value, with, sizeof with);
                  which++) {
+                if (strcmp(with, all) == 0) /* of one number */
+                    continue;
+                if (which < 0)
+                    (void)snprintf(all, sizeof all, "%s", with);
                 if (has_table_form(function)) {
                     table_call(function, p, with, call);
                     try_call(gallery, function, call, must_refuse);
@@ -530,22 +538,19 @@ static void try_combinations(struct gallery *gallery, const char *value) {
 static void try_values(const char *const *values, bool must_refuse, bool combinations_too, bool is_long) {
     struct gallery gallery;
     open_gallery(&gallery);
-    gallery.max = is_long ? 9 : 3;
+    gallery.max = is_long ? 9 : 2;
+    gallery.is_long = is_long;
     for (; *values; values++) {
         try_everywhere(&gallery, *values, must_refuse);
         if (combinations_too)
             try_combinations(&gallery, *values);
     }
-    CHECK(trials > 900);
+    CHECK(trials > 500);
     close_gallery(&gallery);
 }
 
-TEST(numbers_that_are_not_finite_are_refused_in_every_argument) {
-    try_values((const char *const[]){"(0/0)", "(1/0)", NULL}, true, false, false);
-}
-
 TEST(numbers_beyond_1e30_are_refused_in_every_argument) {
-    try_values((const char *const[]){"1e31", "-1e308", NULL}, true, false, false);
+    try_values((const char *const[]){"1e31", NULL}, true, false, false);
 }
 
 TEST(numbers_of_1e30_give_one_line_or_a_finite_picture) {
@@ -564,9 +569,10 @@ TEST(the_smallest_numbers_give_one_line_or_a_finite_picture) {
     try_values((const char *const[]){"5e-324", NULL}, false, true, false);
 }
 
-TEST_LONG(numbers_just_beyond_1e30_are_refused_in_every_argument) {
-    try_values((const char *const[]){"1.0000000000000001e30", "-1.0001e30", "1e40", "1e308", "(-1/0)", NULL}, true,
-               false, true);
+TEST_LONG(numbers_just_beyond_1e30_or_not_finite_are_refused_in_every_argument) {
+    try_values((const char *const[]){"1.0000000000000001e30", "-1.0001e30", "1e40", "-1e308", "1e308", "(-1/0)",
+                                     "(1/0)", "(0/0)", NULL},
+               true, false, true);
 }
 
 TEST_LONG(extreme_numbers_of_every_size_give_one_line_or_a_finite_picture) {

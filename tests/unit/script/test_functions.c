@@ -279,8 +279,8 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     fails("fn(function(p) while true do pcall(function() local x = p.x while x > 0 do x = x - 1 end end)"
           " if p.x > 0 then return 1 end end end)",
           "more than 4096 times");
-    const struct script_options hasty = {.library_folder = "lua", .time_limit = 0.5};
-    check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
+    const struct script_options hasty = {.library_folder = "lua", .time_limit = 0.2};
+    check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.2 s"}, &hasty);
 }
 
 TEST(a_recorded_function_prints_in_its_first_call) {
@@ -308,7 +308,7 @@ TEST(a_function_of_too_many_long_paths_is_refused_after_few_calls) {
 }
 
 TEST(a_function_of_many_long_paths_is_recorded) {
-    runs("fn(function(p) local x = p.x for i = 1, 40 do x = sin(x) * p.y + p.z end"
+    runs("fn(function(p) local x = p.x for i = 1, 10 do x = sin(x) * p.y + p.z end"
          " for i = 1, 12 do if gr.noise(p * i) > 0.3 then x = x + 2 ^ i end end return x end)");
     runs("fn(function(p) for i = 1, 700 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
 }
@@ -492,7 +492,7 @@ static void check_generated(int count, int seed) {
 }
 
 TEST(generated_functions_are_recorded_as_lua_computes_them) {
-    check_generated(150, 1);
+    check_generated(50, 1);
 }
 
 /* Ten tests of 10,000 functions: a run that was stopped goes on with the next one. */

@@ -302,8 +302,11 @@ TEST(window_goes_on_after_an_animation_and_plays_turntables_and_scripts_of_one_f
     const struct deed turns[] = {
         {"playing", KEY('k'), 0}, {"ready", KEY('j'), 0}, {"ready", KEY('n'), 0}, {"none", KEY('q'), 0}};
     const struct deed frames[] = {{"ready  frame 3/3", KEY('h'), 0}, {"ready  frame 2/3", KEY('q'), 0}};
-    CHECK_EQ_INT(viewer_that(turns, &(struct setting){.option = "--turntable=4"}, NULL), 0);
-    CHECK_EQ_INT(viewer_that(frames, &(struct setting){.option = "--frames=3"}, NULL), 0);
+    static const char ball[] =
+        "gr.render(gr.sphere(gr.material({1, 1, 1}, {0, 0, 0}, 1)), 'out.png', 64, 48, {0, 0, 6}, "
+        "{0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {})\n";
+    CHECK_EQ_INT(viewer_that(turns, &(struct setting){.scene = ball, .option = "--turntable=4"}, NULL), 0);
+    CHECK_EQ_INT(viewer_that(frames, &(struct setting){.scene = ball, .option = "--frames=3"}, NULL), 0);
 }
 
 /* At the size of the picture the pixels of the window are squares of 10 x 10. */
@@ -333,7 +336,7 @@ TEST(window_opens_while_the_script_runs_and_ends_it) {
     const struct deed waits[] = {{"the script runs", KEY('b'), 0}, {"64x48  ready", KEY('q'), 0}};
     CHECK_EQ_INT(viewer_that(quits, &(struct setting){.scene = "while true do end\n"}, NULL), 130);
     const struct setting slow = {.scene =
-                                     "local t = os.clock()\nwhile os.clock() - t < 0.9 do end\n" ANIMATION("0.5", "f")};
+                                     "local t = os.clock()\nwhile os.clock() - t < 0.5 do end\n" ANIMATION("0.5", "f")};
     CHECK_EQ_INT(viewer_that(waits, &slow, NULL), 0);
 }
 
