@@ -115,6 +115,14 @@ const char *test_program(void);
 double test_clock(void);
 /* Waits for a child: its exit status, or 128 + signal. */
 int test_status_of(pid_t child);
+/* The one child of a process, or 0. */
+pid_t test_child_of(pid_t process);
+/* What the children that have ended used: processor time of all, and the largest memory of one. */
+struct test_use {
+    double seconds;
+    long kibibytes;
+};
+struct test_use test_children_used(void);
 /* Whether two files of test_folder() are there and have the same bytes. */
 bool test_same_files(const char *one, const char *other);
 

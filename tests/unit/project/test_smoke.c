@@ -84,8 +84,7 @@ static void smoke_with(const char *options, const char *folder, const char *end,
                 test_fail(__FILE__, __LINE__, "%s/%s: status %d: %s", folder, names[k], result.status, result.err);
             else
                 check_pictures(names[k], k);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
         }
         free(names[k]);
     }

@@ -172,8 +172,7 @@ TEST(ambient_light_is_nothing_to_paths_and_one_notice_says_so) {
     CHECK(memcmp(a.rgb, b.rgb, (size_t)3 * a.width * a.height) == 0);
     free(a.rgb);
     free(b.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- skies --- */
@@ -199,8 +198,7 @@ TEST(a_chosen_background_lights_the_scene_and_the_gradient_that_nobody_chose_doe
     free(none.rgb);
     free(gradient.rgb);
     free(colour.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
@@ -506,8 +504,7 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     CHECK_EQ_INT(result.status, 0);
     const char *warning = strstr(result.err, "more light than it receives");
     CHECK(warning && !strstr(warning + 1, "more light than it receives"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct stage s;
     stage_begin(&s, 1);
     struct material *material = stage_phong(&s, vec3_all(2), vec3_all(0), 1);
@@ -536,8 +533,7 @@ TEST(the_warning_of_materials_that_make_light_knows_the_texels_of_pictures) {
         struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
         CHECK_EQ_INT(result.status, 0);
         CHECK((strstr(result.err, "more light than it receives") != NULL) == bright);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -557,8 +553,7 @@ TEST(an_emitter_without_bounds_has_one_notice) {
         const char *notice = strstr(result.err, "has no bounds");
         CHECK(strstr(result.err, "'floor' emits light") != NULL);
         CHECK(notice && !strstr(notice + 1, "has no bounds"));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

@@ -130,8 +130,7 @@ TEST(a_nan_at_a_hit_is_reported_once_with_the_point) {
             CHECK_TEXT(line, first);
         free(first);
         first = strdup(line);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
     free(first);
 }
@@ -293,8 +292,7 @@ TEST(a_recorded_function_prints_in_its_first_call) {
         "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.out, "called\ta number of a recorded function\na b\nmore\ntone\nafter\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Depth first, 4,096 paths of 1,980 decisions would come before the error. */
@@ -523,8 +521,7 @@ static void picture_of(const char *fields, const char *name, const char *options
     struct test_result result = test_gray_scene(text, line, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", fields, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     *bytes = test_read_file(test_path(name), size);
 }
 
@@ -569,8 +566,7 @@ TEST(an_implicit_solid_of_a_loop_is_that_of_its_formula) {
     CHECK(a && b && size_a == size_b && memcmp(a, b, size_a) == 0);
     free(a);
     free(b);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(every_input_of_a_material_takes_a_function) {
@@ -669,8 +665,7 @@ static void solid_picture(const char *node, char **bytes, size_t *size) {
     struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", node, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     *bytes = test_read_file(test_path("a.png"), size);
 }
 
@@ -715,8 +710,7 @@ TEST(the_operations_of_loops_are_listed_below_them) {
                            "        r0 ... = r4\n"
                            "    r2 = loop 0: r0\n"
                            "    result r2\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Each prints a line that begins with its source. */
@@ -746,8 +740,7 @@ TEST(functions_of_textures_solids_lights_skies_and_fogs_are_listed_once) {
         at += strlen(words);
     }
     CHECK(!strstr(at, "scene.lua:"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(the_operations_of_functions_are_listed) {
@@ -761,12 +754,10 @@ TEST(the_operations_of_functions_are_listed) {
                            "    r1 = multiply r0 2\n"
                            "    r1 = add r1 1\n"
                            "    result r1\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(text, "--dump-expr --json scene.lua", NULL);
     CHECK_TEXT(result.out, "{\"picture\":\"a.png\",\"functions\":[{\"source\":\"scene.lua:1\",\"operations\":2,"
                            "\"constants\":2,\"registers\":2,\"code\":[\"r0 = p.x\",\"r1 = multiply r0 2\","
                            "\"r1 = add r1 1\",\"result r1\"]}]}\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

@@ -193,8 +193,7 @@ TEST(equal_tables_and_files_are_one_mesh) {
     struct arena arena = {0};
     struct error error;
     const char *traceback;
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
+    const char *path = test_path("scene.lua");
     test_write_text(path, "for i = 1, 3 do gr.mesh('t' .. i, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}) end\n");
     CHECK(script_run(path, &options, &host, &arena, &traceback, &error));
     CHECK_EQ_INT(assets.mesh_count, 1);
@@ -380,8 +379,7 @@ static void check_error_script(const char *name) {
     int wanted_status = status ? atoi(status) : 1;
     if (result.status != wanted_status)
         test_fail(__FILE__, __LINE__, "%s ends with %d, not %d", name, result.status, wanted_status);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     free(text);
     free(wanted);
     free(status);

@@ -189,8 +189,7 @@ static void picture_without_window(const char *overlay, const char *name) {
     (void)snprintf(arguments, sizeof arguments, "-q --progress=none --overlay %s scene.lua -o %s", overlay, name);
     struct test_result result = test_gray(NULL, arguments);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(window_shows_and_saves_the_lines_that_overlay_draws) {
@@ -268,8 +267,7 @@ static bool saved_frame(const char *file, int number, int view) {
     (void)snprintf(saved, sizeof saved, "%s.%04d-view%d.png", file, number, view);
     struct test_result result = test_gray(NULL, arguments);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     (void)snprintf(arguments, sizeof arguments, "w%d.png", number);
     return test_same_files(saved, arguments);
 }
@@ -327,8 +325,7 @@ TEST(window_larger_than_the_picture_shows_it_with_the_pixels_of_the_window) {
     CHECK(memcmp(whole.rgb, large, sizeof large) == 0);
     free(whole.rgb);
     free(own.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(window_opens_while_the_script_runs_and_ends_it) {
@@ -365,6 +362,5 @@ TEST(window_ends_with_the_denoised_picture_of_paths_also_after_a_restart) {
     CHECK_EQ_INT(result.status, 0);
     CHECK(test_same_files("out.png", "whole.png"));
     CHECK(test_same_files("out-view1.png", "whole.png"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
