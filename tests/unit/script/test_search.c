@@ -47,6 +47,25 @@ static void begin(void) {
     folder("w/s");
 }
 
+#define WITH_PICTURE(name)                                                                                             \
+    "local m = gr.material{kd = gr.texture{file = '" name "'}}\n"                                                      \
+    "gr.render{node = gr.sphere('s'):set_material(m), file = 't.png', width = 2, height = 2, eye = {0, 0, 5}, "        \
+    "ambient = {1, 1, 1}}\n"
+
+/* Their folder stands beside lua/, or below share/gray where gray is installed. */
+TEST(pictures_that_come_with_gray_are_found_last_and_from_any_folder) {
+    begin();
+    struct test_result result = run(WITH_PICTURE("painting.png"), "");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    test_free_result(&result);
+    says(WITH_PICTURE("no.png"), "", 1, "cannot find 'no.png'");
+    says(WITH_PICTURE("../../lua/painting.png"), "", 1, "lies outside the folders that scenes may read");
+    folder("w/s/more");
+    file("w/s/more/painting.png", "of the scene");
+    says(WITH_PICTURE("painting.png"), "", 1, "'painting.png' was found as 's/more/painting.png'");
+}
+
 TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
     begin();
     folder("w/s/Assets");
