@@ -34,6 +34,10 @@ have_lua() {
     return 1
 }
 
+have_ctags() {
+    ctags --version 2>/dev/null | grep -q '^Universal Ctags'
+}
+
 have_mpi() {
     pkg-config --exists ompi-c || pkg-config --exists mpich
 }
@@ -67,6 +71,7 @@ if [ "$mode" = --tests ]; then
     want machines openmpi-bin command -v mpirun
     want animations ffmpeg command -v ffmpeg
     want animations apngdis command -v apngdis
+    want tools universal-ctags have_ctags
     want tools gzip command -v gzip
     want tools procps command -v pgrep
     want tools mount command -v mount
