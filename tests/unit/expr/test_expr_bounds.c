@@ -99,7 +99,7 @@ static void check_containment(uint32_t count) {
 }
 
 TEST(bounds_of_every_operation_contain_its_values) {
-    check_containment(100000);
+    check_containment(40000);
 }
 
 TEST_LONG(bounds_of_every_operation_contain_ten_million_values) {
