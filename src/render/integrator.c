@@ -65,7 +65,7 @@ void integrator_destroy(struct integrator *integrator) {
     mem_free(integrator);
 }
 
-bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part) {
+bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_render(&renderer->integrator->whitted, renderer, worker, part);

@@ -63,7 +63,7 @@ bool renderer_is_done(const struct renderer *renderer) {
 
 /* Makes a tile or a part of it. False: stopped. A cancelled ray leaves a wrong colour, so a tile that ends after a
  * request to stop counts as not done. */
-static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
+static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct film_rectangle part,
                       double share) {
     renderer_tile_begins(renderer, worker, tile, share);
     bool whole = integrator_render(renderer, worker, &part) && !renderer_stopped(renderer, worker);
@@ -124,8 +124,7 @@ static enum work_result make_item(struct renderer *renderer, struct worker *work
     if (!claim(renderer, item, &before))
         return WORK_SKIPPED;
     worker->tile_state = item->quarter == WORK_WHOLE && !renderer->pass.open ? &film->tiles[item->tile] : NULL;
-    bool whole = !(pixels > 0) ||
-                 make_part(renderer, worker, item->tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, pixels / all);
+    bool whole = !(pixels > 0) || make_part(renderer, worker, item->tile, r, pixels / all);
     if (!renderer->pass.open)
         return whole ? WORK_DONE : WORK_FAILED;
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
@@ -318,7 +317,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
 static bool record_pixel(struct renderer *renderer, struct film *film, struct pixel_trace *pixel_trace,
                          struct error *error) {
     struct worker *worker = &renderer->workers[0];
-    struct rectangle tile = {pixel_trace->x, pixel_trace->y, (int64_t)pixel_trace->x + 1, (int64_t)pixel_trace->y + 1};
+    struct film_rectangle tile = {pixel_trace->x, pixel_trace->y, pixel_trace->x + 1, pixel_trace->y + 1};
     film->x0 = pixel_trace->x;
     film->y0 = pixel_trace->y;
     worker->state.observer = &pixel_trace->observer;

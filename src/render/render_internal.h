@@ -88,11 +88,6 @@ struct renderer {
     _Atomic bool failed;
 };
 
-/* A rectangle of pixels of the whole picture: x0 <= x < x1. */
-struct rectangle {
-    int64_t x0, y0, x1, y1;
-};
-
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error);

@@ -34,7 +34,7 @@ struct contour {
     double width; /* pixels; 0: no lines */
     int rim;      /* pixels around a tile that are sampled */
     struct contour_sample *samples;
-    struct rectangle tile;
+    struct film_rectangle tile;
     float squared[FILM_TILE * FILM_TILE]; /* the distance of the nearest edge from the pixel's centre, pixels */
 };
 
@@ -43,7 +43,7 @@ bool contour_init(struct contour *contour, double width);
 void contour_destroy(struct contour *contour);
 /* Finds the lines in a part of a tile. False: stopped. */
 bool contour_find(struct contour *contour, const struct renderer *renderer, struct worker *worker,
-                  const struct rectangle *tile);
+                  const struct film_rectangle *tile);
 /* The fraction of a pixel of that part that lines cover, 0..1. */
 double contour_coverage(const struct contour *contour, int64_t x, int64_t y);
 

@@ -40,7 +40,7 @@ bool whitted_create(struct whitted *whitted, struct renderer *renderer, int work
                     struct render_statistics *statistics, struct error *error);
 void whitted_destroy(struct whitted *whitted);
 bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
-                    const struct rectangle *part);
+                    const struct film_rectangle *part);
 void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
                     int64_t y);
 void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,

@@ -154,8 +154,8 @@ struct part {
     struct renderer *renderer;
     struct worker *worker;
     struct whitted_worker *own;
-    struct rectangle area; /* with the rim, as far as that is in the picture */
-    bool has_first;        /* the first pass is made */
+    struct film_rectangle area; /* with the rim, as far as that is in the picture */
+    bool has_first;             /* the first pass is made */
 };
 
 static size_t index_of(const struct part *part, int64_t x, int64_t y) {
@@ -176,7 +176,7 @@ static bool surfaces_differ(const struct camera_hit *a, const struct camera_hit 
 
 /* Whether the pixel may contain a thin primitive in front of the hit of one of the first samples in it or around it. */
 static bool has_thin(const struct part *part, int64_t x, int64_t y) {
-    const struct rectangle *area = &part->area;
+    const struct film_rectangle *area = &part->area;
     double nearness = part->whitted->fine ? (double)thin_map_at(&part->whitted->thin, x, y) : 0;
     if (!(nearness > 0))
         return false;
@@ -205,7 +205,7 @@ static bool is_fine(const struct part *part, double tolerance) {
 
 static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
     const struct tone *tone = &part->renderer->job->settings.tone;
-    const struct rectangle *area = &part->area;
+    const struct film_rectangle *area = &part->area;
     const struct camera_hit *hits = part->own->hits;
     struct vec3 own = toned(tone, *first_at(part, x, y));
     for (int dy = -1; dy <= 1; dy++) {
@@ -232,7 +232,7 @@ static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y
 static bool has_detail(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
     static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
     const struct tone *tone = &part->renderer->job->settings.tone;
-    const struct rectangle *area = &part->area;
+    const struct film_rectangle *area = &part->area;
     struct vec3 own = toned(tone, *first_at(part, x, y));
     for (int i = 0; i < 4; i++) {
         int dx = steps[i][0], dy = steps[i][1];
@@ -434,7 +434,7 @@ static bool is_late(const struct renderer *renderer) {
 
 /* Rows that the time did not suffice for: first samples without resampling if all of the tile has them, else one sample
  * for each patch. */
-static void finish_late(struct part *part, const struct rectangle *rows, bool has_first) {
+static void finish_late(struct part *part, const struct film_rectangle *rows, bool has_first) {
     struct film *film = part->renderer->job->film;
     struct batch *batch = &part->worker->batch;
     for (int64_t y0 = rows->y0; y0 < rows->y1; y0 += PATCH) {
@@ -459,7 +459,7 @@ static void finish_late(struct part *part, const struct rectangle *rows, bool ha
 }
 
 /* For a viewer: the current first pass, and the pixels to be resampled. */
-static void show_refined(const struct part *part, const struct rectangle *tile) {
+static void show_refined(const struct part *part, const struct film_rectangle *tile) {
     struct film *film = part->renderer->job->film;
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
@@ -471,19 +471,15 @@ static void show_refined(const struct part *part, const struct rectangle *tile) 
 }
 
 bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
-                    const struct rectangle *tile) {
+                    const struct film_rectangle *tile) {
     const struct settings *settings = &renderer->job->settings;
     struct part part = {.whitted = whitted,
                         .renderer = renderer,
                         .worker = worker,
                         .own = &whitted->workers[worker->index],
                         .has_first = !whitted->full || settings->keep_first};
-    int64_t rim = whitted->full ? 0 : 1;
-    struct rectangle area = {tile->x0 - rim, tile->y0 - rim, tile->x1 + rim, tile->y1 + rim};
-    area.x0 = area.x0 < 0 ? 0 : area.x0;
-    area.y0 = area.y0 < 0 ? 0 : area.y0;
-    area.x1 = area.x1 > renderer->job->width ? renderer->job->width : area.x1;
-    area.y1 = area.y1 > renderer->job->height ? renderer->job->height : area.y1;
+    const struct film_rectangle area =
+        film_rectangle_grown(tile, whitted->full ? 0 : 1, renderer->job->width, renderer->job->height);
     part.area = area;
     for (int64_t y = area.y0; y < area.y1 && part.has_first; y += PATCH) {
         for (int64_t x = area.x0; x < area.x1; x += PATCH) {
@@ -505,7 +501,7 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
     double before = part.has_first ? 0.5 : 0; /* the part of the work that the first pass is */
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         if (is_late(renderer)) {
-            finish_late(&part, &(struct rectangle){tile->x0, y, tile->x1, tile->y1}, part.has_first);
+            finish_late(&part, &(struct film_rectangle){tile->x0, (uint32_t)y, tile->x1, tile->y1}, part.has_first);
             return !renderer_stopped(renderer, worker);
         }
         for (int64_t x = tile->x0; x < tile->x1; x++) {
