@@ -48,7 +48,7 @@ struct pool {
 void pool_poll(struct pool *pool, int worker) {
     if (worker != 0 || !pool->poll)
         return;
-    double now = clock_seconds(CLOCK_MONOTONIC);
+    double now = clock_now();
     if (now - pool->polled < 0.005)
         return;
     pool->poll(pool->poll_context);

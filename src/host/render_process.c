@@ -3,6 +3,7 @@
  * in the arena of the job, which is emptied for the next one. */
 #include "host/render_process_internal.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -221,13 +222,13 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct render_job *job = &work->job;
     struct picture_report *report = &work->report;
     bool in_window = work->picture_request.in_window;
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (build_world(work, work->request->lights, work->request->light_count, error))
         job->world = &work->world;
     else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;
     bool ok = true;
-    double built = progress_clock(), built_worked = progress_processor_clock();
+    double built = clock_now(), built_worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (job->world) {
         integrator_warn(job, render_process_warn, process);
         if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
@@ -244,8 +245,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;
-    report->rays.render_seconds = progress_clock() - built;
-    report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
+    report->rays.render_seconds = clock_now() - built;
+    report->rays.render_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - built_worked;
     render_process_fill_report(work, job->film, report);
     if (ok && job->world)
         render_process_warn_of_nan(process, job->world);

@@ -26,7 +26,7 @@ struct script_clock {
 struct stall_check {
     double clock;   /* of the child, when it was seen to move last */
     double seconds; /* since then, in which it might have moved */
-    double checked; /* on progress_clock */
+    double checked; /* on clock_now */
     bool found;     /* the child was killed for that */
 };
 

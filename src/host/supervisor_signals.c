@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "host/supervisor_internal.h"
 
+#include "base/clock.h"
 #include "base/fault.h"
 #include "session/text.h"
 
@@ -63,7 +64,7 @@ void supervisor_interrupt(struct supervisor *supervisor) {
         atomic_store(&supervisor->control->cancel, 1);
     if (supervisor->waits || supervisor->all_written) /* nothing is interrupted: it is how watching ends */
         return;
-    supervisor->deadline = progress_clock() + supervisor_patience;
+    supervisor->deadline = clock_now() + supervisor_patience;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
     supervisor->output.interrupted = true;
     atomic_store(&supervisor->control->cancel, 1);

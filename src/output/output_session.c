@@ -3,6 +3,7 @@
  * usage, and then no file may have been touched. */
 #include "output/output_session.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -263,11 +264,11 @@ static bool write_picture(struct output_session *output, const struct picture *p
 }
 
 static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     bool ok = output->interrupted ? error_set(error, ERROR_CANCELLED, "%.600s: interrupted", picture->name)
                                   : write_picture(output, picture, error);
-    picture->write_seconds = progress_clock() - begun;
-    picture->write_processor_seconds = progress_processor_clock() - worked;
+    picture->write_seconds = clock_now() - begun;
+    picture->write_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - worked;
     return ok;
 }
 
@@ -595,9 +596,9 @@ void output_show_progress(struct output_session *output) {
         if (output->current.open && count > 0)
             done = film_tiles_in(&output->current.film, FILM_TILE_DONE);
     }
-    if (display_draws(&output->display, progress_clock()))
+    if (display_draws(&output->display, clock_now()))
         progress_hide(&output->progress);
-    report_display(output, display_step(&output->display, progress_clock(), &error), &error);
+    report_display(output, display_step(&output->display, clock_now(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
 }
 

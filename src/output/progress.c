@@ -18,14 +18,6 @@ enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 /* Seconds of one core for a pixel: of a PNG file, which is written after the last tile; of a film that is denoised. */
 static const double usual_writing = 5e-8, usual_denoising = 8e-6;
 
-double progress_clock(void) {
-    return clock_seconds(CLOCK_MONOTONIC);
-}
-
-double progress_processor_clock(void) {
-    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-}
-
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads) {
     *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
     if (mode == PROGRESS_AUTO)
@@ -146,7 +138,7 @@ static void print_json(const struct progress *progress, const char *event, const
         (void)fprintf(stderr, ",\"share\":%.4f", state->share);
     if (state->left >= 0)
         (void)fprintf(stderr, ",\"left\":%.3f", state->left);
-    (void)fprintf(stderr, ",\"processor\":%.4f}\n", progress_processor_clock());
+    (void)fprintf(stderr, ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
     (void)fflush(stderr);
 }
 
@@ -158,7 +150,7 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
     progress->known = false;
     progress->width = width;
     progress->height = height;
-    progress->begun = progress->shown = progress_clock();
+    progress->begun = progress->shown = clock_now();
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, "begin", &(struct state){.share = -1, .left = -1});
 }
@@ -182,7 +174,7 @@ static double pause_of(const struct progress *progress, double now) {
 
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
                      const struct progress_estimate *progress_estimate) {
-    double now = progress_clock();
+    double now = clock_now();
     bool first = progress->mode == PROGRESS_JSON && !progress->known && progress_estimate_share(progress_estimate) >= 0;
     if (!progress->name || progress->elsewhere || (now - progress->shown < pause_of(progress, now) && !first) ||
         !text_stderr_is_ready())
@@ -199,7 +191,7 @@ void progress_update(struct progress *progress, uint32_t done, uint32_t count,
 }
 
 bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size) {
-    double now = progress_clock();
+    double now = clock_now();
     char elapsed[48];
     if (!runs || progress->mode != PROGRESS_BAR) {
         progress->script_since = 0;
@@ -220,7 +212,7 @@ bool progress_script_line(struct progress *progress, const char *script, bool ru
 void progress_end(struct progress *progress, enum progress_end how) {
     if (!progress->name)
         return;
-    double elapsed = progress_clock() - progress->begun;
+    double elapsed = clock_now() - progress->begun;
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up",

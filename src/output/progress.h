@@ -29,8 +29,6 @@ struct progress {
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 
-double progress_clock(void);           /* seconds of a monotonic clock */
-double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
 /* `name` must be valid until progress_end. denoised: number of pixels that are denoised for each pixel of the file; 0:

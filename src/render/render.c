@@ -71,7 +71,7 @@ static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t
         atomic_store(&renderer->failed, true);
         pool_cancel(renderer->pool);
     }
-    worker->tile_ended = clock_seconds(CLOCK_MONOTONIC);
+    worker->tile_ended = clock_now();
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
@@ -170,13 +170,13 @@ static enum work_answer find_handed_out(void *context, struct work_queue *queue)
 static bool do_work(struct renderer *renderer, struct render_statistics *statistics) {
     struct work_queue *queue = &renderer->queue;
     int workers = pool_workers(renderer->pool);
-    double begun = clock_seconds(CLOCK_MONOTONIC);
+    double begun = clock_now();
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
     work_queue_begin(queue);
     bool whole = pool_run(renderer->pool, (uint32_t)workers, work, renderer);
     work_queue_destroy(queue);
-    double ended = clock_seconds(CLOCK_MONOTONIC);
+    double ended = clock_now();
     for (uint32_t i = 0; i < queue->tail && !whole; i++) { /* those of which quarters are missing */
         uint8_t taken = FILM_TILE_TAKEN;
         (void)atomic_compare_exchange_strong(&renderer->job->film->tiles[queue->tiles[queue->whole + i]], &taken,
@@ -444,7 +444,7 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
 static enum work_answer next_pass(void *context, struct work_queue *queue) {
     struct renderer *renderer = context;
     struct sample_pass *pass = &renderer->pass;
-    double now = clock_seconds(CLOCK_MONOTONIC), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
+    double now = clock_now(), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
     if (queue->out > 0)
         return WORK_LATER;
     if (renderer_is_done(renderer) || pass->end == pass->limit || !atomic_load(&renderer->unsatisfied) ||
@@ -460,7 +460,7 @@ static enum work_answer next_pass(void *context, struct work_queue *queue) {
 }
 
 static void begin_passes(struct renderer *renderer) {
-    renderer->passes_begun = clock_seconds(CLOCK_MONOTONIC);
+    renderer->passes_begun = clock_now();
     renderer->pass = (struct sample_pass){.limit = renderer->pass.end, .begin = 0, .end = 1, .open = true};
     renderer->queue.more = next_pass;
     renderer->queue.context = renderer;
@@ -502,7 +502,7 @@ static bool make_tiles(struct renderer *renderer, struct render_statistics *stat
 
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
-    double begin = clock_seconds(CLOCK_MONOTONIC);
+    double begin = clock_now();
     struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
     int workers = pool_workers(pool);
     bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
@@ -512,10 +512,10 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (ok && job->progress_estimate)
-        progress_estimate_report(job->progress_estimate, 1, 0, clock_seconds(CLOCK_MONOTONIC));
+        progress_estimate_report(job->progress_estimate, 1, 0, clock_now());
     for (int i = 0; renderer.workers && i < workers; i++)
         statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
     end_rendering(&renderer, workers);
-    statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
+    statistics->render_seconds += clock_now() - begin;
     return ok;
 }

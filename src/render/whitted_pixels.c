@@ -429,7 +429,7 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
 
 static bool is_late(const struct renderer *renderer) {
     double limit = renderer->job->settings.time_limit;
-    return limit > 0 && clock_seconds(CLOCK_MONOTONIC) - renderer->begun >= limit;
+    return limit > 0 && clock_now() - renderer->begun >= limit;
 }
 
 /* Rows that the time did not suffice for: first samples without resampling if all of the tile has them, else one sample

@@ -1,5 +1,6 @@
 /* The image is updated from the film tile by tile; the menu and the figures are drawn over it. The window is drawn at
  * most every 16 milliseconds, and the drawing over the picture only when it may have changed. */
+#include "base/clock.h"
 #include "base/mem.h"
 #include "image/png_write.h"
 #include "output/progress.h"
@@ -267,7 +268,7 @@ void viewer_show(struct viewer *viewer, double now) {
     /* The picture on the screen now, even a coarse one, shows the new world. */
     if (viewer->built > 0 && viewer->pass.report.threads > 0 && !viewer_plays(viewer) && viewer->note[0] == '\0') {
         (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: on the screen %.1f ms after its world was built",
-                       viewer->request.file, 1000 * (progress_clock() - viewer->built));
+                       viewer->request.file, 1000 * (clock_now() - viewer->built));
         viewer->built = 0;
     }
     viewer->display.shown_at = now;
