@@ -102,13 +102,6 @@ static inline bool renderer_stopped(const struct renderer *renderer, const struc
     return pool_cancelled(renderer->pool) || worker->scratch.failed;
 }
 
-/* The time estimate, if it is requested. Before the first tile; false: no memory. */
-bool renderer_begin_estimate(struct renderer *renderer);
-/* The worker begins a tile, or that share of it; so much of its work is done; it ends. */
-void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share);
-void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, double part);
-void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
-
 /* Whether the tiles are made pass by pass (render.c), until they have all samples, little enough noise, or the time is
  * over. */
 bool renderer_makes_passes(const struct renderer *renderer);

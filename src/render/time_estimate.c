@@ -12,26 +12,6 @@
 
 #include <math.h>
 
-void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted) {
-    progress_estimate->wanted = wanted;
-    progress_estimate->begun = progress_estimate->share = progress_estimate->ends = 0;
-}
-
-void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, double now) {
-    if (!(done > 0))
-        return;
-    progress_estimate->share = fmax(progress_estimate->share, done / (done + left));
-    progress_estimate->ends = now + (now - progress_estimate->begun) * left / done;
-}
-
-double progress_estimate_share(const struct progress_estimate *progress_estimate) {
-    return progress_estimate->begun > 0 ? fmin(fmax(progress_estimate->share, 0), 1) : -1;
-}
-
-double progress_estimate_left(const struct progress_estimate *progress_estimate, double now) {
-    return progress_estimate->ends > 0 ? fmin(fmax(progress_estimate->ends - now, 0), 1e9) : -1;
-}
-
 /* --- the work of the tiles --- */
 
 static double part_of(const struct tile_cost *tile) {
