@@ -4,6 +4,7 @@
  * from all neighbours is mixed with their mean. Uniform areas, and edges along an axis, which have no ends, do not
  * change. */
 #include "image/finish.h"
+#include "image/fxaa_internal.h"
 
 #include <math.h>
 #include <stddef.h>

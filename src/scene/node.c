@@ -2,6 +2,7 @@
 #include "scene/node.h"
 
 #include "material/material_inputs.h"
+#include "scene/assets.h"
 
 #include <stddef.h>
 #include <string.h>

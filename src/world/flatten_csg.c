@@ -4,6 +4,7 @@
  *
  * A clipped primitive becomes the surface of its own program, followed by the clips. A union of opaque solids, or of
  * one material, becomes one primitive for each disjoint part. */
+#include "csg/csg_build.h"
 #include "world/flatten_internal.h"
 
 #include "base/mem.h"
