@@ -23,6 +23,7 @@
 #include "session/text.h"
 #include "viewer/preview_session.h"
 #include "world/world.h"
+#include "world/world_cache.h"
 
 #include <stdio.h>
 #include <string.h>

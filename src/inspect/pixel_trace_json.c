@@ -1,7 +1,9 @@
 /* The trace of a pixel as one JSON object on one line; docs/pixel.md describes its fields. All numbers are exact. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
+#include "light/light_edit.h"
 #include "material/texture_mapping.h"
+#include "world/world_describe.h"
 
 static void number(struct text_writer *writer, const char *name, double value) {
     text_writer_print(writer, ",\"%s\":", name);

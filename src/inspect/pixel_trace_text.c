@@ -2,7 +2,9 @@
  * each is its light. Numbers have six digits, for reading; --json prints all digits. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
+#include "light/light_edit.h"
 #include "material/texture_mapping.h"
+#include "world/world_describe.h"
 
 #include <math.h>
 

@@ -1,5 +1,6 @@
 /* The flattened world as it was built: one line for each primitive, in flattening order, then materials and lights. */
 #include "inspect/inspect.h"
+#include "light/light_edit.h"
 #include "mesh/mesh.h"
 
 #include <stdio.h>

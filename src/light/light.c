@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "expr/expr_field.h"
 #include "image/transfer.h"
+#include "light/light_bounds.h"
 #include "light/light_mesh.h"
 #include "light/light_shapes_internal.h"
 #include "light/sky_light_internal.h"

@@ -8,6 +8,7 @@
 
 #include "material/medium.h"
 #include "math/range.h"
+#include "world/world_describe.h"
 
 #include <string.h>
 

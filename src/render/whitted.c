@@ -4,6 +4,7 @@
 
 #include "material/medium.h"
 #include "render/style_internal.h"
+#include "world/world_describe.h"
 
 /* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
 static const double light_limit = 1e200;

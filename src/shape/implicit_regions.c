@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "expr/expr_shorten.h"
+#include "shape/implicit_regions_internal.h"
 
 #include <math.h>
 #include <string.h>

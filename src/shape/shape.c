@@ -8,6 +8,7 @@
 #include "shape/curve.h"
 #include "shape/height_field.h"
 #include "shape/implicit.h"
+#include "shape/implicit_search_internal.h"
 #include "shape/lathe.h"
 #include "shape/prism.h"
 #include "shape/shape_part.h"

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
+#include "light/light_edit.h"
 #include "output/progress.h"
 #include "viewer/view_overlay_internal.h"
 

@@ -2,6 +2,7 @@
  * Lights without a position (directional ones, skies) are marked in the direction of their light, at the border of the
  * picture if that is not in view. A change made here is used until the render process reports the same. */
 #include "base/mem.h"
+#include "light/light_edit.h"
 #include "math/elementary.h"
 #include "viewer/viewer_internal.h"
 

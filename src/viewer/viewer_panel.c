@@ -1,5 +1,6 @@
 /* The lights on the picture, their list, and the panel of the selection. */
 #include "inspect/inspect.h"
+#include "light/light_edit.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 #include "viewer/viewer_internal.h"
