@@ -1,9 +1,11 @@
 /* Notices about options and fields that have no effect on a picture (setting_effect): once in a run for each option,
  * once for each line of a script with such a field. An option on the command line chooses the integrator for scenes
  * that were written for another one, so their fields get no notice then. */
-#include "host/render_process_internal.h"
+#include "host/effects.h"
 
+#include "host/render_reports.h"
 #include "session/options.h"
+#include "session/options_table.h"
 #include "settings/setting.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* The reports of the render process: lines, warnings about scenes, and the numbers of a picture. */
-#include "host/render_process_internal.h"
+#include "host/render_reports.h"
 
 #include "base/hash.h"
 #include "film/aov.h"

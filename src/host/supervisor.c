@@ -4,6 +4,9 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "host/supervisor_child.h"
+#include "host/supervisor_messages.h"
+#include "host/supervisor_signals.h"
 #include "session/text.h"
 
 #include <errno.h>

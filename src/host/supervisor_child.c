@@ -1,7 +1,7 @@
 /* The life of the render process: how it is started and confined, how long its script may take, and what its end means.
  * The supervisor has no thread while it forks (only while it writes a picture). */
 #define _GNU_SOURCE
-#include "host/supervisor_internal.h"
+#include "host/supervisor_child.h"
 
 #include "base/clock.h"
 #include "base/fault.h"

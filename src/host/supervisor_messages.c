@@ -1,5 +1,8 @@
 /* Answers to the render process. Invariant: files are written by this process alone, and only from a film that the
  * render process has declared complete. */
+#include "host/supervisor_messages.h"
+
+#include "host/supervisor_child.h"
 #include "host/supervisor_internal.h"
 
 #include "base/clock.h"

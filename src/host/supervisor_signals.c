@@ -1,6 +1,6 @@
 /* Signals are blocked and read from a descriptor beside the channel, so that no handler changes any state. */
 #define _GNU_SOURCE
-#include "host/supervisor_internal.h"
+#include "host/supervisor_signals.h"
 
 #include "base/clock.h"
 #include "base/fault.h"

@@ -4,6 +4,7 @@
 
 #include "base/fault.h"
 #include "base/mem.h"
+#include "session/options_check.h"
 
 #include <errno.h>
 #include <netdb.h>

@@ -7,6 +7,7 @@
 #include "material/texture_mapping.h"
 #include "math/range.h"
 #include "render/integrator_internal.h"
+#include "render/sample_internal.h"
 #include "world/world_describe.h"
 
 #include <string.h>

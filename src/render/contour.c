@@ -2,6 +2,8 @@
  * sampled again at CELLS x CELLS positions, and the edges between neighbouring positions give points of the edge. The
  * distance of a pixel from the nearest point determines how much of it the line covers. The result is a function of the
  * pixel and its surroundings, so parts, tiles and crops agree. */
+#include "render/contour_internal.h"
+#include "render/sample_internal.h"
 #include "render/style_internal.h"
 
 #include "base/mem.h"

@@ -3,8 +3,11 @@
 
 #include "base/mem.h"
 #include "base/unreachable.h"
+#include "render/integrator.h"
 #include "render/path_internal.h"
+#include "render/path_trace_internal.h"
 #include "render/whitted_internal.h"
+#include "render/whitted_trace_internal.h"
 
 struct integrator {
     enum integrator_kind kind;

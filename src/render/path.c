@@ -3,8 +3,10 @@
 #include "render/path_internal.h"
 
 #include "film/aov.h"
+#include "render/contour_internal.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
+#include "render/sample_internal.h"
 
 #include <stdio.h>
 #include <string.h>

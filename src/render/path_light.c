@@ -9,6 +9,7 @@
 #include "render/path_internal.h"
 
 #include "material/medium.h"
+#include "render/path_light_internal.h"
 
 /* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
 static double weight_of(const struct path_tracer *tracer, enum path_strategy strategy, double pdf, double other) {

@@ -8,6 +8,8 @@
 
 #include "material/medium.h"
 #include "math/range.h"
+#include "render/path_light_internal.h"
+#include "render/path_trace_internal.h"
 #include "world/world_describe.h"
 
 #include <string.h>

@@ -1,6 +1,8 @@
 /* Tiles, handed out to the workers; the integrator renders the pixels of a tile. A tile is self-contained and final
  * when it is done. There is no barrier, and only the film is shared: every tile writes its own pixels. */
 #include "base/clock.h"
+#include "render/aov_values_internal.h"
+#include "render/integrator.h"
 #include "render/integrator_internal.h"
 
 #include "base/mem.h"
@@ -10,6 +12,7 @@
 #include "film/path_film.h"
 #include "render/path_noise_internal.h"
 #include "render/pixel_trace.h"
+#include "render/sample_internal.h"
 #include "settings/settings.h"
 
 #include <assert.h>

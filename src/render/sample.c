@@ -1,6 +1,7 @@
 /* One sample of a pixel, from its position to its colour; single, or many with camera rays in packets. The
  * random key of a sample is a function of the pixel and of the sample's number. */
 #include "render/integrator_internal.h"
+#include "render/sample_internal.h"
 #include "render/sampler.h"
 
 #include <math.h>

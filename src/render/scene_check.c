@@ -6,6 +6,7 @@
 #include "material/openpbr.h"
 #include "render/camera.h"
 #include "render/render_internal.h"
+#include "render/sample_internal.h"
 #include "scene/node.h"
 
 #include <math.h>

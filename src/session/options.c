@@ -7,6 +7,8 @@
 #include "base/isa.h"
 #include "base/suggestion.h"
 #include "film/aov.h"
+#include "session/options_check.h"
+#include "session/options_table.h"
 #include "settings/foreign_words.h"
 
 #include <assert.h>

@@ -1,0 +1,284 @@
+/* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
+ * and the position in the tree of rays. */
+#include "render/whitted_internal.h"
+
+#include "material/medium.h"
+#include "render/style_internal.h"
+#include "render/whitted_trace_internal.h"
+#include "world/world_describe.h"
+
+/* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
+static const double light_limit = 1e200;
+
+struct path {
+    uint64_t key;
+    int reflections, refractions; /* so far, from the camera */
+    bool rough;                   /* after a rough surface: the next ones get one ray each */
+    double weight;                /* the fraction of this ray's radiance that can arrive in the pixel */
+    double cutoff;                /* a ray of less weight is not followed */
+    int holes;                    /* went through so far */
+};
+
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
+
+/* The nearest visible light before t_max, or NULL. */
+static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
+                                         struct light_hit *hit) {
+    const struct light *best = NULL;
+    struct ray limited = *ray;
+    struct light_hit met;
+    limited.t_max = t_max;
+    for (uint32_t i = 0; i < world->light_count; i++) {
+        if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
+            best = &world->lights[i];
+            limited.t_max = met.t;
+            *hit = met;
+        }
+    }
+    return best;
+}
+
+/* --- secondary rays --- */
+
+/* Field by field: a copy of the whole struct would wait for recent stores. */
+static struct path path_on(const struct path *path, double share) {
+    return (struct path){.key = path->key,
+                         .reflections = path->reflections,
+                         .refractions = path->refractions,
+                         .rough = path->rough,
+                         .weight = path->weight * share,
+                         .cutoff = path->cutoff,
+                         .holes = path->holes};
+}
+
+/* Whether the result of a ray is negligible. */
+static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
+                        const struct path *path) {
+    enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
+    observe_ray_sent(state->observer, kind, filter, cut);
+    return cut != RAY_FOLLOWED;
+}
+
+/* A hit with its surface and its ray. */
+struct surface_point {
+    const struct ray *ray;
+    const struct hit *hit;
+    const struct bsdf *bsdf;
+};
+
+/* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
+ * followed. */
+static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
+                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
+                                 const struct path *from) {
+    const struct settings *settings = &state->job->settings;
+    struct bsdf_branch_direction sampled;
+    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
+        return vec3_all(0);
+    struct vec3 filter = sampled.weight;
+    bool transmits = sampled.transmits;
+    struct path path = path_on(from, vec3_max_abs(filter));
+    bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
+    if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
+        return vec3_all(0);
+    struct ray onward = hit_ray(at->hit, at->ray, sampled.direction, at->ray->media);
+    struct medium_stack behind;
+    if (transmits) {
+        medium_stack_copy(&behind, at->ray->media);
+        medium_stack_cross(&behind, &at->bsdf->boundary);
+        onward.media = &behind;
+        state->refracted_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
+        path.refractions++;
+    } else {
+        state->reflected_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
+        path.reflections++;
+    }
+    return vec3_mul(filter, trace(state, &onward, &path));
+}
+
+/* The light through the holes of a surface (an opacity texture of leaves): the ray continues
+ * unchanged. Bounded, since every hole is a deeper call. */
+static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
+                               double share, const struct path *from) {
+    enum { HOLE_LIMIT = 200 };
+    struct path path = path_on(from, share);
+    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
+        return vec3_all(0);
+    struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
+    state->refracted_rays++;
+    path.key = sampler_branch(path.key, SAMPLER_HOLE);
+    path.holes++;
+    return vec3_scale(trace(state, &onward, &path), share);
+}
+
+enum { GLOSSY_SAMPLES = 4 };
+
+/* A rough surface: the mean over facets of what each reflects and refracts. */
+static struct vec3 follow_rough(struct integrator_state *state, const struct surface_point *at,
+                                const struct bsdf_branch *branches, int count, const struct path *path) {
+    bool coarse = path->rough || state->job->settings.coarse;
+    uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
+    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
+    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
+    struct vec3 sum = {0, 0, 0};
+    observe_split(state->observer, 1 / ((double)n * (double)n));
+    for (uint32_t cell = 0; cell < n * n; cell++) {
+        struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
+        struct path branch = path_on(path, 1);
+        branch.key = sampler_facet(key, cell);
+        branch.rough = true;
+        for (int i = 0; i < count; i++) {
+            if (branches[i].rough)
+                sum = vec3_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
+        }
+    }
+    return vec3_scale(sum, 1 / ((double)n * (double)n));
+}
+
+/* --- one hit --- */
+
+static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
+    observe_surface(state->observer, at->bsdf);
+    struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
+    colour = vec3_add(colour, at->bsdf->emission);
+    struct bsdf_branch branches[BSDF_LOBES];
+    const struct bsdf_draw smooth = {.facet = at->bsdf->side};
+    int count = bsdf_branches(at->bsdf, branches);
+    bool rough = false;
+    for (int i = 0; i < count; i++) {
+        if (branches[i].rough)
+            rough = true;
+        else
+            colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
+    }
+    return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
+}
+
+static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                             const struct path *path) {
+    const struct settings *settings = &state->job->settings;
+    const struct world *world = state->job->world;
+    const struct material_context context = {.specular = settings->specular,
+                                             .ambient_plain = settings->ambient_plain,
+                                             .total_reflection = settings->use_tir,
+                                             .observer = state->observer ? observe_material : NULL,
+                                             .observer_context = state->observer,
+                                             .authored = world->authored.materials[hit->material]};
+    struct bsdf bsdf;
+    struct surface_point at = {ray, hit, &bsdf};
+    state->hits++;
+    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    double hole = 1 - bsdf.opacity;
+    if (!(hole > 0))
+        return shade(state, &at, path);
+    struct vec3 behind = follow_hole(state, hit, ray, hole, path);
+    if (hole >= 1)
+        return behind;
+    struct path covered = path_on(path, bsdf.opacity);
+    return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
+}
+
+/* The radiance of a ray with its hit, or NULL. */
+static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                                     const struct path *path) {
+    const struct world *world = state->job->world;
+    bool met = hit != NULL;
+    struct light_hit area_light_hit;
+    const struct light *area_light = visible_light(world, ray, met ? hit->t : ray->t_max, &area_light_hit);
+    double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
+
+    /* The medium along the ray. */
+    double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
+    struct medium_effect air;
+    struct path dimmed;
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
+    struct vec3 left = air.transmittance;
+    observe_ray_begin(state->observer, ray, hit, area_light, distance, path->weight);
+    if (affected) {
+        dimmed = path_on(path, vec3_max_abs(left));
+        path = &dimmed;
+    }
+
+    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
+    bool looked = !(path->weight < path->cutoff);
+    if (!looked)
+        left = vec3_all(0);
+    else if (area_light)
+        colour = light_emitted(area_light, ray, &area_light_hit);
+    else if (met)
+        colour = shade_hit(state, ray, hit, path);
+    else
+        colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
+    seen = colour;
+    if (affected) {
+        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+        colour = vec3_add(vec3_mul(colour, left), in_scattered);
+    }
+    colour = integrator_clamp_light(state, colour, light_limit);
+    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
+    return colour;
+}
+
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+    struct hit hit;
+    if (integrator_cancelled(state))
+        return vec3_all(0); /* deep paths through glass grow exponentially */
+    bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
+    return incident_radiance(state, ray, met ? &hit : NULL, path);
+}
+
+/* A drawing of lines alone. */
+static bool is_blank(const struct integrator_state *state) {
+    return state->job->settings.style == STYLE_INK;
+}
+
+static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
+    bool through =
+        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
+    out->t = through ? INFINITY : hit->t;
+    out->primitive = hit->primitive;
+    out->material = hit->material;
+    out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
+}
+
+/* Whether a camera ray needs no hit: its light is *light. */
+static bool needs_no_hit(struct integrator_state *state, struct vec3 *light) {
+    *light = vec3_all(is_blank(state) ? 1 : 0);
+    return is_blank(state) || integrator_cancelled(state);
+}
+
+/* The light of a camera ray that starts in the media of the eye. hit: or NULL. */
+static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state,
+                                const struct ray *from_eye, const struct hit *hit, uint64_t key) {
+    if (hit && state->camera_hit)
+        record_hit(state->job->world, hit, state->camera_hit);
+    const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
+    return integrator_clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
+}
+
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                          uint64_t key) {
+    struct ray from_eye = *ray;
+    struct hit hit;
+    struct vec3 light;
+    from_eye.media = state->eye_medium_stack;
+    if (needs_no_hit(state, &light))
+        return light;
+    bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
+    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+}
+
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                              const struct packet_answer *met, uint64_t key) {
+    struct ray from_eye = *ray;
+    struct hit hit;
+    struct vec3 light;
+    from_eye.media = state->eye_medium_stack;
+    if (needs_no_hit(state, &light))
+        return light;
+    if (met)
+        world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
+    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+}
