@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "viewer/viewer_save.h"
 
 #include <poll.h>
 #include <string.h>
