@@ -77,11 +77,10 @@ void effects_note_frames(struct render_process *process) {
                        options->output);
         render_process_report(process, LINE_NOTICE, line);
     } else if (process->frames_shown > 1 && !process->frames_differ) {
-        (void)snprintf(line, sizeof line,
-                       "%.4095s: all %u frames are equal: nothing in them depends on gr.time, gr.clock or gr.frame "
-                       "(--turntable N moves the camera)",
-                       process->script, (unsigned)process->frames_shown);
-        render_process_report_scene(process, LINE_NOTICE, line);
+        render_process_say(process, LINE_NOTICE,
+                           "%.4095s: all %u frames are equal: nothing in them depends on gr.time, gr.clock or gr.frame "
+                           "(--turntable N moves the camera)",
+                           process->script, (unsigned)process->frames_shown);
     }
 }
 

@@ -215,9 +215,7 @@ static bool too_much_memory(const struct render_process *process, struct error *
 /* Of something that scene_check has seen. */
 static void notice_of_picture(void *context, const char *text) {
     const struct picture_work *work = context;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%.1400s: %s", work->request->where, text);
-    render_process_report_scene(work->process, LINE_NOTICE, line);
+    render_process_say(work->process, LINE_NOTICE, "%.1400s: %s", work->request->where, text);
 }
 
 /* From the flattened scene to the finished film. */
@@ -515,10 +513,8 @@ static bool render(void *context, const struct render_request *request, struct e
     }
     if (!process->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s%s%s", error->elsewhere ? "" : request->where, error->elsewhere ? "" : ": ",
-                   error->text);
-    render_process_report_scene(process, LINE_ERROR, line);
+    render_process_say(process, LINE_ERROR, "%s%s%s", error->elsewhere ? "" : request->where,
+                       error->elsewhere ? "" : ": ", error->text);
     process->status = ERROR_SCENE;
     return true;
 }

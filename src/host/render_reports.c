@@ -8,6 +8,7 @@
 #include "settings/setting.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -33,6 +34,15 @@ void render_process_report_scene(const struct render_process *process, enum line
     render_process_report(process, kind, mark[0] != '\0' ? line : text);
 }
 
+void render_process_say(const struct render_process *process, enum line_kind kind, const char *format, ...) {
+    char text[2 * NAME_LIMIT];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    render_process_report_scene(process, kind, text);
+}
+
 /* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
 static bool is_first(struct render_process *process, const char *key) {
     uint64_t hash = hash_bytes(key, strlen(key), 0);
@@ -55,9 +65,7 @@ static void warn_once(struct render_process *process, const char *key, const cha
     if (!is_first(process, key))
         return;
     bool has_word = strncmp(text, word, strlen(word)) == 0;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
-    render_process_report_scene(process, LINE_WARNING, line);
+    render_process_say(process, LINE_WARNING, "%s: %s%s", process->script, has_word ? "" : word, text);
 }
 
 void render_process_warn(void *context, const char *text) {
@@ -89,12 +97,10 @@ void render_process_report_replaced(const struct render_process *process) {
         const char *joint = value[0] == '\0' ? "" : needs_sign ? "=" : " ";
         const char *rival = replaced->fields & ~(UINT64_C(1) << i) ? setting_table[setting_rival(i)].field : "";
         bool own = replaced->fields >> i & 1, both = own && rival[0] != '\0';
-        char line[2 * NAME_LIMIT];
-        (void)snprintf(line, sizeof line, "%.4000s: %.*s%s%.64s replaces the field%s %s%s%s of %" PRIu64 " picture%s",
-                       process->script, (int)strcspn(row->option, "|"), row->option, joint, value, both ? "s" : "",
-                       own ? row->field : "", both ? " and " : "", rival, replaced->pictures,
-                       replaced->pictures > 1 ? "s" : "");
-        render_process_report_scene(process, LINE_NOTICE, line);
+        render_process_say(
+            process, LINE_NOTICE, "%.4000s: %.*s%s%.64s replaces the field%s %s%s%s of %" PRIu64 " picture%s",
+            process->script, (int)strcspn(row->option, "|"), row->option, joint, value, both ? "s" : "",
+            own ? row->field : "", both ? " and " : "", rival, replaced->pictures, replaced->pictures > 1 ? "s" : "");
     }
 }
 
@@ -145,14 +151,13 @@ void render_process_fill_report(const struct picture_work *work, const struct fi
 
 void render_process_report_world(const struct render_process *process, const char *file,
                                  const struct picture_report *report) {
-    char line[4096 + 512], grid[64] = "";
+    char grid[64] = "";
     const uint32_t *cells = report->grid_cells;
     if (cells[0] > 0) /* not a hierarchy, a kd-tree or none */
         (void)snprintf(grid, sizeof grid, " grid of %u x %u x %u,", cells[0], cells[1], cells[2]);
-    (void)snprintf(line, sizeof line, "%s: %s: %llu primitives, %llu triangles,%s built in %.3f s, %d threads",
-                   process->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
-                   grid, report->rays.build_seconds, report->threads);
-    render_process_report_scene(process, LINE_DETAIL, line);
+    render_process_say(process, LINE_DETAIL, "%s: %s: %llu primitives, %llu triangles,%s built in %.3f s, %d threads",
+                       process->script, file, (unsigned long long)report->primitives,
+                       (unsigned long long)report->triangles, grid, report->rays.build_seconds, report->threads);
 }
 
 /* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its
@@ -173,7 +178,7 @@ static const char *shown_name(const struct picture_work *work, char room[NAME_LI
 void render_process_report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
-    char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
+    char words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
     if (!has_limit || work->picture_request.in_window || rays->pixels == 0 ||
         (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
@@ -197,6 +202,5 @@ void render_process_report_samples(const struct picture_work *work) {
     else
         (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
                        mean, settings_path_samples(settings), settings->noise);
-    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, shown_name(work, room), words);
-    render_process_report_scene(work->process, LINE_NOTICE, line);
+    render_process_say(work->process, LINE_NOTICE, "%s: %s: %s", work->process->script, shown_name(work, room), words);
 }

@@ -8,6 +8,9 @@ void render_process_finish_output(const struct render_process *process);
 void render_process_report(const struct render_process *process, enum line_kind kind, const char *text);
 /* A line whose beginning the scene may have chosen. */
 void render_process_report_scene(const struct render_process *process, enum line_kind kind, const char *text);
+/* The same with a format, cut after 2 * NAME_LIMIT bytes. */
+void render_process_say(const struct render_process *process, enum line_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* context: the render process. Each warning is printed once in a script. */
 void render_process_warn(void *context, const char *text);
 /* The same about a picture; where: of its request. */

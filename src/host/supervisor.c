@@ -297,12 +297,9 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     else
         supervisor_note_error(supervisor, &error);
     viewer_end(&supervisor->viewer);
-    if (supervisor->quit_at > 0) {
-        char line[80];
-        (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
-                       1000 * (clock_now() - supervisor->quit_at));
-        output_report(&supervisor->output, LINE_DETAIL, line);
-    }
+    if (supervisor->quit_at > 0)
+        output_say(&supervisor->output, LINE_DETAIL, "gray: the window closed in %.1f ms",
+                   1000 * (clock_now() - supervisor->quit_at));
     watch_close(&supervisor->watch);
     if (!output_finish(&supervisor->output, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);

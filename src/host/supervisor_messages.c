@@ -176,8 +176,8 @@ static void save_from_window(struct supervisor *supervisor,
     char name[NAME_LIMIT], line[NAME_LIMIT + 64];
     const struct file_target picture = {.path = supervisor->viewer.name, .rules = &supervisor->output.files.saved};
     bool ok = take(&supervisor->viewer, &picture, name, &error);
-    (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
-    output_report(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, line);
+    output_say(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, ok ? "gray: notice: %s is written" : "%s",
+               ok ? name : error.text);
     (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error.text);
     viewer_show_notice(&supervisor->viewer, line, !ok);
 }
