@@ -12,7 +12,6 @@
 #include "denoise/denoise.h"
 #include "film/aov.h"
 #include "film/path_film.h"
-#include "host/effects.h"
 #include "host/render_reports.h"
 #include "image/image.h"
 #include "inspect/inspect.h"

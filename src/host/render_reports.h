@@ -27,4 +27,9 @@ void render_process_count_replaced(struct render_process *process, uint64_t fiel
 void render_process_report_replaced(const struct render_process *process);
 void render_process_report_samples(const struct picture_work *work);
 
+void effects_note(struct picture_work *work);
+/* Counts a finished frame; at the end of a run a notice about an animation of one frame, or of equal ones. */
+void effects_count_frame(struct picture_work *work);
+void effects_note_frames(struct render_process *process);
+
 #endif

@@ -13,7 +13,7 @@
 #include "image/exr.h"
 #include "image/picture_file.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown_internal.h"
+#include "output/picture_write.h"
 #include "output/statistics_internal.h"
 #include "session/text.h"
 
