@@ -8,7 +8,6 @@
 
 #include "base/mem.h"
 #include "base/sort.h"
-#include "csg/csg_build.h"
 
 #include <string.h>
 

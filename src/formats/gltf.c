@@ -8,7 +8,6 @@
  * size of the file bounds everything that is made from it. */
 #include "formats/gltf_data_internal.h"
 #include "formats/gltf_material_internal.h"
-#include "formats/model.h"
 
 #ifndef HAVE_JANSSON
 

@@ -4,7 +4,6 @@
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_data_internal.h"
-#include "formats/gltf_internal.h"
 
 #include <math.h>
 #include <stdio.h>

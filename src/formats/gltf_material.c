@@ -8,7 +8,6 @@
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_data_internal.h"
-#include "formats/gltf_internal.h"
 
 #include "formats/gltf_material_internal.h"
 #include "image/image.h"

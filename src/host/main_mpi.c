@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "host/program.h"
-#include "output/progress.h"
 
 #include <mpi.h>
 #include <signal.h>

@@ -5,31 +5,20 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/mem.h"
-#include "base/pool.h"
-#include "base/terminal_text.h"
 #include "denoise/denoise.h"
-#include "film/aov.h"
 #include "film/path_film.h"
 #include "host/render_reports.h"
-#include "image/image.h"
 #include "inspect/inspect.h"
-#include "output/picture_files.h"
 #include "output/progress.h"
 #include "render/integrator.h"
 #include "render/overlay.h"
-#include "render/render.h"
 #include "render/scene_check.h"
-#include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
-#include "world/world.h"
 #include "world/world_cache.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum { LARGE_JOB = 64 << 20 /* bytes */ };
 

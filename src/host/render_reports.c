@@ -6,7 +6,6 @@
 #include "image/image.h"
 #include "session/options.h"
 #include "session/options_table.h"
-#include "session/text.h"
 #include "settings/setting.h"
 
 #include <inttypes.h>

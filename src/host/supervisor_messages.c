@@ -3,7 +3,6 @@
 #include "host/supervisor_messages.h"
 
 #include "host/supervisor_child.h"
-#include "host/supervisor_internal.h"
 
 #include "base/clock.h"
 #include "base/mem.h"

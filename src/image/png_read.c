@@ -5,9 +5,7 @@
  * invalid sizes are refused before memory is allocated, and so is a picture that the bytes of the file cannot fill
  * (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little memory. libpng
  * skips chunks that do not change texels, except for their checksums; find_chunk finds those about colours. */
-#include "image/levels.h"
 
-#include "base/file.h"
 #include "base/mem.h"
 #include "image/png_read_internal.h"
 #include "image/zlib_memory.h"

@@ -2,7 +2,6 @@
 #include "image/png_write.h"
 #include "inspect/inspect.h"
 #include "light/light_edit.h"
-#include "material/texture_mapping.h"
 #include "world/world_describe.h"
 
 static void json_link(struct text_writer *writer, const struct pixel_trace_link *link) {

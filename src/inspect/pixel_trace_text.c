@@ -3,7 +3,6 @@
 #include "image/png_write.h"
 #include "inspect/inspect.h"
 #include "light/light_edit.h"
-#include "material/texture_mapping.h"
 #include "world/world_describe.h"
 
 #include <math.h>

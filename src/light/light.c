@@ -15,7 +15,6 @@
 #include "light/sky_light_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
-#include "math/range.h"
 
 /* A disc whose square fills more than this solid angle is sampled by that of the square, although a fifth of the square
  * is outside the disc: bench/area_lights.c. */

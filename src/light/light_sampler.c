@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "light/light_bounds.h"
 #include "math/elementary.h"
 
 static const double below_one = 1 - 0x1p-53;

@@ -5,7 +5,6 @@
 #include "base/mem.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
-#include "output/picture_write.h"
 #include "output/tool_internal.h"
 #include "settings/frame.h"
 

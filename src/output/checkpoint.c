@@ -5,7 +5,6 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "output/progress.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -9,11 +9,9 @@
 #include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
-#include "film/aov.h"
 #include "image/exr.h"
 #include "image/picture_file.h"
 #include "output/layers_internal.h"
-#include "output/picture_write.h"
 #include "output/statistics_internal.h"
 #include "session/text.h"
 

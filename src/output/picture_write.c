@@ -1,7 +1,6 @@
 /* Writes a film as files. Rows are tone-mapped while they are packed, so that there is no second picture in memory. */
 #include "output/picture_write.h"
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "denoise/denoise.h"
 #include "denoise/film_denoise.h"
@@ -12,10 +11,7 @@
 #include "output/layers_internal.h"
 #include "output/tool_internal.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 struct rows {

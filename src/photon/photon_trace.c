@@ -11,7 +11,6 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
-#include "material/medium.h"
 #include "photon/photon_target_internal.h"
 
 enum { BATCH = 1024 };

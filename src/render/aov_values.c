@@ -4,7 +4,6 @@
 #include "film/path_film.h"
 #include "light/light.h"
 #include "material/material_eval.h"
-#include "material/texture_mapping.h"
 #include "math/range.h"
 #include "render/integrator_internal.h"
 #include "render/sample_internal.h"

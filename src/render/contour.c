@@ -4,7 +4,6 @@
  * pixel and its surroundings, so parts, tiles and crops agree. */
 #include "render/contour_internal.h"
 #include "render/sample_internal.h"
-#include "render/style_internal.h"
 
 #include "base/mem.h"
 

@@ -2,8 +2,6 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
-#include "film/aov.h"
-#include "render/contour_internal.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 #include "render/sample_internal.h"

@@ -6,7 +6,6 @@
  * Area lights do not block shadow rays. So a scattered ray adds the light of every area light that it crosses, and
  * continues: both ways give the same light. */
 #include "light/light_edit.h"
-#include "render/path_internal.h"
 
 #include "material/medium.h"
 #include "render/path_light_internal.h"

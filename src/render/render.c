@@ -15,11 +15,9 @@
 #include "render/sample_internal.h"
 #include "settings/settings.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 
 /* The cost of a tile, from few rays: the number of hits and of secondary rays, which does not depend on the accelerator
  * or the instruction set. */

@@ -4,8 +4,6 @@
 #include "render/sample_internal.h"
 #include "render/sampler.h"
 
-#include <math.h>
-
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error) {

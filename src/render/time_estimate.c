@@ -10,8 +10,6 @@
 #include "base/mem.h"
 #include "render/render_internal.h"
 
-#include <math.h>
-
 /* --- the work of the tiles --- */
 
 static double part_of(const struct tile_cost *tile) {

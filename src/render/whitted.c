@@ -7,8 +7,6 @@
 #include "base/mem.h"
 #include "math/elementary.h"
 #include "photon/photon_trace.h"
-#include "render/contour_internal.h"
-#include "render/integrator_internal.h"
 #include "render/sample_internal.h"
 
 #include <math.h>

@@ -1,6 +1,5 @@
 /* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
  * and the position in the tree of rays. */
-#include "render/whitted_internal.h"
 
 #include "material/medium.h"
 #include "render/style_internal.h"

@@ -2,7 +2,6 @@
 #include "scene/node.h"
 
 #include "material/material_inputs.h"
-#include "scene/assets.h"
 
 #include <stddef.h>
 #include <string.h>

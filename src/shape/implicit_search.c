@@ -13,7 +13,6 @@
  * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
  * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997;
  * J. Hart, "Sphere Tracing", The Visual Computer 12, 1996; B. Keinert et al., "Enhanced Sphere Tracing", STAG 2014. */
-#include "shape/implicit_internal.h"
 #include "shape/implicit_search_internal.h"
 
 #include <math.h>

@@ -12,7 +12,6 @@
 #include "shape/lathe.h"
 #include "shape/prism.h"
 #include "shape/shape_part.h"
-#include "shape/sphere.h"
 #include "shape/sweep.h"
 
 /* The expected number of crossings of a mesh on the scratch; if there are more, the scratch grows between rays. */

@@ -6,10 +6,8 @@
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
-#include "output/progress.h"
 #include "viewer/view_overlay_internal.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -7,10 +7,7 @@
 #include "math/elementary.h"
 #include "viewer/viewer_draw_internal.h"
 #include "viewer/viewer_input_internal.h"
-#include "viewer/viewer_internal.h"
 
-#include "base/file_output.h"
-#include "image/png_write.h"
 #include "viewer/viewer_lights_internal.h"
 
 #include <math.h>

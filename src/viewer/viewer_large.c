@@ -4,12 +4,9 @@
  * Until a tile is finished, the window shows that part of the picture at the resolution of the picture. */
 #include "viewer/viewer_large_internal.h"
 
-#include "viewer/viewer_internal.h"
-
 #include "base/mem.h"
 #include "image/png_write.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { LARGE_PIXELS = 1 << 26 };

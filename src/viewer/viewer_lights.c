@@ -7,7 +7,6 @@
 #include "light/light_edit.h"
 #include "math/elementary.h"
 #include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_internal.h"
 
 #include <math.h>
 #include <string.h>

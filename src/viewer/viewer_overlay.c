@@ -5,7 +5,6 @@
 
 #include "base/mem.h"
 #include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_internal.h"
 
 #include <string.h>
 

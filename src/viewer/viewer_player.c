@@ -7,7 +7,6 @@
 
 #include "viewer/viewer_draw_internal.h"
 #include "viewer/viewer_input_internal.h"
-#include "viewer/viewer_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,6 @@
  * one material, becomes one primitive for each disjoint part. */
 #include "csg/csg_build.h"
 #include "world/flatten_csg_internal.h"
-#include "world/flatten_internal.h"
 
 #include "base/mem.h"
 #include "csg/csg_split.h"

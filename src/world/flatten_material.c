@@ -3,7 +3,6 @@
  * shapes on which its images have another mapping (material/material_mapping.h). The table that finds sets again is
  * hashed by address, which decides the position of an entry and never its number. */
 #include "base/mem.h"
-#include "world/flatten_internal.h"
 
 #include "base/random.h"
 #include "material/material_inputs.h"

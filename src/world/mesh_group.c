@@ -4,7 +4,6 @@
 
 #include "base/mem.h"
 #include "world/world_describe.h"
-#include "world/world_internal.h"
 
 /* A group costs every ray the start of a search, so it needs several members and most of the scene; its triangles are
  * stored twice. */

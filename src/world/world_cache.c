@@ -6,7 +6,6 @@
 
 #include "base/mem.h"
 #include "world/flatten_internal.h"
-#include "world/world_internal.h"
 
 struct kept_tables {
     struct arena arena;

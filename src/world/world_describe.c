@@ -3,7 +3,6 @@
 
 #include "math/frame.h"
 #include "shape/sphere.h"
-#include "world/world_internal.h"
 
 #include <string.h>
 
