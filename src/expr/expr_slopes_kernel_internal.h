@@ -2,6 +2,7 @@
  * roots, choices, sines and exponentials on vectors of boxes, everything else box by box with expr_rooted_apply. The
  * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of
  * vectors. */
+#include "expr/expr_derivative_internal.h"
 #include "expr/expr_slopes_internal.h"
 #include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"

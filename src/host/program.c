@@ -18,6 +18,7 @@
 #include "output/picture_files.h"
 #include "script/document.h"
 #include "session/options.h"
+#include "session/options_table.h"
 #include "session/text.h"
 
 #include <lua.h>

@@ -9,7 +9,6 @@
 #include "material/bsdf.h"
 
 #include "material/classic.h"
-#include "material/microfacet_internal.h"
 #include "material/rough_lobes_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
