@@ -559,8 +559,8 @@ uint64_t options_picture_bytes(const struct options *options) {
 }
 
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
-    *options =
-        (struct options){.settings = settings_default(), .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
+    *options = (struct options){
+        .settings = settings_default(), .partial = true, .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),

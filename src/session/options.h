@@ -90,7 +90,10 @@ struct options {
     double farm_silence; /* seconds without a message after which a rank is regarded as lost; 0: never */
     const char *display; /* --display, or NULL */
     bool partial;        /* --partial: an interrupted picture is written beside the complete one */
-    bool resume;         /* continue from the checkpoint */
+    /* What follows from them: what an interruption leaves. */
+    bool keeps_picture;     /* an unfinished picture */
+    bool keeps_tiles;       /* without --checkpoint: after a minute the checkpoint */
+    bool resume;            /* continue from the checkpoint */
     uint32_t shard, shards; /* --shard: the number of this shard, from 1, and the number of shards; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;

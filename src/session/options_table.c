@@ -124,8 +124,9 @@ static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--resume", NULL, "", NULL, FIELD(resume), 0, 0, 0, NULL,
      "Continue from the checkpoint (--checkpoint auto unless another file is given); an error if the scene has "
      "changed; with --shard, skip a part that exists already."},
-    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, NULL,
-     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others."},
+    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, "yes",
+     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others; "
+     "after a minute also the checkpoint for --resume."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard", "I/N", "", NULL, FIELD(shard), 0, 0, 0, NULL,
      "Render part I of N of every picture into a file of tiles beside it; `gray merge PART ...` joins the parts."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard-pictures", "I/N", "", NULL, FIELD(shard_of_pictures),
