@@ -378,6 +378,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
+    bool turns = process->options->script.frames.turntable > 0;
+    scene_set_time(work->request->scene, turns ? 0 : frame_time(&work->request->frame));
     work->shows = digest_of_frame(work);
     picture->repeats = repeats_frame(work);
     if (!settle(process, error))

@@ -98,11 +98,12 @@ TEST(a_file_of_the_user_with_the_name_of_a_partial_picture_stays) {
 /* The clock goes on while the program is stopped. */
 TEST_LONG(a_run_that_ends_after_a_minute_leaves_the_checkpoint_that_resume_finds) {
     put_scene("picture('a.png') picture('out.png')\n");
-    test_shell_errors("$gray scene.lua -q -full -ss 6 -o whole%d.png; env --default-signal=INT $gray scene.lua -full "
-                      "-ss 6 2>said.txt & p=$!; await 'test -e a.png'; kill -STOP $p; sleep 61; kill -CONT $p; "
-                      "sleep 1; kill -INT $p; wait $p; s=$?; cat said.txt >&2; test -e out.png && exit 1; "
-                      "test -e out.partial.png && exit $s",
-                      130, "gray: notice: a.png.checkpoint holds ");
+    test_shell_errors(
+        "$gray scene.lua -q -full -ss 6 -o whole%d.png; env --default-signal=INT $gray scene.lua -full "
+        "-ss 6 2>said.txt & p=$!; await 'test -e a.png'; sleep .2; all=\"$p $(cat /proc/$p/task/$p/children)"
+        "\"; kill -STOP $all; sleep 61; kill -CONT $all; kill -INT $p; wait $p; s=$?; "
+        "cat said.txt >&2; test -e out.png && exit 1; test -e out.partial.png && exit $s",
+        130, "gray: notice: a.png.checkpoint holds ");
     test_shell_errors("$gray scene.lua -full -ss 6 --resume && cmp out.png whole2.png && cmp a.png whole1.png && "
                       "ls | grep -c 'checkpoint\\|partial'",
                       1, "come from the checkpoint");
