@@ -16,6 +16,7 @@
 enum options_action {
     ACTION_RENDER,
     ACTION_MERGE /* the arguments are parts of pictures */,
+    ACTION_COMPARE /* two pictures */,
     ACTION_HELP,
     ACTION_MANUAL,
     ACTION_VERSION,
@@ -66,6 +67,7 @@ struct options {
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
+    double threshold;                /* --threshold, of gray compare */
     bool force;                      /* --force: -o may replace a file that is no picture */
     int width, height;               /* --size, or 0: the sizes that the scripts choose */
     const char *targets_prefix;      /* -write-aa-targets, or NULL */

@@ -8,6 +8,10 @@
 
 static bool check_together(const struct options *options, struct error *error) {
     bool merge = options->action == ACTION_MERGE;
+    if (options->action == ACTION_COMPARE)
+        return options->script_count == 2 || error_set(error, ERROR_USAGE, "compare needs two pictures");
+    if (options->threshold > 0)
+        return error_set(error, ERROR_USAGE, "--threshold is for gray compare; the noise of a picture is --noise X");
     if (options->action != ACTION_RENDER && !merge)
         return true;
     if (options->script_count == 0)

@@ -46,6 +46,11 @@ static const struct setting options_table[] = {
      ".webp, .y4m, .mp4 or .webm."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,
      "Let -o FILE replace a file that is not a picture, and write a PNG file under a name with any ending."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_FILES, "--threshold", "LEVEL", "", NULL, FIELD(threshold), 0, 0, 1e9,
+     NULL,
+     "With gray compare: the largest difference of a pixel with which the status is 0, in levels of 255, or in light "
+     "of "
+     "PFM, HDR and EXR."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-aa-targets", "X", "", NULL, FIELD(targets_prefix), 0, 0, 0,
      NULL, "For dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-pre-aa", "X", "", NULL, FIELD(first_pass_prefix), 0, 0, 0,
@@ -260,6 +265,7 @@ void options_print_help(FILE *stream) {
     (void)fputs("gray renders scenes that are written as Lua scripts.\n"
                 "usage: gray [options] [--] scene.lua ...\n"
                 "       gray merge [-o FILE] [options] PART ...\n"
+                "       gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
                 "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n"
                 "Options without a value take =yes and =no. Options have priority over fields of gr.render, except\n"
                 "--seed; --default sets what a script leaves open.\n",
