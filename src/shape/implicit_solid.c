@@ -340,7 +340,11 @@ static bool try_marching(const struct implicit *solid, struct implicit_findings 
     out->is_empty = false;
     if (!(out->steepest > 0))
         return true;
-    double digit = pow(10, floor(log10(out->steepest)) - 1);
+    double digit = 1;
+    while (digit * 100 <= out->steepest)
+        digit *= 10;
+    while (digit * 10 > out->steepest)
+        digit /= 10;
     in.lipschitz = out->lipschitz = ceil(out->steepest / digit) * digit;
     const struct implicit *marched = implicit_build(&arena, &in, error);
     bool ok = marched && (examine_lines(marched, &out->marched_work) || error_no_memory(error, "an implicit solid"));
