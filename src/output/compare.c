@@ -18,7 +18,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { REACH = 5 }; /* of the window of SSIM */
+enum { WINDOW = 5 }; /* of the window of SSIM */
 
 struct comparison {
     const struct image *a, *b;
@@ -37,18 +37,18 @@ static void pixel(const struct image *image, uint32_t x, uint32_t y, double out[
 }
 
 static void add_pixel(struct comparison *c, uint32_t x, uint32_t y) {
-    double a[4], b[4], most = 0;
+    double a[4], b[4], largest = 0;
     pixel(c->a, x, y, a);
     pixel(c->b, x, y, b);
     for (int k = 0; k < c->channels; k++) {
         double gap = fabs(a[k] - b[k]);
-        most = fmax(most, gap);
+        largest = fmax(largest, gap);
         c->sum += gap;
         c->relative += gap * gap / (b[k] * b[k] + 0.01);
     }
-    c->beyond += c->white * most > c->threshold * (1 + 1e-12);
-    if (most > c->largest) {
-        c->largest = most;
+    c->beyond += c->white * largest > c->threshold * (1 + 1e-12);
+    if (largest > c->largest) {
+        c->largest = largest;
         c->at[0] = x, c->at[1] = y;
     }
 }
@@ -68,13 +68,13 @@ static double *make_luma(const struct comparison *c, const struct image *image, 
 }
 
 /* At one pixel of two pictures of luma. */
-static double similarity_at(const struct comparison *c, const double *const luma[2], const double weights[REACH + 1],
+static double similarity_at(const struct comparison *c, const double *const luma[2], const double weights[WINDOW + 1],
                             uint32_t x, uint32_t y) {
     double sum = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-    uint32_t x1 = x + REACH < c->width ? x + REACH : c->width - 1;
-    uint32_t y1 = y + REACH < c->height ? y + REACH : c->height - 1;
-    for (uint32_t v = y > REACH ? y - REACH : 0; v <= y1; v++) {
-        for (uint32_t u = x > REACH ? x - REACH : 0; u <= x1; u++) {
+    uint32_t x1 = x + WINDOW < c->width ? x + WINDOW : c->width - 1;
+    uint32_t y1 = y + WINDOW < c->height ? y + WINDOW : c->height - 1;
+    for (uint32_t v = y > WINDOW ? y - WINDOW : 0; v <= y1; v++) {
+        for (uint32_t u = x > WINDOW ? x - WINDOW : 0; u <= x1; u++) {
             double weight = weights[u > x ? u - x : x - u] * weights[v > y ? v - y : y - v];
             double p = luma[0][(size_t)v * c->width + u], q = luma[1][(size_t)v * c->width + u];
             sum += weight;
@@ -89,9 +89,9 @@ static double similarity_at(const struct comparison *c, const double *const luma
 }
 
 static bool measure_similarity(struct comparison *c, struct error *error) {
-    double weights[REACH + 1], sum = 0, *luma[2] = {make_luma(c, c->a, error), NULL};
+    double weights[WINDOW + 1], sum = 0, *luma[2] = {make_luma(c, c->a, error), NULL};
     luma[1] = luma[0] ? make_luma(c, c->b, error) : NULL;
-    for (int i = 0; i <= REACH; i++)
+    for (int i = 0; i <= WINDOW; i++)
         weights[i] = el_exp(-i * i / (2 * 1.5 * 1.5));
     for (uint32_t y = 0; luma[1] && y < c->height; y++)
         for (uint32_t x = 0; x < c->width; x++)

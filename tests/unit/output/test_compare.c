@@ -38,40 +38,40 @@ static void put_png(const char *name, int level, bool srgb) {
     CHECK(png_write_from(FILE_AT(test_path(name)), &source, NULL, &error));
 }
 
-struct answer {
+struct measures {
     int status;
-    char bytes[16], place[32];
+    char bytes[16], position[32];
     double largest, mean, beyond, relative, similarity;
 };
 
-static struct answer compare(const char *arguments) {
-    struct answer answer = {0};
+static struct measures compare(const char *arguments) {
+    struct measures measured = {0};
     char line[200], limit[16];
     (void)snprintf(line, sizeof line, "compare %s", arguments);
     struct test_result result = test_gray(NULL, line);
-    answer.status = result.status;
+    measured.status = result.status;
     const char *rest = strchr(result.out, '\n');
-    CHECK(rest && sscanf(result.out, "bytes %15s", answer.bytes) == 1);
-    CHECK(rest && sscanf(rest, " largest difference %lf%31[^\n]", &answer.largest, answer.place) >= 1);
+    CHECK(rest && sscanf(result.out, "bytes %15s", measured.bytes) == 1);
+    CHECK(rest && sscanf(rest, " largest difference %lf%31[^\n]", &measured.largest, measured.position) >= 1);
     rest = strstr(result.out, "mean");
-    CHECK(rest && sscanf(rest, "mean difference %lf pixels beyond %15s %lf %% relMSE %lf SSIM %lf", &answer.mean, limit,
-                         &answer.beyond, &answer.relative, &answer.similarity) == 5);
+    CHECK(rest && sscanf(rest, "mean difference %lf pixels beyond %15s %lf %% relMSE %lf SSIM %lf", &measured.mean,
+                         limit, &measured.beyond, &measured.relative, &measured.similarity) == 5);
     test_free_result(&result);
-    return answer;
+    return measured;
 }
 
 TEST(light_is_compared_by_its_differences_relative_errors_and_similarity) {
     put_pfm("a.pfm", 0.5F, 0.75F);
     put_pfm("b.pfm", 0.5F, 0.5F);
-    struct answer answer = compare("a.pfm b.pfm");
-    CHECK_EQ_INT(answer.status, 1);
-    CHECK_TEXT(answer.bytes, "different");
-    CHECK_TEXT(answer.place, " at 2,1");
-    CHECK_NEAR(answer.largest, 0.25, 0);
-    CHECK_NEAR(answer.mean, 0.25 / (3 * WIDE * HIGH), 1e-7);
-    CHECK_NEAR(answer.beyond, 100.0 / (WIDE * HIGH), 1e-4);
-    CHECK_NEAR(answer.relative, 0.0625 / 0.26 / (3 * WIDE * HIGH), 1e-7);
-    CHECK(answer.similarity > 0.3 && answer.similarity < 1);
+    struct measures measured = compare("a.pfm b.pfm");
+    CHECK_EQ_INT(measured.status, 1);
+    CHECK_TEXT(measured.bytes, "different");
+    CHECK_TEXT(measured.position, " at 2,1");
+    CHECK_NEAR(measured.largest, 0.25, 0);
+    CHECK_NEAR(measured.mean, 0.25 / (3 * WIDE * HIGH), 1e-7);
+    CHECK_NEAR(measured.beyond, 100.0 / (WIDE * HIGH), 1e-4);
+    CHECK_NEAR(measured.relative, 0.0625 / 0.26 / (3 * WIDE * HIGH), 1e-7);
+    CHECK(measured.similarity > 0.3 && measured.similarity < 1);
     CHECK_EQ_INT(compare("--threshold 0.25 a.pfm b.pfm").status, 0);
     CHECK_EQ_INT(compare("--threshold 0.2499 a.pfm b.pfm").status, 1);
     /* Of constant pictures only the means count. */
@@ -84,21 +84,21 @@ TEST(pictures_for_a_display_are_compared_in_levels_and_equal_pixels_in_other_byt
     put_png("a.png", 100, false);
     put_png("b.png", 110, false);
     put_png("c.png", 100, true);
-    struct answer answer = compare("a.png b.png -o d.png");
+    struct measures measured = compare("a.png b.png -o d.png");
     double a = 100 / 255.0, b = 110 / 255.0;
-    CHECK_EQ_INT(answer.status, 1);
-    CHECK_TEXT(answer.place, " of 255 at 0,0");
-    CHECK_NEAR(answer.largest, 10, 1e-4);
-    CHECK_NEAR(answer.mean, 10, 1e-4);
-    CHECK_NEAR(answer.beyond, 100, 0);
-    CHECK_NEAR(answer.similarity, (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-6);
+    CHECK_EQ_INT(measured.status, 1);
+    CHECK_TEXT(measured.position, " of 255 at 0,0");
+    CHECK_NEAR(measured.largest, 10, 1e-4);
+    CHECK_NEAR(measured.mean, 10, 1e-4);
+    CHECK_NEAR(measured.beyond, 100, 0);
+    CHECK_NEAR(measured.similarity, (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-6);
     struct test_picture difference = test_read_picture(test_path("d.png"));
     CHECK(difference.width == WIDE && difference.height == HIGH && difference.rgb[0] == 255);
     free(difference.rgb);
     CHECK_EQ_INT(compare("a.png b.png --threshold=10").status, 0);
-    answer = compare("a.png c.png");
-    CHECK_TEXT(answer.bytes, "different");
-    CHECK(answer.status == 0 && answer.largest == 0 && answer.similarity == 1);
+    measured = compare("a.png c.png");
+    CHECK_TEXT(measured.bytes, "different");
+    CHECK(measured.status == 0 && measured.largest == 0 && measured.similarity == 1);
     CHECK_TEXT(compare("a.png a.png").bytes, "equal");
 }
 

@@ -230,7 +230,7 @@ TEST(bounds_of_slopes_and_distances_that_do_not_hold_are_reported_with_a_point) 
 }
 
 /* The second solid is as slow; the third has the value. */
-TEST(slow_solids_are_told_a_lipschitz_bound_that_their_slopes_support_once_in_a_script) {
+TEST(slow_solids_are_warned_of_with_a_lipschitz_bound_that_their_slopes_support_once_in_a_script) {
     static const char scene[] =
         "local function rough(bound) gr.implicit{radius = 1, lipschitz = bound, f = function(p)\n"
         "  return gr.length(p) - .8 + .1 * gr.noise(p * 8) + .05 * gr.noise(p * 16) + "
