@@ -277,18 +277,20 @@ format:
 PROGRAMS = gray $(if $(SDL_LIBS),gray-gui) $(if $(MPI_LIBS),gray-mpi)
 DOCUMENTS := README.md LICENSE CHANGELOG.md
 MODULES_OF_LUA := $(patsubst lua/%,%,$(wildcard lua/*.lua lua/dialects/*.lua))
-INSTALLED = $(PROGRAMS:%=bin/%) $(MODULES_OF_LUA:%=share/gray/lua/%) $(DOCUMENTS:%=share/doc/gray/%)
+TEXTURES := $(wildcard textures/*.png)
+INSTALLED = $(PROGRAMS:%=bin/%) $(MODULES_OF_LUA:%=share/gray/lua/%) $(TEXTURES:%=share/gray/%) $(DOCUMENTS:%=share/doc/gray/%)
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua/dialects $(DESTDIR)$(PREFIX)/share/doc/gray
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua/dialects $(DESTDIR)$(PREFIX)/share/gray/textures $(DESTDIR)$(PREFIX)/share/doc/gray
 	install -m 755 $(PROGRAMS:%=$(BUILD)/%) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(wildcard lua/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua
 	install -m 644 $(wildcard lua/dialects/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua/dialects
+	install -m 644 $(TEXTURES) $(DESTDIR)$(PREFIX)/share/gray/textures
 	install -m 644 $(DOCUMENTS) $(DESTDIR)$(PREFIX)/share/doc/gray
 
 # Folders of gray alone go when nothing else is in them.
 uninstall:
 	rm -f $(INSTALLED:%=$(DESTDIR)$(PREFIX)/%)
-	for folder in gray/lua/dialects gray/lua gray doc/gray; do rmdir $(DESTDIR)$(PREFIX)/share/$$folder 2>/dev/null; done; true
+	for folder in gray/lua/dialects gray/lua gray/textures gray doc/gray; do rmdir $(DESTDIR)$(PREFIX)/share/$$folder 2>/dev/null; done; true
 
 # A folder that the caller names may hold other files.
 BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags

@@ -19,6 +19,7 @@
 #include "output/picture_files.h"
 #include "script/document.h"
 #include "session/options.h"
+#include "session/options_table.h"
 #include "session/text.h"
 
 #include <lua.h>

@@ -12,7 +12,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* Picture or part, two debug pictures, all layers. */
 enum { FIRST_LAYER = 3, FILES_LIMIT = FIRST_LAYER + AOV_COUNT };

@@ -7,12 +7,13 @@
 #include "base/isa.h"
 #include "base/suggestion.h"
 #include "film/aov.h"
+#include "session/options_check.h"
+#include "session/options_table.h"
 #include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

@@ -104,11 +104,6 @@ struct options {
     enum statistics_mode statistics;
 };
 
-struct setting;
-/* All options in one row: the settings, some of which have no option, and then the others. */
-int option_count(void);
-const struct setting *option_at(int index);
-
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,
@@ -121,11 +116,6 @@ bool options_allow_picture(const struct options *options, uint64_t number, struc
 uint64_t options_picture_bytes(const struct options *options);
 /* What cpu_select_isa understands. */
 const char *options_isa_name(const struct options *options);
-/* --display: tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. False: none of these. */
-bool display_parse(const char *text, struct display_choice *out);
-/* The options with their defaults, in groups, 100 columns wide. */
-void options_print_help(FILE *stream);
-
 /* The name of picture `number` under -o: %d, %3d or %03d is the number, and so are two # or more, which are its digits;
  * %% is a percent sign. */
 bool output_name_numbered(const char *pattern);

@@ -3,6 +3,7 @@
 
 #include "base/isa.h"
 #include "image/picture_file.h"
+#include "session/options_table.h"
 
 #include <limits.h>
 #include <math.h>

@@ -130,7 +130,7 @@ void text_writer_print(struct text_writer *writer, const char *format, ...) {
         add(writer, text, (size_t)length < sizeof text ? (size_t)length : sizeof text - 1);
 }
 
-void text_writer_name(struct text_writer *writer, const char *text) {
+static void add_name(struct text_writer *writer, const char *text) {
     char piece[8];
     for (size_t taken; *text; text += taken) {
         size_t size = text_clean_piece(text, piece, &taken);
@@ -138,7 +138,7 @@ void text_writer_name(struct text_writer *writer, const char *text) {
     }
 }
 
-void text_writer_json(struct text_writer *writer, const char *text) {
+static void add_json(struct text_writer *writer, const char *text) {
     char piece[8];
     add(writer, "\"", 1);
     for (const char *at = text; *at;) {
@@ -149,17 +149,60 @@ void text_writer_json(struct text_writer *writer, const char *text) {
     add(writer, "\"", 1);
 }
 
-void text_writer_json_number(struct text_writer *writer, double number) {
-    if (isfinite(number))
-        text_writer_print(writer, "%.17g", number);
-    else
-        text_writer_print(writer, "null");
+static void add_number(struct text_writer *writer, double number) {
+    text_writer_print(writer, isfinite(number) ? "%.17g" : "null", number);
 }
 
-void text_writer_json_vector(struct text_writer *writer, struct vec3 v) {
-    for (int i = 0; i < 3; i++) {
-        text_writer_print(writer, i > 0 ? "," : "[");
-        text_writer_json_number(writer, vec3_get(v, i));
+void text_writer_put(struct text_writer *writer, const char *format, ...) {
+    va_list list;
+    struct vec3 v;
+    va_start(list, format);
+    for (const char *at = format; *at; at++) {
+        if (*at != '%') {
+            add(writer, at, 1);
+            continue;
+        }
+        switch (*++at) {
+        case 's':
+            text_writer_print(writer, "%s", va_arg(list, const char *));
+            break;
+        case 'n':
+            add_name(writer, va_arg(list, const char *));
+            break;
+        case 'q':
+            add_json(writer, va_arg(list, const char *));
+            break;
+        case 'u':
+            text_writer_print(writer, "%u", va_arg(list, unsigned));
+            break;
+        case 'd':
+            text_writer_print(writer, "%d", va_arg(list, int));
+            break;
+        case 'g':
+            text_writer_print(writer, "%.6g", va_arg(list, double));
+            break;
+        case 'v':
+            v = va_arg(list, struct vec3);
+            text_writer_print(writer, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
+            break;
+        case 'j':
+            add_number(writer, va_arg(list, double));
+            break;
+        case 'a':
+            v = va_arg(list, struct vec3);
+            for (int i = 0; i < 3; i++) {
+                add(writer, i > 0 ? "," : "[", 1);
+                add_number(writer, vec3_get(v, i));
+            }
+            add(writer, "]", 1);
+            break;
+        case 'b':
+            text_writer_print(writer, va_arg(list, int) ? "true" : "false");
+            break;
+        case 'i':
+            text_writer_print(writer, "%*s", va_arg(list, int), "");
+            break;
+        }
     }
-    text_writer_print(writer, "]");
+    va_end(list);
 }

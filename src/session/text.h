@@ -41,15 +41,15 @@ struct text_writer {
 };
 enum { TEXT_WRITER_PIECE = sizeof(((struct text_writer *)0)->text) };
 
-/* A formatted text is cut at 1,000 bytes; use text_writer_name or text_writer_json for texts of scripts. */
+/* A formatted text is cut at 1,000 bytes. */
 void text_writer_print(struct text_writer *writer, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Control characters become '?'. */
-void text_writer_name(struct text_writer *writer, const char *text);
-/* As a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
-void text_writer_json(struct text_writer *writer, const char *text);
-/* 17 digits, so that the number is exact; null for infinities and NaN. */
-void text_writer_json_number(struct text_writer *writer, double number);
-void text_writer_json_vector(struct text_writer *writer, struct vec3 v); /* [x,y,z] */
+/* The same with conversions for words and JSON:
+ *   %s  text of the program              %u %d  numbers of these types
+ *   %n  text of a script: control        %g %v  a double, a struct vec3: (x, y, z), with 6 digits
+ *       characters become '?'            %j %a  the same in JSON with 17 digits: exact; null for infinities and NaN
+ *   %q  a JSON string with its quotes    %b     true or false
+ *                                        %i     an int: so many blanks */
+void text_writer_put(struct text_writer *writer, const char *format, ...);
 void text_writer_flush(struct text_writer *writer);
 
 #endif

@@ -90,8 +90,7 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
     CHECK(WIFSIGNALED(how) && WTERMSIG(how) == SIGHUP);
     struct test_result result = test_gray_scene("while true do end", "scene.lua --script-time 0.1", NULL);
     CHECK_EQ_INT(result.status, 1);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* An ordinary child, one in its own session, an orphan that ignores every signal that can be ignored, a stopped one,
@@ -537,7 +536,8 @@ TEST(uninstalling_removes_what_installing_has_written) {
         "make='make -s -o all BUILD='$(dirname $GRAY_TEST_BINARY)' PREFIX=/usr DESTDIR='$GRAY_EXAMPLE_RUN; "
         "to=$GRAY_EXAMPLE_RUN/usr; "
         "mkdir -p $to/bin && touch $to/bin/other && $make install && $to/bin/gray --version && "
-        "test -e $to/share/gray/lua/readobj.lua && test -e $to/share/doc/gray/LICENSE && "
+        "test -e $to/share/gray/lua/readobj.lua && test -e $to/share/gray/textures/painting.png && test -e "
+        "$to/share/doc/gray/LICENSE && "
         "touch $to/share/gray/lua/own.lua && $make uninstall && (cd $to && find . -type f | sort) && "
         "test ! -e $to/share/doc/gray && test ! -e $to/share/gray/lua/dialects && "
         "rm $to/share/gray/lua/own.lua && $make install && $make uninstall && test ! -e $to/share/gray && "

@@ -70,3 +70,18 @@ TEST(nothing_steers_a_terminal) {
     expect(text_print, "a\nb\x1b[1m\r", "a\nb?[1m?");
     expect(text_print_json, "a\"\\\n\x7f\x01", "\"a\\\"\\\\\\u000a\\u007f\\u0001\"");
 }
+
+static void keep(void *context, const char *text) {
+    (void)snprintf(context, 400, "%s", text);
+}
+
+TEST(the_conversions_of_a_text_writer_are_words_and_json) {
+    char out[400] = "";
+    struct text_writer writer = {.put = keep, .context = out};
+    text_writer_put(&writer, "%i%s|%n|%q|%u|%d|%g|%v", 2, "a", "b\nc", "d\"\xff", 3000000000U, -7, 1.0 / 3,
+                    vec3_make(1, 2.5, -3));
+    text_writer_put(&writer, "|%j|%j|%a|%b%b", 0.1, INFINITY, vec3_make(1, NAN, -3), true, false);
+    text_writer_flush(&writer);
+    CHECK_TEXT(out, "  a|b?c|\"d\\\"\\ufffd\"|3000000000|-7|0.333333|(1, 2.5, -3)"
+                    "|0.10000000000000001|null|[1,null,-3]|truefalse");
+}

@@ -1,6 +1,6 @@
 /* What csg_build prepares for the sweep in csg.c; private to the two. */
-#ifndef GRAY_CSG_CSG_PLAN_INTERNAL_H
-#define GRAY_CSG_CSG_PLAN_INTERNAL_H
+#ifndef GRAY_CSG_CSG_BUILD_INTERNAL_H
+#define GRAY_CSG_CSG_BUILD_INTERNAL_H
 
 #include "csg/csg.h"
 

@@ -1,13 +1,14 @@
-/* See tool_internal.h and encoder_internal.h. The supervisor starts the programs, never the process that runs scenes.
- * The arguments are fixed: one thread, and no times or versions in the file, so that its bytes can be compared. Odd
- * sides are padded by one pixel, because both formats have half the resolution for colour. */
+/* The supervisor starts the programs, never the process that runs scenes. The arguments are fixed: one thread, and no
+ * times or versions in the file, so that its bytes can be compared. Odd sides are padded by one pixel, because both
+ * formats have half the resolution for colour. */
 #define _GNU_SOURCE
-#include "output/encoder_internal.h"
+#include "output/tool_internal.h"
 
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/mem.h"
-#include "output/tool_internal.h"
+#include "image/float_write.h"
+#include "image/image.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -20,6 +21,14 @@
 
 /* --- programs --- */
 
+struct tool {
+    const char *purpose;                    /* begins its messages */
+    char *const *arguments;                 /* the name of the program first; NULL after the last one */
+    const char *folder;                     /* its working directory */
+    int input;                              /* its standard input; -1: empty */
+    const struct file_interrupt *interrupt; /* or NULL */
+};
+
 static int describe(const struct tool *tool, posix_spawn_file_actions_t *actions) {
     int failure = posix_spawn_file_actions_addchdir_np(actions, tool->folder);
     if (failure == 0 && tool->input >= 0)
@@ -29,7 +38,10 @@ static int describe(const struct tool *tool, posix_spawn_file_actions_t *actions
     return failure ? failure : posix_spawn_file_actions_addclosefrom_np(actions, 3);
 }
 
-bool tool_start(const struct tool *tool, pid_t *child, struct error *error) {
+/* Its output is discarded. It inherits no other descriptor, and signals have their default actions. PATH is that of the
+ * user; a relative entry refers to the new folder, which contains no program. Errors: it is not on PATH, it cannot be
+ * started. */
+static bool start(const struct tool *tool, pid_t *child, struct error *error) {
     const char *name = tool->arguments[0];
     posix_spawn_file_actions_t actions;
     if (posix_spawn_file_actions_init(&actions) != 0)
@@ -56,7 +68,8 @@ bool tool_start(const struct tool *tool, pid_t *child, struct error *error) {
            error_set(error, ERROR_MACHINE, "%.600s: %s cannot be started: %s", tool->purpose, name, strerror(failure));
 }
 
-bool tool_wait(const struct tool *tool, pid_t child, struct error *error) {
+/* Waits until it ends; after an interrupt it is killed. Errors: it failed, interrupted. */
+static bool wait_for(const struct tool *tool, pid_t child, struct error *error) {
     const char *name = tool->arguments[0];
     int status = 0;
     bool stopped = false;
@@ -160,7 +173,7 @@ static bool encode(const struct tool *program, const struct animation_source *so
     if (MAY_FAIL(pipe2(ends, O_CLOEXEC)) != 0)
         return error_set(error, ERROR_MACHINE, "%.600s: %s", tool.purpose, strerror(errno));
     tool.input = ends[0];
-    bool started = tool_start(&tool, &child, error);
+    bool started = start(&tool, &child, error);
     (void)close(ends[0]);
     bool sent = started && send_frames(ends[1], source, &taken, error);
     (void)close(ends[1]);
@@ -169,7 +182,7 @@ static bool encode(const struct tool *program, const struct animation_source *so
         return false;
     if (!sent)
         (void)kill(child, SIGKILL);
-    bool ended = tool_wait(&tool, child, sent ? error : &failure);
+    bool ended = wait_for(&tool, child, sent ? error : &failure);
     return sent && ended &&
            (taken || error_set(error, ERROR_MACHINE, "%.600s: ffmpeg has not read all frames", tool.purpose));
 }
@@ -184,6 +197,100 @@ bool encoder_write(const struct file_target *target, const struct animation_sour
                               target->rules ? target->rules->interrupt : NULL};
     (void)snprintf(file, sizeof file, "%s/video.%s", folder, webm ? "webm" : "mp4");
     bool ok = encode(&tool, source, error) && copy_file(file, target, error);
+    file_remove_temporary_folder(folder);
+    return ok;
+}
+
+/* --- oidnDenoise --- */
+
+static char *const oidn_arguments[] = {WORD("oidnDenoise"),  WORD("--hdr"), WORD("colour.pfm"), WORD("--alb"),
+                                       WORD("albedo.pfm"),   WORD("--nrm"), WORD("normal.pfm"), WORD("-o"),
+                                       WORD("denoised.pfm"), NULL};
+
+enum input { INPUT_COLOUR, INPUT_ALBEDO, INPUT_NORMAL, INPUTS };
+static const char *const input_names[INPUTS] = {"colour.pfm", "albedo.pfm", "normal.pfm"};
+
+struct input_rows {
+    const struct denoise_source *source;
+    struct denoise_pixel *row;
+    enum input input;
+};
+
+static float value_of(const struct denoise_pixel *pixel, enum input input, int channel) {
+    static const int first[] = {[INPUT_ALBEDO] = DENOISE_ALBEDO, [INPUT_NORMAL] = DENOISE_NORMAL};
+    float of_half[2];
+    for (int h = 0; h < 2; h++)
+        of_half[h] = input == INPUT_COLOUR ? pixel->colour[h][channel] : pixel->features[h][first[input] + channel];
+    return pixel->share * of_half[0] + (1 - pixel->share) * of_half[1];
+}
+
+static void input_row(void *context, uint32_t y, float *line) {
+    struct input_rows *rows = context;
+    rows->source->row(rows->source->context, y, rows->row);
+    for (uint32_t x = 0; x < rows->source->width; x++)
+        for (int c = 0; c < 3; c++)
+            line[3 * x + (uint32_t)c] = value_of(&rows->row[x], rows->input, c);
+}
+
+enum { PATH_LIMIT = 4096 };
+
+static bool join(const char *folder, const char *name, char out[PATH_LIMIT], struct error *error) {
+    return snprintf(out, PATH_LIMIT, "%s/%s", folder, name) < PATH_LIMIT ||
+           error_set(error, ERROR_MACHINE, "%.200s...: the name of the temporary folder is too long", folder);
+}
+
+static bool write_inputs(const struct denoise_source *source, const char *folder, struct error *error) {
+    struct input_rows rows = {.source = source, .row = mem_alloc_zero(source->width, sizeof *rows.row)};
+    bool ok = rows.row || error_no_memory(error, "a picture that is denoised");
+    for (int i = 0; i < INPUTS && ok; i++) {
+        char path[PATH_LIMIT];
+        const struct file_target target = {.path = path};
+        rows.input = (enum input)i;
+        ok = join(folder, input_names[i], path, error) &&
+             pfm_write(&target, source->width, source->height, input_row, &rows, error);
+    }
+    mem_free(rows.row);
+    return ok;
+}
+
+static bool read_output(const struct denoise_source *source, const char *folder, float (*out)[3], struct error *error) {
+    char path[PATH_LIMIT];
+    struct error reason = {0};
+    if (!join(folder, "denoised.pfm", path, error))
+        return false;
+    struct image *image = image_read(path, &reason);
+    if (!image && reason.kind == ERROR_MACHINE) {
+        *error = reason;
+        return false;
+    }
+    if (!image)
+        return error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read");
+    uint32_t width = image_width(image), height = image_height(image);
+    bool fits = width == source->width && height == source->height;
+    for (uint32_t y = 0; y < height && fits; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            struct rgba texel = image_texel(image, x, y);
+            float *rgb = out[(size_t)y * width + x];
+            rgb[0] = (float)texel.r;
+            rgb[1] = (float)texel.g;
+            rgb[2] = (float)texel.b;
+        }
+    }
+    image_release(image);
+    return fits || error_set(error, ERROR_MACHINE,
+                             "--denoise=oidn: oidnDenoise made a picture of %u x %u pixels instead of %u x %u", width,
+                             height, source->width, source->height);
+}
+
+bool oidn_run(const struct denoise_source *source, const struct file_interrupt *interrupt, float (*out)[3],
+              struct error *error) {
+    char folder[PATH_LIMIT];
+    if (!file_make_temporary_folder(folder, sizeof folder, error))
+        return false;
+    const struct tool tool = {"--denoise=oidn", oidn_arguments, folder, -1, interrupt};
+    pid_t child = 0;
+    bool ok = write_inputs(source, folder, error) && start(&tool, &child, error) && wait_for(&tool, child, error) &&
+              read_output(source, folder, out, error);
     file_remove_temporary_folder(folder);
     return ok;
 }

@@ -14,8 +14,9 @@
  *
  * These boxes of the leaves stand in a binary tree (halves at the median of the longest axis), so that a ray tests only
  * the leaves near it. Programs may be as deep as they are long: they are read with explicit stacks. */
+#include "csg/csg_build.h"
 #include "base/mem.h"
-#include "csg/csg_plan_internal.h"
+#include "csg/csg_build_internal.h"
 
 #include <assert.h>
 
