@@ -51,6 +51,7 @@ static int print_paged(const struct document *document) {
 static void add_usage(struct document *document) {
     document_lines(document, "gray [options] [--] scene.lua ...\n"
                              "gray merge [-o FILE] [options] PART ...\n"
+                             "gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
                              "gray --man [TOPIC ...]\n"
                              "gray --init [FOLDER]\n");
 }

@@ -17,6 +17,7 @@
 #include "image/animation.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
+#include "output/compare.h"
 #include "output/merge.h"
 #include "output/picture_files.h"
 #include "session/options.h"
@@ -120,6 +121,8 @@ static int perform(struct options *options, const struct program_parts *parts, s
         return 0;
     case ACTION_MERGE:
         return choose_isa(options) ? merge_run(options) : ERROR_USAGE;
+    case ACTION_COMPARE:
+        return compare_run(options);
     case ACTION_RENDER:
         break;
     }

@@ -16,6 +16,7 @@
 enum options_action {
     ACTION_RENDER,
     ACTION_MERGE /* the arguments are parts of pictures */,
+    ACTION_COMPARE /* two pictures */,
     ACTION_HELP,
     ACTION_VERSION,
     ACTION_ANNOTATIONS,
@@ -70,6 +71,7 @@ struct options {
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
+    double threshold;                /* --threshold, of gray compare */
     bool force;                      /* --force: -o may replace a file that is no picture */
     int width, height;               /* --size, or 0: the sizes that the scripts choose */
     const char *targets_prefix;      /* -write-aa-targets, or NULL */
@@ -94,7 +96,10 @@ struct options {
     double farm_silence; /* seconds without a message after which a rank is regarded as lost; 0: never */
     const char *display; /* --display, or NULL */
     bool partial;        /* --partial: an interrupted picture is written beside the complete one */
-    bool resume;         /* continue from the checkpoint */
+    /* What follows from them: what an interruption leaves. */
+    bool keeps_picture;     /* an unfinished picture */
+    bool keeps_tiles;       /* without --checkpoint: after a minute the checkpoint */
+    bool resume;            /* continue from the checkpoint */
     uint32_t shard, shards; /* --shard: the number of this shard, from 1, and the number of shards; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;

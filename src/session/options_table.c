@@ -48,6 +48,11 @@ static const struct setting options_table[] = {
      ".webp, .y4m, .mp4 or .webm."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,
      "Let -o FILE replace a file that is not a picture, and write a PNG file under a name with any ending."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_FILES, "--threshold", "LEVEL", "", NULL, FIELD(threshold), 0, 0, 1e9,
+     NULL,
+     "With gray compare: the largest difference of a pixel with which the status is 0, in levels of 255, or in light "
+     "of "
+     "PFM, HDR and EXR."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-aa-targets", "X", "", NULL, FIELD(targets_prefix), 0, 0, 0,
      NULL, "For dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-pre-aa", "X", "", NULL, FIELD(first_pass_prefix), 0, 0, 0,
@@ -126,8 +131,9 @@ static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--resume", NULL, "", NULL, FIELD(resume), 0, 0, 0, NULL,
      "Continue from the checkpoint (--checkpoint auto unless another file is given); an error if the scene has "
      "changed; with --shard, skip a part that exists already."},
-    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, NULL,
-     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others."},
+    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, "yes",
+     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others; "
+     "after a minute also the checkpoint for --resume."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard", "I/N", "", NULL, FIELD(shard), 0, 0, 0, NULL,
      "Render part I of N of every picture into a file of tiles beside it; `gray merge PART ...` joins the parts."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard-pictures", "I/N", "", NULL, FIELD(shard_of_pictures),

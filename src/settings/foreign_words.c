@@ -44,7 +44,7 @@ static const struct foreign_word options[] = {
     {"the fields aperture and focus of gr.render", "dof depthoffield aperture lens focus"},
     {"the fields lights and background of gr.render", "light lamp sun environment env envmap hdri sky background"},
     {"its name alone, as in gray scene.lua", "scene input i script infile in load open"},
-    {"--noise X, with --integrator path", "adaptive noisethreshold threshold adaptivethreshold targetnoise error"},
+    {"--noise X, with --integrator path", "adaptive noisethreshold adaptivethreshold targetnoise error"},
     {"--watch", "reload auto"},
     {"--allow-read DIR", "include includepath l"},
     {"--turntable N", "turn rotate spin"},

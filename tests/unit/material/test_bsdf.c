@@ -344,23 +344,31 @@ TEST(rough_boundaries_are_those_of_walter_with_fresnel_s_share_of_each_facet) {
         }
 }
 
-/* The share of light that facets reflect, by quadrature over the visible facets. */
+/* The share of light that facets reflect, by quadrature over the visible facets, and what of it leaves the surface
+ * (docs/design/light.md). */
 TEST(grazing_light_meets_facets_that_do_not_graze) {
     static const struct {
-        double degrees, roughness, share;
-    } rows[] = {{85, 0.3, 0.4161}, {85, 0.7, 0.1324}, {85, 1, 0.0885}, {0, 0.3, 0.0405}, {0, 0.7, 0.0559}};
+        double degrees, roughness, share, leaves;
+    } rows[] = {{85, 0.3, 0.4161, 0.3402},
+                {85, 0.7, 0.1324, 0.1048},
+                {85, 1, 0.0885, 0.0611},
+                {0, 0.3, 0.0405, 0.0397},
+                {0, 0.7, 0.0559, 0.0286}};
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         struct view view = rough_view(rows[r].degrees, rows[r].roughness * rows[r].roughness, 1 / 1.5);
         struct bsdf_branch branches[BSDF_LOBES];
         CHECK_EQ_INT(bsdf_branches(&view.bsdf, branches), 2);
-        double reflected = 0;
+        double reflected = 0, leaving = 0;
         enum { N = 1000 };
         for (int i = 0; i < N * N; i++) {
             struct sample2 u = {(i % N + 0.5) / N, (i / N + 0.5) / N};
             struct bsdf_draw position = bsdf_draw(&view.bsdf, view.wo, u);
             struct vec3 h = position.facet;
             double fresnel = dielectric_fresnel(vec3_dot(view.wo, h), 1 / 1.5);
+            double cosine = dielectric_mirror(h, view.wo).z;
             reflected += fresnel / ((double)N * N);
+            if (cosine > 0)
+                leaving += fresnel * microfacet_escape(view.wo.z, cosine, view.bsdf.alpha) / ((double)N * N);
             for (int b = 0; b < 2 && i % 101 == 0; b++) {
                 struct bsdf_branch_direction sample;
                 if (!bsdf_branch_sample(&view.bsdf, &branches[b], view.wo, &position, &sample))
@@ -370,6 +378,7 @@ TEST(grazing_light_meets_facets_that_do_not_graze) {
             }
         }
         CHECK_NEAR(reflected, rows[r].share, 4e-4);
+        CHECK_NEAR(leaving, rows[r].leaves, 4e-4);
     }
 }
 

@@ -128,6 +128,23 @@ TEST(fractional_indices_and_a_view_of_zero_are_survived_with_one_warning_each) {
     test_free_result(&result);
 }
 
+/* Also in a function that is recorded. */
+TEST(functions_of_numbers_and_vectors_warn_under_lenient_and_take_0_for_what_they_refuse) {
+    static const char scene[] = "assert(gr.noise(10.5, 10) == gr.noise(10.5, 10, 0))\n"
+                                "assert(gr.turbulence(.1, .2, .3, 99) == 0 and gr.lookup({}, 1) == 0)\n"
+                                "assert(gr.clamp(7, 2, nil) == 0 and select('#', gr.cells(1, 1)) == 3)\n"
+                                "local f = gr.fn(function(p) return gr.noise(p.x, p.y) end)\n"
+                                "assert(not pcall(gr.loop, 2, 1, function() error('mine') end))\n";
+    struct test_result result = test_gray_scene(scene, "--lenient scene.lua", NULL);
+    CHECK(strstr(result.err, "scene.lua:1: warning: gr.noise: argument 3: a number or a vector is needed: it is 0\n"));
+    CHECK(strstr(result.err, "scene.lua:2: warning: gr.turbulence: argument 4: "));
+    CHECK(strstr(result.err, "scene.lua:2: warning: gr.lookup: argument 1: table expected, got number: the result is"));
+    CHECK(strstr(result.err, "scene.lua:4: warning: gr.noise: argument 3: "));
+    CHECK(!strstr(result.err, "assertion failed"));
+    free(result.out);
+    free(result.err);
+}
+
 /* One scene that only deviates gives the bytes of the scene that it means. */
 TEST(arguments_in_another_order_mean_the_same_under_lenient) {
     static const char *const pairs[][2] = {

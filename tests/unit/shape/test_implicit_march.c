@@ -229,6 +229,26 @@ TEST(bounds_of_slopes_and_distances_that_do_not_hold_are_reported_with_a_point) 
             "lipschitz and distance exclude each other");
 }
 
+/* The second solid is as slow; the third has the value. */
+TEST(slow_solids_are_warned_of_with_a_lipschitz_bound_that_their_slopes_support_once_in_a_script) {
+    static const char scene[] =
+        "local function rough(bound) gr.implicit{radius = 1, lipschitz = bound, f = function(p)\n"
+        "  return gr.length(p) - .8 + .1 * gr.noise(p * 8) + .05 * gr.noise(p * 16) + "
+        ".025 * gr.noise(p * 32) end} end\n"
+        "rough() rough() rough(4.6)\n";
+    struct test_result result = test_gray_scene(scene, "--check scene.lua", NULL);
+    const char *said = strstr(result.err, "scene.lua:1: warning: gr.implicit: rays need ");
+    unsigned before = 0, after = 0, points = 0;
+    double bound = 0;
+    CHECK(said && sscanf(said,
+                         "scene.lua:1: warning: gr.implicit: rays need %u operations each, and %u with lipschitz = "
+                         "%lf, which the slopes of f at %u points support",
+                         &before, &after, &bound, &points) == 4);
+    CHECK(2 * after < before && points > 1900 && points <= 2000 && bound > 3 && bound < 6);
+    CHECK(said && !strstr(strchr(said, '\n'), "warning"));
+    test_free_result(&result);
+}
+
 TEST(fractals_without_a_declared_bound_are_refused_with_advice) {
     reports("f = function(p) local x, y, z = p.x, p.y, p.z for i = 1, 10 do x, y, z = x * x - y * y - z * z - 0.2, "
             "2 * x * y + 0.8, 2 * x * z end return x * x + y * y + z * z - 4 end, radius = 1.5",

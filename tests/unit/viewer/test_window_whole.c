@@ -337,6 +337,27 @@ TEST(window_opens_while_the_script_runs_and_ends_it) {
     CHECK_EQ_INT(viewer_that(waits, &slow, NULL), 0);
 }
 
+/* The moment of the end is unknown: several are tried. The tiles of another view are none of the picture. */
+TEST(window_that_closes_during_a_picture_leaves_a_partial_one_of_its_own_view) {
+    struct setting setting = {
+        .scene = "local r = gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"
+                 "gr.render(r, 'out.png', 640, 480, {0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 60, {.3, .3, .3},\n"
+                 "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})}, {samples = 12, full = true})\n"};
+    for (int pause = 20; pause < 1000 && access(test_path("out.partial.png"), F_OK) != 0; pause += 20) {
+        const struct deed quits[] = {{NULL, KEY('q'), pause}};
+        CHECK_EQ_INT(viewer_that(quits, &setting, NULL), 130);
+    }
+    struct test_picture picture = test_read_picture(test_path("out.partial.png"));
+    CHECK_EQ_INT(picture.width, 640);
+    free(picture.rgb);
+    CHECK(access(test_path("out.png"), F_OK) != 0 && remove(test_path("out.partial.png")) == 0);
+    const struct deed flies[] = {{NULL, KEY(WINDOW_ARROW_UP), 5},
+                                 {NULL, {.kind = WINDOW_KEY, .key = WINDOW_ARROW_UP}, 5},
+                                 {NULL, KEY('q'), 200}};
+    CHECK_EQ_INT(viewer_that(flies, &setting, NULL), 130);
+    CHECK(access(test_path("out.partial.png"), F_OK) != 0);
+}
+
 TEST(window_that_watches_opens_for_an_error_before_the_first_picture) {
     const struct deed deeds[] = {{"scene.lua:1", {.kind = WINDOW_LEAVE}, 0}, {"64x48  ready", KEY('q'), 0}};
     const struct setting setting = {
