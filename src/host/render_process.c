@@ -3,29 +3,22 @@
  * in the arena of the job, which is emptied for the next one. */
 #include "host/render_process_internal.h"
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/mem.h"
-#include "base/pool.h"
-#include "base/terminal_text.h"
 #include "denoise/denoise.h"
-#include "film/aov.h"
 #include "film/path_film.h"
-#include "image/image.h"
+#include "host/render_reports.h"
 #include "inspect/inspect.h"
-#include "output/picture_files.h"
 #include "output/progress.h"
+#include "render/integrator.h"
 #include "render/overlay.h"
-#include "render/render.h"
 #include "render/scene_check.h"
-#include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
-#include "world/world.h"
+#include "world/world_cache.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum { LARGE_JOB = 64 << 20 /* bytes */ };
 
@@ -210,9 +203,7 @@ static bool too_much_memory(const struct render_process *process, struct error *
 /* Of something that scene_check has seen. */
 static void notice_of_picture(void *context, const char *text) {
     const struct picture_work *work = context;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%.1400s: %s", work->request->where, text);
-    render_process_report_scene(work->process, LINE_NOTICE, line);
+    render_process_say(work->process, LINE_NOTICE, "%.1400s: %s", work->request->where, text);
 }
 
 /* From the flattened scene to the finished film. */
@@ -221,13 +212,13 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct render_job *job = &work->job;
     struct picture_report *report = &work->report;
     bool in_window = work->picture_request.in_window;
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (build_world(work, work->request->lights, work->request->light_count, error))
         job->world = &work->world;
     else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;
     bool ok = true;
-    double built = progress_clock(), built_worked = progress_processor_clock();
+    double built = clock_now(), built_worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (job->world) {
         integrator_warn(job, render_process_warn, process);
         if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
@@ -244,8 +235,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;
-    report->rays.render_seconds = progress_clock() - built;
-    report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
+    report->rays.render_seconds = clock_now() - built;
+    report->rays.render_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - built_worked;
     render_process_fill_report(work, job->film, report);
     if (ok && job->world)
         render_process_warn_of_nan(process, job->world);
@@ -510,10 +501,8 @@ static bool render(void *context, const struct render_request *request, struct e
     }
     if (!process->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s%s%s", error->elsewhere ? "" : request->where, error->elsewhere ? "" : ": ",
-                   error->text);
-    render_process_report_scene(process, LINE_ERROR, line);
+    render_process_say(process, LINE_ERROR, "%s%s%s", error->elsewhere ? "" : request->where,
+                       error->elsewhere ? "" : ": ", error->text);
     process->status = ERROR_SCENE;
     return true;
 }

@@ -5,7 +5,6 @@
  * of threads. */
 #include "image/png_write.h"
 
-#include "base/file_output.h"
 #include "base/mem.h"
 #include "image/zlib_memory.h"
 

@@ -3,8 +3,8 @@
  * duration of the last one. */
 #include "output/checkpoint.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
-#include "output/progress.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -35,7 +35,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
         return true;
     if (!choose_path(checkpoint, picture_name, error))
         return false;
-    checkpoint->written_at = progress_clock();
+    checkpoint->written_at = clock_now();
     bool there = file_is_regular(checkpoint->path);
     if (there && !checkpoint->resume && checkpoint->files->options->checkpoint_implied)
         there = false; /* its frames are made again, and it is replaced */
@@ -139,7 +139,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
                        bool now, struct checkpoint_tiles *tiles, struct error *error) {
     if (!checkpoint->opened || checkpoint->number < checkpoint->old_number)
         return true;
-    double clock = progress_clock(), pause = checkpoint->took * pause_factor;
+    double clock = clock_now(), pause = checkpoint->took * pause_factor;
     if (!now && clock - checkpoint->written_at < (checkpoint->every > pause ? checkpoint->every : pause))
         return true;
     struct checkpoint_tiles have = {film ? film_tiles_in(film, FILM_TILE_DONE) : 0, film ? film_tiles_begun(film) : 0};
@@ -147,7 +147,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
         return true;
     const struct file_target target = target_of(checkpoint);
     bool ok = tile_file_write(&target, checkpoint->done, checkpoint->done_count, film ? picture : NULL, film, error);
-    checkpoint->written_at = progress_clock();
+    checkpoint->written_at = clock_now();
     checkpoint->took = checkpoint->written_at - clock;
     if (ok) {
         checkpoint->pending = false;

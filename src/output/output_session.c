@@ -3,28 +3,26 @@
  * usage, and then no file may have been touched. */
 #include "output/output_session.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
-#include "film/aov.h"
 #include "image/exr.h"
 #include "image/picture_file.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"
 #include "session/text.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 /* A viewer that is gone is a warning; the picture does not depend on it. */
 static void report_display(struct output_session *output, bool ok, const struct error *error) {
-    char line[sizeof error->text + 32];
     if (ok)
         return;
-    (void)snprintf(line, sizeof line, "gray: warning: %s", error->text);
-    output_report(output, LINE_WARNING, line);
+    output_say(output, LINE_WARNING, "gray: warning: %s", error->text);
 }
 
 /* False: standard error takes nothing, and the run is to end; nothing more is shown. */
@@ -263,11 +261,11 @@ static bool write_picture(struct output_session *output, const struct picture *p
 }
 
 static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     bool ok = output->interrupted ? error_set(error, ERROR_CANCELLED, "%.600s: interrupted", picture->name)
                                   : write_picture(output, picture, error);
-    picture->write_seconds = progress_clock() - begun;
-    picture->write_processor_seconds = progress_processor_clock() - worked;
+    picture->write_seconds = clock_now() - begun;
+    picture->write_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - worked;
     return ok;
 }
 
@@ -276,12 +274,10 @@ static bool write_timed(struct output_session *output, struct picture *picture, 
 static bool write_again(struct output_session *output, bool *already, struct error *error) {
     const struct picture *picture = &output->current;
     struct picture *again = &output->previous;
-    char line[NAME_LIMIT + 96];
     if (!picture->request.repeats || !again->open || (output->farm && !farm_is_first(output->farm)))
         return true;
-    (void)snprintf(line, sizeof line, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
-                   frame_number(picture), frame_number(again));
-    output_report(output, LINE_DETAIL, line);
+    output_say(output, LINE_DETAIL, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
+               frame_number(picture), frame_number(again));
     memcpy(again->name, picture->name, sizeof again->name);
     memcpy(again->tiles.name, picture->name, sizeof again->tiles.name);
     again->tiles.number = picture->tiles.number;
@@ -339,7 +335,6 @@ static bool check_own(struct output_session *output, const struct picture_reques
                       struct error *error) {
     /* With --watch, and after a crash in a farm, scripts render their pictures again. */
     bool again = request->in_window || output->options->watch || output->farm;
-    char notice[NAME_LIMIT + 128];
     if (again || !picture_files_is_own(&output->files, written))
         return true;
     if (request->frame.number > 0 && output->options->output)
@@ -347,9 +342,8 @@ static bool check_own(struct output_session *output, const struct picture_reques
                          "-o %.600s: %.600s, the only name for frame %u, is already another picture of this run; "
                          "without -o, pictures have the names of the script",
                          output->options->output, written, request->frame.number);
-    (void)snprintf(notice, sizeof notice,
-                   "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
-    output_report(output, LINE_NOTICE, notice);
+    output_say(output, LINE_NOTICE,
+               "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
     return true;
 }
 
@@ -404,11 +398,8 @@ static bool update_checkpoint(struct output_session *output, bool now, struct ch
     const uint32_t nothing = UINT32_MAX;
     tiles->done = nothing;
     if (!checkpoint_update(&output->checkpoint, picture ? &picture->tiles : NULL, picture ? &picture->film : NULL, now,
-                           tiles, &error)) {
-        char line[sizeof error.text + 64];
-        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", error.text);
-        output_report(output, LINE_WARNING, line);
-    }
+                           tiles, &error))
+        output_say(output, LINE_WARNING, "gray: warning: the checkpoint: %s", error.text);
     return tiles->done != nothing;
 }
 
@@ -420,17 +411,15 @@ static void describe_begun(uint32_t begun, char out[48]) {
 }
 
 static void report_checkpoint(struct output_session *output, struct checkpoint_tiles tiles) {
-    char line[2 * NAME_LIMIT], begun[48];
+    char begun[48];
     const struct picture *picture = kept_picture(output);
     describe_begun(tiles.begun, begun);
     if (picture)
-        (void)snprintf(line, sizeof line,
-                       "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
-                       output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
+        output_say(output, LINE_NOTICE, "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
+                   output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
     else
-        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
-                       output->checkpoint.done_count);
-    output_report(output, LINE_NOTICE, line);
+        output_say(output, LINE_NOTICE, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
+                   output->checkpoint.done_count);
 }
 
 void output_write_checkpoint(struct output_session *output) {
@@ -445,7 +434,7 @@ void output_write_checkpoint(struct output_session *output) {
 static void write_partial(struct output_session *output, struct picture *picture) {
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE), begun = film_tiles_begun(&picture->film);
     struct error error;
-    char name[NAME_LIMIT], line[NAME_LIMIT + 120], of_begun[48];
+    char name[NAME_LIMIT], of_begun[48];
     const struct file_target target = {.path = name, .rules = &output->files.beside};
     if (done + begun == 0)
         return;
@@ -460,9 +449,8 @@ static void write_partial(struct output_session *output, struct picture *picture
         return;
     }
     describe_begun(begun, of_begun);
-    (void)snprintf(line, sizeof line, "gray: notice: %s holds %u of %u tiles%s", name, done,
-                   film_tile_count(&picture->film), of_begun);
-    output_report(output, LINE_NOTICE, line);
+    output_say(output, LINE_NOTICE, "gray: notice: %s holds %u of %u tiles%s", name, done,
+               film_tile_count(&picture->film), of_begun);
 }
 
 void output_abandon(struct output_session *output) {
@@ -513,7 +501,7 @@ static void report_statistics(struct output_session *output, const struct pictur
 
 /* True: this process only helps, and the picture is written by another one. */
 static bool leave_to_first_rank(struct output_session *output) {
-    char shares[512], line[NAME_LIMIT + 600];
+    char shares[512];
     if (!output->farm)
         return false;
     farm_end(output->farm, false);
@@ -522,9 +510,8 @@ static bool leave_to_first_rank(struct output_session *output) {
         return true;
     }
     farm_shares(output->farm, shares, sizeof shares);
-    (void)snprintf(line, sizeof line, "%s%s: tiles made by each rank: %s", scene_mark(output->current.name),
-                   output->current.name, shares);
-    output_report(output, LINE_DETAIL, line);
+    output_say(output, LINE_DETAIL, "%s%s: tiles made by each rank: %s", scene_mark(output->current.name),
+               output->current.name, shares);
     return false;
 }
 
@@ -536,13 +523,11 @@ bool output_write(struct output_session *output, struct error *error) {
 
 /* Tiles of a farm come from other ranks as well, those of a checkpoint from an earlier run. */
 static void warn_of_clamped(struct output_session *output, const struct picture_report *report) {
-    char line[NAME_LIMIT + 128];
     if (!report->rays.clamped && !film_holds_largest(&output->current.film))
         return;
-    (void)snprintf(line, sizeof line,
-                   "gray: warning: %s: light beyond the largest float is clamped to it, undefined values are 0",
-                   output->current.name);
-    output_report(output, LINE_WARNING, line);
+    output_say(output, LINE_WARNING,
+               "gray: warning: %s: light beyond the largest float is clamped to it, undefined values are 0",
+               output->current.name);
 }
 
 /* The progress has pointers into the picture, so it must have ended. */
@@ -595,9 +580,9 @@ void output_show_progress(struct output_session *output) {
         if (output->current.open && count > 0)
             done = film_tiles_in(&output->current.film, FILM_TILE_DONE);
     }
-    if (display_draws(&output->display, progress_clock()))
+    if (display_draws(&output->display, clock_now()))
         progress_hide(&output->progress);
-    report_display(output, display_step(&output->display, progress_clock(), &error), &error);
+    report_display(output, display_step(&output->display, clock_now(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
 }
 
@@ -626,11 +611,24 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
     if (!shown || !begin_report(output))
         return;
     progress_hide(&output->progress);
-    if (kind == LINE_ERROR)
-        text_print_lines(stderr, text);
-    else
+    if (kind == LINE_DETAIL)
         text_print_line(stderr, text);
+    else
+        text_print_message(stderr,
+                           kind == LINE_ERROR     ? TEXT_ERROR
+                           : kind == LINE_WARNING ? TEXT_WARNING
+                                                  : TEXT_NOTICE,
+                           text);
     end_report(output);
+}
+
+void output_say(struct output_session *output, enum line_kind kind, const char *format, ...) {
+    char text[2 * NAME_LIMIT];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    output_report(output, kind, text);
 }
 
 bool output_flush_streams(struct output_session *output, struct error *error) {
@@ -677,25 +675,20 @@ bool output_assemble(struct output_session *output, struct error *error) {
 
 /* Frames of an animation that was not written remain, for --resume or gray merge. */
 static void close_animation(struct output_session *output) {
-    char line[NAME_LIMIT + 128];
     uint32_t left;
     bool kept = output->options->keep_frames && output->animation.count == 0;
     animation_destroy(&output->animation, &left);
     if (left == 0 || kept || output->options->action != ACTION_RENDER)
         return;
-    (void)snprintf(line, sizeof line, "gray: notice: %.3800s.frames holds %u frame%s", output->options->output, left,
-                   left > 1 ? "s" : "");
-    output_report(output, LINE_NOTICE, line);
+    output_say(output, LINE_NOTICE, "gray: notice: %.3800s.frames holds %u frame%s", output->options->output, left,
+               left > 1 ? "s" : "");
 }
 
 bool output_finish(struct output_session *output, bool all_well, struct error *error) {
     struct error kept;
     bool ok = output_write_held(output, error) && (!all_well || output_assemble(output, error));
-    if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept)) {
-        char line[sizeof kept.text + 64];
-        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);
-        output_report(output, LINE_WARNING, line);
-    }
+    if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept))
+        output_say(output, LINE_WARNING, "gray: warning: the checkpoint: %s", kept.text);
     close_animation(output);
     picture_files_destroy(&output->files);
     display_close(&output->display);

@@ -11,7 +11,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* Picture or part, two debug pictures, --partial, all layers. */
 enum { PARTIAL_FILE = 3, FILES_LIMIT = 4 + AOV_COUNT };

@@ -7,12 +7,13 @@
 #include "base/isa.h"
 #include "base/suggestion.h"
 #include "film/aov.h"
+#include "session/options_check.h"
+#include "session/options_table.h"
 #include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -64,6 +65,10 @@ static const struct setting *find_option(struct piece name) {
         }
     }
     return NULL;
+}
+
+const struct setting *option_named(const char *word) {
+    return find_option(without_dashes((struct piece){word, strcspn(word, "=")}));
 }
 
 /* The spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
@@ -605,7 +610,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             return unknown_option(word, name, error);
         if (!not_of_merge && !serves_merge(option))
             not_of_merge = option;
-        bool has_value = option_value(option) != NULL;
+        bool has_value = option_value(option) != NULL && option->kind != SETTING_ACTION;
         if (!has_value && text && option->kind != SETTING_FLAG)
             return value_error(option, shown_name(option), text, error);
         if (!text && option_may_lack_value(option))
@@ -617,6 +622,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        only_scripts = options->action >= ACTION_MANUAL;
         /* --denoise=auto leaves the field to the scene. */
         bool leaves = option->kind == SETTING_DENOISE && options->settings.denoise == DENOISER_AUTO;
         if (option_is_setting(option))

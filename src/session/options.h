@@ -17,9 +17,13 @@ enum options_action {
     ACTION_RENDER,
     ACTION_MERGE /* the arguments are parts of pictures */,
     ACTION_HELP,
-    ACTION_MANUAL,
     ACTION_VERSION,
-    ACTION_ANNOTATIONS
+    ACTION_ANNOTATIONS,
+    /* The words after these are no scripts but a topic, a page, a folder, a command line. */
+    ACTION_MANUAL,
+    ACTION_ROFF,
+    ACTION_INIT,
+    ACTION_COMPLETE
 };
 #define PROGRESS_MODES(X)                                                                                              \
     X(PROGRESS_AUTO, "auto")                                                                                           \
@@ -59,7 +63,7 @@ struct options {
     enum options_action action;
     struct settings settings;
     struct script_options script; /* library_folder is filled in by main */
-    const char *const *scripts;
+    const char *const *scripts;   /* or the words after ACTION_MANUAL and the like */
     int script_count;
     const char *output;              /* -o, or NULL: the names that the scripts choose */
     enum animation_format animation; /* of `output` */
@@ -100,10 +104,8 @@ struct options {
 };
 
 struct setting;
-/* All options in one row: the settings, some of which have no option, and then the others. */
-int option_count(void);
-const struct setting *option_at(int index);
-
+/* The option that a word of a command line begins with, with or without its dashes, or NULL. */
+const struct setting *option_named(const char *word);
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,
@@ -116,11 +118,6 @@ bool options_allow_picture(const struct options *options, uint64_t number, struc
 uint64_t options_picture_bytes(const struct options *options);
 /* What cpu_select_isa understands. */
 const char *options_isa_name(const struct options *options);
-/* --display: tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. False: none of these. */
-bool display_parse(const char *text, struct display_choice *out);
-/* The options with their defaults, in groups, 100 columns wide. */
-void options_print_help(FILE *stream);
-
 /* The name of picture `number` under -o: %d, %3d or %03d is the number, and so are two # or more, which are its digits;
  * %% is a percent sign. */
 bool output_name_numbered(const char *pattern);

@@ -1,4 +1,5 @@
 /* Checks options that exclude, require or imply one another. */
+#include "session/options_check.h"
 #include "session/options_internal.h"
 
 #include "image/picture_file.h"

@@ -43,14 +43,6 @@ bool implicit_examine(const struct implicit *solid, struct implicit_findings *ou
 const struct expr_program *implicit_program(const struct implicit *solid);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
-/* The same as shape_crossings and shape_nearest. A crossing is at most 1e-9 of the size of the solid from the point
- * where the sign changes. Two crossings that are closer than 1e-7 of the size may be missed together. */
-bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                        struct crossing_list *out);
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                      struct crossing *out);
-/* Whether there is a crossing in the ray's interval. Faster than implicit_nearest: it does not locate the crossing. */
-bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);

@@ -3,7 +3,14 @@
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
 #include "film/path_film.h"
+#include "viewer/viewer_draw_internal.h"
+#include "viewer/viewer_edit_internal.h"
+#include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_internal.h"
+#include "viewer/viewer_large_internal.h"
+#include "viewer/viewer_lights_internal.h"
+#include "viewer/viewer_overlay_internal.h"
+#include "viewer/viewer_player_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -462,4 +469,10 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         break;
     }
     return viewer->pass.state == PASS_WAITING ? next_command(viewer, now) : step_running(viewer);
+}
+
+uint32_t viewer_next_frame(const struct viewer *viewer) {
+    if (viewer->player.target > 0)
+        return viewer->player.target;
+    return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
 }

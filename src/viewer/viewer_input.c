@@ -1,5 +1,11 @@
 /* Keys and the mouse. */
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer_input_internal.h"
+
+#include "viewer/viewer_draw_internal.h"
+#include "viewer/viewer_edit_internal.h"
+#include "viewer/viewer_lights_internal.h"
+#include "viewer/viewer_overlay_internal.h"
+#include "viewer/viewer_player_internal.h"
 
 #include <string.h>
 

@@ -1,8 +1,11 @@
 /* The lights on the picture, their list, and the panel of the selection. */
-#include "inspect/inspect.h"
+#include "viewer/viewer_panel_internal.h"
+
+#include "light/light_edit.h"
 #include "math/elementary.h"
 #include "math/frame.h"
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer_edit_internal.h"
+#include "viewer/viewer_lights_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,10 @@
  * The number of samples controls the frame rate: the time of a frame that remains after script and building determines
  * how coarse its pass is. Frames are skipped only if the coarsest pass is too slow. Frames have numbers (in the
  * animation) and indices (among the selected frames, from 0). */
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer_player_internal.h"
+
+#include "viewer/viewer_draw_internal.h"
+#include "viewer/viewer_input_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,12 +76,6 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
 bool viewer_player_continues(const struct viewer *before, const struct picture_request *request) {
     return before->window.open && before->player.count > 0 && request->frame.number > 0 &&
            (before->player.seeking || before->keep);
-}
-
-uint32_t viewer_next_frame(const struct viewer *viewer) {
-    if (viewer->player.target > 0)
-        return viewer->player.target;
-    return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
 }
 
 /* Commands of the user. */

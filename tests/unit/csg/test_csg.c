@@ -1,6 +1,7 @@
 /* CSG against point-by-point evaluation, coincident faces, algebra, deep programs, exactness under scaling. */
 #include "base/mem.h"
 #include "csg/csg.h"
+#include "csg/csg_build.h"
 #include "mesh/mesh.h"
 #include "tests/harness.h"
 #include "tests/unit/csg_crossings.h"

@@ -1,5 +1,6 @@
 /* Solids of every closed shape against point-by-point evaluation; inverses, clips, bounds and divided unions against
  * their definitions. */
+#include "csg/csg_build.h"
 #include "csg/csg_split.h"
 #include "shape/planar.h"
 #include "tests/unit/shape_makers.h"

@@ -1,6 +1,7 @@
 /* A request to stop reaches the threads at once: the flag is in memory that another process may set, and every long
  * task polls it. The time from the flag to the return is measured at several moments; the best of several runs counts
  * because other programs use the machine. */
+#include "render/integrator.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
 

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "tests/attack.h"
 #include "viewer/viewer.h"
+#include "viewer/viewer_save.h"
 
 #include <stdio.h>
 #include <string.h>

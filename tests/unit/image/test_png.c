@@ -2,6 +2,7 @@
 #include "base/mem.h"
 #include "image/image.h"
 #include "image/levels.h"
+#include "image/png_read_internal.h"
 #include "image/png_write.h"
 #include "tests/harness.h"
 

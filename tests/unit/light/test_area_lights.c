@@ -1,6 +1,7 @@
 /* Lamps that are nearby rectangles, meshes and skies: against view factors, solid angles and integrals. */
 #include "base/random.h"
 #include "light/light.h"
+#include "light/light_edit.h"
 #include "light/light_mesh.h"
 #include "light/sky_light_internal.h"
 #include "math/sampling.h"

@@ -53,7 +53,7 @@ static void set_facets(struct bsdf *bsdf, enum lobe_kind kind, double alpha, dou
     else if (kind == LOBE_PANE)
         bsdf_facets_pane(facets, eta);
     else
-        bsdf_facets_boundary(facets, eta);
+        bsdf_facets_glass(facets, eta);
 }
 
 static void add(struct view *view, enum lobe_kind kind, struct vec3 weight, double exponent) {

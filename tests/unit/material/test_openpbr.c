@@ -1,6 +1,7 @@
 /* Layered materials: the layers by closed forms, the tables of albedos by sums over facets, and white materials in
  * uniform light, from which all of it has to come back. */
 #include "tests/harness.h"
+#include "tests/stage.h"
 #include "tests/unit/path_estimate.h"
 
 #include "material/albedo_internal.h"
@@ -479,6 +480,70 @@ TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
             estimate_record(claim, 1, min, (int)seed);
         }
     }
+}
+
+/* --- under Whitted --- */
+
+enum { BALL_SIZE = 25 };
+/* A ball of gloss alone, of glossy_samples x glossy_samples rays, seen from far away. */
+static void render_gloss(struct stage *s, const struct layers *layers, int glossy_samples) {
+    struct material *gloss = stage_glass(s, 0, 0, 1);
+    *gloss = layers->material;
+    gloss->phong.glossy_samples = glossy_samples;
+    (void)stage_sphere(s, s->root, gloss);
+    s->camera.fov = 14;
+    s->settings.samples = 1;
+    CHECK(stage_render(s, BALL_SIZE, BALL_SIZE));
+}
+
+static void gloss_init(struct layers *layers) {
+    layers_init(layers);
+    layers->material.phong.kd = vec3_all(0);
+    layers->material.phong.roughness = 0.5;
+}
+
+TEST(gloss_in_uniform_light_has_the_albedo_of_its_table_in_every_pixel) {
+    static const int samples[] = {1, 4, 7};
+    struct layers layers;
+    gloss_init(&layers);
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        s.sky.colour = vec3_all(1);
+        render_gloss(&s, &layers, samples[i]);
+        const double step = 2 * tan(7 * M_PI / 180) / BALL_SIZE;
+        for (int p = 0; p < BALL_SIZE * BALL_SIZE; p++) {
+            const double x = (p % BALL_SIZE - BALL_SIZE / 2) * step, y = (p / BALL_SIZE - BALL_SIZE / 2) * step;
+            const double b = 10 / sqrt(1 + x * x + y * y), discriminant = b * b - 99;
+            if (discriminant < 0.01)
+                continue;
+            const double cosine = sqrt(discriminant);
+            const struct bsdf bsdf = seen(&layers, cosine, true);
+            CHECK_NEAR(stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).x,
+                       bsdf_facets_reflected(&bsdf.facets[0], view_of(cosine, true)), 1e-6);
+        }
+        stage_end(&s);
+    }
+}
+
+TEST(gloss_of_few_rays_has_the_light_of_many) {
+    static const double stops[2][4] = {{-0.2, 0.1, 0.2, 0.3}, {0.2, 1, 0.8, 0.6}};
+    static const int samples[] = {32, 2, 4};
+    double mean[3] = {0, 0, 0};
+    struct layers layers;
+    gloss_init(&layers);
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
+        render_gloss(&s, &layers, samples[i]);
+        for (int p = 0; p < BALL_SIZE * BALL_SIZE; p++)
+            mean[i] += stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).x / (BALL_SIZE * BALL_SIZE);
+        stage_end(&s);
+    }
+    CHECK(mean[0] > 0.02);
+    CHECK_NEAR(mean[1], mean[0], 2e-3);
+    CHECK_NEAR(mean[2], mean[0], 1e-3);
 }
 
 /* --- inputs --- */

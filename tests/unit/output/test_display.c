@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "output/display.h"
 #include "output/terminal.h"
+#include "session/options_check.h"
 #include "tests/harness.h"
 
 #include <arpa/inet.h>

@@ -1,4 +1,5 @@
 /* The meaning of the classic language in the path tracer (docs/design/light.md): one test for each rule. */
+#include "light/light_bounds.h"
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

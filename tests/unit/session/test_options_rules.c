@@ -2,6 +2,7 @@
  * is accepted. Words at the limits of the parser; failing allocations. */
 #include "base/fault.h"
 #include "session/options_internal.h"
+#include "session/options_table.h"
 #include "tests/harness.h"
 
 #include <ctype.h>

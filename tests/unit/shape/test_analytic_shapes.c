@@ -2,6 +2,7 @@
  * boxes are tight, image coordinates move as their derivatives say, CSG agrees with point tests. The implicit functions
  * here are independent of the sources, in long double. */
 #include "csg/csg.h"
+#include "csg/csg_build.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 #include "shape/shape.h"

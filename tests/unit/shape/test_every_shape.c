@@ -1,6 +1,7 @@
 /* Claims for every kind of shape, and the makers of all kinds. A new shape needs only a maker to be tested: its
  * crossings are sorted and agree with nearest, any, box and point tests, its normals point outwards, and it has the
  * volume or the area that its maker states. */
+#include "csg/csg_build.h"
 #include "tests/unit/shape_makers.h"
 
 #include "csg/csg.h"

@@ -1,5 +1,6 @@
 /* Lathe, prism, sphere sweep, height field and blob together: crossings against point-by-point evaluation, normals
  * against finite differences, boxes, exactness under scaling, special lines, CSG, full scratch, failing allocations. */
+#include "csg/csg_build.h"
 #include "tests/unit/swept_makers.h"
 
 TEST_TIMES(swept_shapes_cross_random_lines_where_points_say_so_under_random_affine_maps, 20) {

@@ -1,6 +1,7 @@
 /* All light of a world: for emitters of every kind, samples of lights agree with samples of directions that hit them.
  */
 #include "base/random.h"
+#include "light/light_bounds.h"
 #include "light/light_mesh.h"
 #include "material/classic.h"
 #include "material/material_eval.h"
