@@ -537,7 +537,7 @@ static void try_combinations(struct gallery *gallery, const char *value) {
 static void try_values(const char *const *values, bool must_refuse, bool combinations_too, bool is_long) {
     struct gallery gallery;
     open_gallery(&gallery);
-    gallery.max = is_long ? 9 : 2;
+    gallery.max = is_long ? 9 : 1;
     gallery.is_long = is_long;
     for (; *values; values++) {
         try_everywhere(&gallery, *values, must_refuse);
