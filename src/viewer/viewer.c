@@ -3,14 +3,7 @@
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
 #include "film/path_film.h"
-#include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_internal.h"
-#include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_player_internal.h"
 
 #include <math.h>
 #include <stdio.h>

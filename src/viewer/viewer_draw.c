@@ -1,18 +1,11 @@
 /* The image is updated from the film tile by tile; the menu and the figures are drawn over it. The window is drawn at
  * most every 16 milliseconds, and the drawing over the picture only when it may have changed. */
-#include "viewer/viewer_draw_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "base/clock.h"
 #include "base/mem.h"
 #include "image/png_write.h"
 #include "session/text.h"
-#include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_input_internal.h"
-#include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_panel_internal.h"
-#include "viewer/viewer_player_internal.h"
 
 #include <math.h>
 #include <stdio.h>

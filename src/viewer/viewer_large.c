@@ -2,7 +2,7 @@
  * at the resolution of the window. This film has separate memory, which is sent to the render process with each such
  * pass. The film of the picture, and everything that is picked, saved or drawn over it, keeps the size of the picture.
  * Until a tile is finished, the window shows that part of the picture at the resolution of the picture. */
-#include "viewer/viewer_large_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
 #include "image/png_write.h"

@@ -3,10 +3,7 @@
  * The number of samples controls the frame rate: the time of a frame that remains after script and building determines
  * how coarse its pass is. Frames are skipped only if the coarsest pass is too slow. Frames have numbers (in the
  * animation) and indices (among the selected frames, from 0). */
-#include "viewer/viewer_player_internal.h"
-
-#include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_input_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include <math.h>
 #include <stdio.h>
