@@ -1,7 +1,8 @@
 -- TITLE: Macho cows
 -- A herd on a hill, in the style of the old assignments: readobj returns vertices and faces together.
--- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (detected from readobj).
+-- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (as gray detects from readobj).
 
+gr.transform_order('old')
 require('readobj')
 
 brown = gr.material({0.5, 0.32, 0.2}, {0.2, 0.2, 0.2}, 12)

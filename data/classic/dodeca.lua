@@ -1,7 +1,8 @@
 -- TITLE: Dodecahedra
 -- Pentagons given as tables of vertices and faces; each smaller one stands in the eye of a bigger one.
--- Author: gray project. Dialect: classic, OLD order (detected from the vertex tables).
+-- Author: gray project. Dialect: classic, OLD order (as gray detects from the vertex tables).
 
+gr.transform_order('old')
 local g = (1 + math.sqrt(5)) / 2
 local h = 1 / g
 local verts = {

@@ -1,7 +1,8 @@
 -- TITLE: Village
 -- Houses around a green, written for Lua 5.0: unpack, table.getn, math.mod, and tables that shadow the library's.
--- Author: gray project. Dialect: classic, OLD order (detected from a bare unpack).
+-- Author: gray project. Dialect: classic, OLD order (as gray detects from a bare unpack).
 
+gr.transform_order('old')
 table_top = nil
 local colours = { {0.8, 0.75, 0.6}, {0.75, 0.5, 0.4}, {0.6, 0.65, 0.7}, {0.85, 0.8, 0.75} }
 local walls = {}

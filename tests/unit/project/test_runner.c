@@ -90,8 +90,7 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
     CHECK(WIFSIGNALED(how) && WTERMSIG(how) == SIGHUP);
     struct test_result result = test_gray_scene("while true do end", "scene.lua --script-time 0.1", NULL);
     CHECK_EQ_INT(result.status, 1);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* An ordinary child, one in its own session, an orphan that ignores every signal that can be ignored, a stopped one,

@@ -43,8 +43,7 @@ static void render_some(struct dirent **names, int first, int count) {
         if (strstr(names[k]->d_name, ".lua") && !is_there("%s.png", name) && !is_there("%s-lenient.png", name))
             test_fail(__FILE__, __LINE__, "%s gives no picture", names[k]->d_name);
     }
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(every_scene_of_another_program_gives_a_picture_under_lenient) {
@@ -72,8 +71,7 @@ static void says(const char *scene, const char *options, int status, const char 
     if (result.status != status || !strstr(result.err, text))
         test_fail(__FILE__, __LINE__, "status %d, not %d; printed: %s; expected: %s", result.status, status, result.err,
                   text);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 #define BALL "local r = gr.node('r') r:add_child(gr.sphere('ball'))\n"
@@ -112,8 +110,7 @@ TEST(an_error_says_that_lenient_would_get_over_it_where_it_would) {
         CHECK_EQ_INT(result.status, 1);
         if ((strstr(result.err, hint) != NULL) != rows[i].is_forgivable)
             test_fail(__FILE__, __LINE__, "%s: %s", rows[i].scene, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -128,8 +125,7 @@ TEST(fractional_indices_and_a_view_of_zero_are_survived_with_one_warning_each) {
                *view = strstr(result.err, "view is zero");
     CHECK(index && !strstr(index + 1, "fractions of indices"));
     CHECK(view && !strstr(view + 1, "view is zero"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* One scene that only deviates gives the bytes of the scene that it means. */
@@ -157,8 +153,7 @@ TEST(arguments_in_another_order_mean_the_same_under_lenient) {
                 pairs[i][k]);
             struct test_result result = test_gray_scene(scene, "-q --lenient scene.lua", NULL);
             CHECK_EQ_INT(result.status, 0);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
             bytes[k] = test_read_file(in("x.png"), &sizes[k]);
         }
         if (!bytes[0] || !bytes[1] || sizes[0] != sizes[1] || memcmp(bytes[0], bytes[1], sizes[0]) != 0)
@@ -182,8 +177,7 @@ TEST(fields_of_other_names_are_taken_by_their_type_under_lenient) {
                        calls[k]);
         struct test_result result = test_gray_scene(scene, "-q --lenient scene.lua", NULL);
         CHECK_EQ_INT(result.status, 0);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         bytes[k] = test_read_file(in("x.png"), &sizes[k]);
         CHECK(bytes[k] && remove(in("x.png")) == 0);
     }
@@ -198,6 +192,5 @@ TEST(lenient_reports_frames_that_an_animation_does_not_have_once) {
     struct test_result result = test_gray_scene(scene, "--lenient --frames 7-9 --size 8x8 scene.lua", NULL);
     const char *warning = strstr(result.err, "--frames selects frame 9, but the last frame is 3");
     CHECK(warning && !strstr(warning + 1, "--frames selects"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

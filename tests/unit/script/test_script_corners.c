@@ -139,9 +139,7 @@ static const struct corner corners[] = {
 };
 
 static void put(const char *name, const char *text, size_t size) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_file(path, text, size);
+    test_write_file(test_path(name), text, size);
 }
 
 static void write_files(void) {

@@ -9,8 +9,7 @@ static void renders(const char *scene, const char *arguments) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: status %d, %s", scene, result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static bool says_studio(const char *scene) {
@@ -20,8 +19,7 @@ static bool says_studio(const char *scene) {
     const char *first = strstr(result.err, notice);
     bool says = first != NULL;
     CHECK(!says || !strstr(first + 1, notice)); /* once */
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     return says;
 }
 
@@ -253,8 +251,7 @@ TEST(a_table_after_a_positional_form_has_only_fields_that_are_no_arguments) {
         CHECK_EQ_INT(result.status, cases[i].says ? 1 : 0);
         if (cases[i].says && !strstr(result.err, cases[i].says))
             test_fail(__FILE__, __LINE__, "%s: %s", scene, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

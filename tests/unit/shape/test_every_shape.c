@@ -455,21 +455,21 @@ static void check_line_of(const struct geometry *geometry, struct test_random *r
     }
 }
 
-TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_first_crossing) {
+TEST_TIMES(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_first_crossing, 30) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(1 + kind)};
         struct failures n = {0};
-        for (int i = 0; i < 120; i++) {
+        for (int i = 0; i < 60 * times; i++) {
             struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
             CHECK(geometry.csg ? kind == SHAPE_KIND_COUNT : (int)geometry.shape.kind == kind);
-            for (int ray = 0; ray < 150; ray++)
+            for (int ray = 0; ray < 80; ray++)
                 check_line_of(&geometry, &random, &scratch, &n);
         }
         shape_makers_destroy(&makers);
-        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 1000)
+        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 300 * times)
             test_fail(__FILE__, __LINE__,
                       "%s, %ld crossings: %ld out of order, %ld nearest, %ld any, %ld beyond the box, %ld points, %ld "
                       "normals, %ld layouts",
@@ -478,19 +478,19 @@ TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_firs
     geom_scratch_destroy(&scratch);
 }
 
-TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
+TEST_TIMES(every_shape_under_a_random_map_lies_in_its_box_there, 30) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(100 + kind)};
         long outside = 0, crossings = 0;
-        for (int i = 0; i < 120; i++) {
+        for (int i = 0; i < 60 * times; i++) {
             struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
             struct transform map = make_transform(&random, 2);
             struct box box = geometry_bounds_under(&geometry, &map.forward);
             box = (struct box){vec3_sub(box.min, vec3_all(1e-8)), vec3_add(box.max, vec3_all(1e-8))};
-            for (int k = 0; k < 80; k++) {
+            for (int k = 0; k < 50; k++) {
                 struct vec3 origin = random_vec3(&random, 4);
                 struct ray ray = ray_from(origin, vec3_sub(random_vec3(&random, 0.8), origin));
                 struct crossing_list list = list_of_geometry(&geometry, &ray, &scratch);
@@ -501,7 +501,7 @@ TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
             }
         }
         shape_makers_destroy(&makers);
-        if (outside || crossings < 500)
+        if (outside || crossings < 150 * times)
             test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", kind_name(kind), outside, crossings);
     }
     geom_scratch_destroy(&scratch);
