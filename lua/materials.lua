@@ -261,6 +261,14 @@ function family.glaze(e, at)
             local line = gr.max(1 - smooth(0.01, 0.045, second - near), 0.6 * (1 - smooth(0.02, 0.06, fine_second - fine_near)))
             return mix(e.colour * (0.85 + 0.3 * clouds(1.6 * p, 4)), e.crackle, 0.9 * line)
         end
+    elseif e.blue then -- painted lines, and a wreath of strokes between them
+        out.base_color = function(q)
+            local p = at(q)
+            local y = abs(p.y + 0.02 * noise(3 * p))
+            local line = gr.max(1 - smooth(0.018, 0.03, abs(y - 0.52)), 1 - smooth(0.008, 0.018, abs(y - 0.60)))
+            local stroke = smooth(0.30, 0.36, abs(noise(5.5 * p + 2) + 0.4 * noise(11 * p))) * (1 - smooth(0.17, 0.22, abs(y - 0.24)))
+            return mix(e.colour, e.blue, gr.max(line, 0.8 * stroke))
+        end
     elseif e.specks then
         out.base_color = function(q)
             local p = at(q)
@@ -371,7 +379,7 @@ local list = {
     { 'wall paint', 'wall', colour = c '#9fb0a0' },
     { 'enamel', 'enamel', colour = c '#1f5fa8' },
     { 'chipped paint', 'chipped', colour = c '#3f8f8a', rust = c '#8a4622', metal = vec(0.35, 0.34, 0.33) },
-    { 'porcelain', 'glaze', colour = c '#f3f1ec' },
+    { 'porcelain', 'glaze', colour = c '#f1f2f0', blue = c '#1c3c8c' },
     { 'celadon', 'glaze', colour = c '#a9c4a8', crackle = c '#3c4636' },
     { 'stoneware', 'glaze', colour = c '#cfc3ad', foot = c '#7a5537', specks = c '#3a2a1e', glaze = 0.6 },
     { 'terracotta', 'clay', colour = c '#c0693f', dark = c '#9c4f2e' },
@@ -380,7 +388,7 @@ local list = {
     { 'silk', 'silk', colour = c '#8f4fa0', shine = c '#f4d8ff' },
     { 'felt', 'felt', colour = c '#4f7a3c', fuzz = c '#a9c590' },
     { 'water', 'clear', colour = c '#dff2f4', depth = 2, ior = 1.333 },
-    { 'red wine', 'clear', colour = c '#8a1226', depth = 2.4, ior = 1.345 },
+    { 'red wine', 'clear', colour = c '#6a0a1e', depth = 2.2, ior = 1.345 },
     { 'honey', 'clear', colour = c '#e8a020', depth = 2, ior = 1.49 },
     { 'milk', 'milk', colour = c '#f6f2e8' },
     { 'clear glass', 'clear', ior = 1.5 },

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "render/integrator.h"
 #include "render/render.h"
 
 #include <math.h>

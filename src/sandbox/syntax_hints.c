@@ -7,7 +7,6 @@
 #include "sandbox/lexer.h"
 #include "sandbox/sandbox.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -68,7 +68,7 @@ enum {
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
-            "N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray."         \
+            "At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies." \
     }
 #define CLASSIC                                                                                                        \
     {                                                                                                                  \
