@@ -618,10 +618,14 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
     if (!shown || !begin_report(output))
         return;
     progress_hide(&output->progress);
-    if (kind == LINE_ERROR)
-        text_print_lines(stderr, text);
-    else
+    if (kind == LINE_DETAIL)
         text_print_line(stderr, text);
+    else
+        text_print_message(stderr,
+                           kind == LINE_ERROR     ? TEXT_ERROR
+                           : kind == LINE_WARNING ? TEXT_WARNING
+                                                  : TEXT_NOTICE,
+                           text);
     end_report(output);
 }
 

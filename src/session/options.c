@@ -67,6 +67,10 @@ static const struct setting *find_option(struct piece name) {
     return NULL;
 }
 
+const struct setting *option_named(const char *word) {
+    return find_option(without_dashes((struct piece){word, strcspn(word, "=")}));
+}
+
 /* The spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
 static struct piece nearest_name(struct piece name) {
     char word[NAME_LIMIT_OF_OPTIONS], bare[NAME_LIMIT_OF_OPTIONS];
@@ -620,7 +624,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             if (!unused[action] && !serves(option, action))
                 unused[action] = option;
         }
-        bool has_value = option_value(option) != NULL;
+        bool has_value = option_value(option) != NULL && option->kind != SETTING_ACTION;
         if (!has_value && text && option->kind != SETTING_FLAG)
             return value_error(option, shown_name(option), text, error);
         if (!text && option_may_lack_value(option))
@@ -632,6 +636,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        only_scripts = options->action >= ACTION_MANUAL;
         /* --denoise=auto leaves the field to the scene. */
         bool leaves = option->kind == SETTING_DENOISE && options->settings.denoise == DENOISER_AUTO;
         if (option_is_setting(option))

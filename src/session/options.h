@@ -18,9 +18,13 @@ enum options_action {
     ACTION_MERGE /* the arguments are parts of pictures */,
     ACTION_COMPARE /* two pictures */,
     ACTION_HELP,
-    ACTION_MANUAL,
     ACTION_VERSION,
-    ACTION_ANNOTATIONS
+    ACTION_ANNOTATIONS,
+    /* The words after these are no scripts but a topic, a page, a folder, a command line. */
+    ACTION_MANUAL,
+    ACTION_ROFF,
+    ACTION_INIT,
+    ACTION_COMPLETE
 };
 #define PROGRESS_MODES(X)                                                                                              \
     X(PROGRESS_AUTO, "auto")                                                                                           \
@@ -60,7 +64,7 @@ struct options {
     enum options_action action;
     struct settings settings;
     struct script_options script; /* library_folder is filled in by main */
-    const char *const *scripts;
+    const char *const *scripts;   /* or the words after ACTION_MANUAL and the like */
     int script_count;
     const char *output;              /* -o, or NULL: the names that the scripts choose */
     enum animation_format animation; /* of `output` */
@@ -104,6 +108,9 @@ struct options {
     enum statistics_mode statistics;
 };
 
+struct setting;
+/* The option that a word of a command line begins with, with or without its dashes, or NULL. */
+const struct setting *option_named(const char *word);
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,

@@ -2,7 +2,7 @@
  * that a new kind is named here by the compiler. */
 #include "material/material_inputs.h"
 #include "material/material_mapping.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 #include "math/frame.h"
 #include "math/noise.h"
 #include "tests/harness.h"

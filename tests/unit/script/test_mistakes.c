@@ -3,6 +3,7 @@
 #include "tests/harness.h"
 
 #include "base/arena.h"
+#include "base/document.h"
 #include "script/document.h"
 #include "settings/foreign_words.h"
 
@@ -157,8 +158,10 @@ static void check_names(const char *use, const char *before, const char *manual)
 
 TEST(what_foreign_words_lead_to_exists) {
     struct arena arena = {0};
-    const char *manual = script_manual(&arena), *use;
-    CHECK(manual != NULL);
+    struct document document = {.arena = &arena};
+    script_describe_function(&document, NULL);
+    const char *manual = document.text, *use;
+    CHECK(!document.failed && manual);
     for (size_t i = 0; manual && (use = foreign_use_at(i)) != NULL; i++) {
         check_names(use, "gr.", manual);
         check_names(use, "node:", manual);

@@ -1,6 +1,6 @@
 /* From a hit to a point of an image. */
-#ifndef GRAY_MATERIAL_TEXTURE_MAPPING_H
-#define GRAY_MATERIAL_TEXTURE_MAPPING_H
+#ifndef GRAY_MATERIAL_TEXTURE_MAPPING_INTERNAL_H
+#define GRAY_MATERIAL_TEXTURE_MAPPING_INTERNAL_H
 
 #include "material/texture.h"
 #include "shape/shape.h"
