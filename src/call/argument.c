@@ -224,8 +224,7 @@ static struct vec3 read_interval(struct script_context *c, int index, const stru
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
- * Lua.
- */
+ * Lua. */
 static const char *read_text(struct script_context *c, int index, const struct argument_path *argument_path) {
     lua_State *L = c->sandbox.lua;
     char words[128];
@@ -827,8 +826,7 @@ void argument_read_nodes(struct script_context *c, int index, const struct scrip
 }
 
 /* The argument types that a value can have, judged by its Lua type alone: bits. Strings that are numbers are both, a
- * ghost is any handle.
- */
+ * ghost is any handle. */
 enum {
     LIKE_NUMBER = 1 << HANDLE_TYPES,
     LIKE_BOOLEAN = LIKE_NUMBER << 1,

@@ -4,8 +4,8 @@
 
 #include "call/context.h"
 
-/* The value at an absolute stack index, unless it is nil. May raise. False: it is a ghost, so the call has no effect.
- */
+/* The value at an absolute stack index, unless it is nil. May raise. False: it is a ghost, so the call has no
+ * effect. */
 bool argument_read(struct script_context *context, int index, const struct script_parameter *parameter,
                    struct script_value *value);
 /* Text at that index; it remains in Lua. May raise. */

@@ -181,8 +181,8 @@ const struct script_parameter *function_rest(const struct script_function *funct
 /* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead. Only
  * methods whose arguments are all optional, and node:render, have fields. */
 bool function_takes_names(const struct script_function *function);
-/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of fields.
- */
+/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of
+ * fields. */
 bool function_renders(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);

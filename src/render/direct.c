@@ -49,8 +49,7 @@ static struct sample_set samples_on_light(const struct integrator_state *state, 
     return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
-/* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front.
- */
+/* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front. */
 static struct occluder_candidates
 light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {
     struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
@@ -103,8 +102,7 @@ struct shadow_targets {
     bool distant;
 };
 
-/* The visible targets. Lights on all sides have no shaft: rays are traced one by one.
- */
+/* The visible targets. Lights on all sides have no shaft: rays are traced one by one. */
 static void ask_targets(struct integrator_state *state, const struct light_context *context, const struct hit *hit,
                         const struct shadow_targets *targets, bool *visible) {
     uint32_t count = targets->count;
@@ -132,8 +130,7 @@ static uint32_t without_highlight(const struct bsdf *bsdf) {
 }
 
 /* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot carry light are
- * not traced.
- */
+ * not traced. */
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;

@@ -1,5 +1,5 @@
 /* The trace of a pixel: the computation of its colour, recorded by an observer (render/observer.h) of the integrator.
- * Nothing is computed a second time: a number in a trace is the number that went into the picture. * Everything is in
+ * Nothing is computed a second time: a number in a trace is the number that went into the picture. Everything is in
  * the arena of the trace. It has pointers into the world and must not outlive it. */
 #ifndef GRAY_RENDER_PIXEL_TRACE_H
 #define GRAY_RENDER_PIXEL_TRACE_H
@@ -90,8 +90,8 @@ struct pixel_trace {
     struct observer observer; /* of the integrator that makes the pixel */
     struct arena arena;
     uint32_t x, y; /* the pixel of the whole picture */
-    /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where known.
-     */
+    /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where
+     * known. */
     struct vec3 first[3][3];
     bool known[3][3];
     bool full;   /* every pixel is sampled again */
