@@ -306,6 +306,7 @@ static void print_paths(struct text_state *t) {
                     settings->noise > 0        ? " (--spp; --noise may need fewer)"
                     : settings->time_limit > 0 ? " (--spp, without --time-limit)"
                                                : "");
+    /* The next one after the last that was printed: no list is sorted. */
     const struct pixel_trace_sample *last = NULL;
     for (int i = 0; i < BRIGHTEST; i++) {
         const struct pixel_trace_sample *next = NULL;

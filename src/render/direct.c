@@ -70,18 +70,21 @@ static double visible_share(struct integrator_state *state, const struct light *
     struct vec3 from = off_surface(hit);
     if (!light_context_make(light, hit->point, from, &context))
         return 0;
+    /* From here the lamp looks like a point. */
     if (context.single)
         return target_is_free(state, hit, from, middle);
     struct sample_set positions = samples_on_light(state, light, &context, number, key);
     uint32_t all = positions.side * positions.side, seen = 0, have = 0;
     struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit);
     state->shadow_rays += all;
+    /* Nothing lies between the point and the whole lamp. */
     if (occluder_candidates.known && occluder_candidates.count == 0) {
         observe_shadow_rays(state->observer, all, all, OBSERVER_NO_BLOCKER);
         return 1;
     }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
+        /* Shadow rays go in batches, which share the search for occluders. */
         targets[have++] = light_target_at(light, &context, sample_set_point(&positions, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
@@ -146,6 +149,7 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&positions, cell));
         struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
+        /* A sample whose light the surface does not reflect needs no shadow ray. */
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
@@ -190,6 +194,7 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
     uint64_t reached = 0;
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
+        /* The light has a list of what it lights. */
         if (light->lit && !light->lit[hit->primitive]) {
             observe_light_skipped(state->observer, i, light);
             continue;
@@ -201,6 +206,7 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         reached |= (uint64_t)(own.x != 0 || own.y != 0 || own.z != 0) << i % 64;
         observe_light_end(state->observer, i, light, own);
     }
+    /* Anti-aliasing compares which lights reach the first hits of neighbouring pixels. */
     if (state->camera_hit) {
         state->camera_hit->lights = reached;
         state->camera_hit = NULL;

@@ -179,6 +179,7 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
                                          &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown,
                                                                 passed_of(path)},
                                          end));
+    /* Fog is only between the eye and what it sees; media weaken all rays. */
     const struct fog *fog = path->sight ? state->job->fog : NULL;
     if (!seen && !fog && path->media.count == 0)
         return true;
@@ -308,10 +309,12 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     if (!bsdf_sample(bsdf, vertex->lobes, BSDF_RADIANCE, hit->view, u, &sample))
         return end_path(path, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    /* A shading normal may reflect into the surface. */
     if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return end_path(path, PATH_IS_ABSORBED);
     if (tracer->photon_lights)
         count_shares(path, vertex, &sample);
+    /* The first scattering decides to which layers the light belongs. */
     if (path->parts && path->depth == 0) {
         if (delta)
             path_share_all(sample.flags, path->parts->shares);
@@ -322,11 +325,13 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->depth++;
     if (transmits)
         path->radiance_scale *= bsdf->eta * bsdf->eta;
+    /* Roulette, or a weight of 0, ends paths that bring nothing. */
     bool plays = path->depth > tracer->roulette_depth;
     if (plays ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
         return end_path(path, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
+    /* The last ray of a path finds only lights that rays can meet. */
     if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
         return end_path(path, PATH_REACHES_MAX_DEPTH);
     path->scatter = vertex->receiver;
@@ -486,6 +491,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
     for (;;) {
         if (state->observer)
             observe_next(&observed, state, path, met ? hit : NULL);
+        /* The way to the hit, then the surface or the sky there. */
         bool goes_on = travel(tracer, state, path, met ? hit : NULL);
         if (goes_on && met) {
             note_arrival(path, 0);
@@ -502,6 +508,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
+    /* Limits come last: what is cut off is a property of the whole sample. */
     struct vec3 found = integrator_clamp_light(state, path->light, (double)FLT_MAX);
     struct vec3 light = limited(found, tracer->clamp);
     if (path->parts)

@@ -99,26 +99,27 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     const struct ray *ray = seen->ray;
     if (!pixel_trace->on)
         return;
-    struct pixel_trace_ray *is_recorded = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
-    if (!is_recorded) {
+    struct pixel_trace_ray *recorded = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
+    /* Without room, or below a ray without room, rays are only counted. */
+    if (!recorded) {
         pixel_trace->omitted += pixel_trace->mute > 0;
         pixel_trace->mute++;
         return;
     }
-    is_recorded->begun = true;
-    is_recorded->origin = ray->origin;
-    is_recorded->direction = ray->direction;
-    is_recorded->time = ray->time;
-    is_recorded->share = seen->share;
-    is_recorded->media_count = ray->media ? ray->media->count : 0;
-    is_recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
-    is_recorded->area_light = seen->light;
-    is_recorded->met = seen->hit && !seen->light;
-    if (is_recorded->met)
-        is_recorded->hit = *seen->hit;
-    is_recorded->distance = seen->distance;
-    is_recorded->opacity = 1;
-    pixel_trace->ray = is_recorded;
+    recorded->begun = true;
+    recorded->origin = ray->origin;
+    recorded->direction = ray->direction;
+    recorded->time = ray->time;
+    recorded->share = seen->share;
+    recorded->media_count = ray->media ? ray->media->count : 0;
+    recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
+    recorded->area_light = seen->light;
+    recorded->met = seen->hit && !seen->light;
+    if (recorded->met)
+        recorded->hit = *seen->hit;
+    recorded->distance = seen->distance;
+    recorded->opacity = 1;
+    pixel_trace->ray = recorded;
 }
 
 static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *end) {
