@@ -36,7 +36,7 @@ static const char *argument_path_text(const struct argument_path *argument_path,
 /* How a value of a kind is made, by the Lua type that is given in its place: the first row that fits. */
 enum { ANY_TYPE = -2, LIST_OF_NODES = 50, HANDLE = 100 };
 static const struct {
-    enum kind kind;
+    enum argument_kind kind;
     int given; /* a type of Lua, LIST_OF_NODES or ANY_TYPE; of handles HANDLE + their type */
     const char *words;
 } made[] = {
@@ -845,7 +845,7 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
-bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
+bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsigned flags) {
     static const int wanted[KIND_COUNT] = {
         [KIND_NUMBER] = LIKE_NUMBER,
         [KIND_WHOLE] = LIKE_NUMBER,

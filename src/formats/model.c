@@ -386,7 +386,7 @@ static bool model_finish(struct model *model, struct error *error) {
 
 /* --- which kind of file --- */
 
-enum kind { KIND_OBJ, KIND_PLY, KIND_STL_TEXT, KIND_STL_BINARY, KIND_GLTF };
+enum model_kind { MODEL_OBJ, MODEL_PLY, MODEL_STL_TEXT, MODEL_STL_BINARY, MODEL_GLTF };
 
 static bool holds(const uint8_t *data, size_t size, const char *word) {
     size_t length = strlen(word);
@@ -396,32 +396,32 @@ static bool holds(const uint8_t *data, size_t size, const char *word) {
     return false;
 }
 
-static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
+static enum model_kind kind_of(const char *path, const uint8_t *data, size_t size) {
     size_t length, at = 0;
     const char *extension = extension_of(path, &length);
     if (size >= 4 && memcmp(data, "glTF", 4) == 0)
-        return KIND_GLTF;
+        return MODEL_GLTF;
     if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
-        return KIND_PLY;
+        return MODEL_PLY;
     uint64_t claimed =
         size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 | (uint64_t)data[83] << 24
                    : 0;
     if (claimed > 0 && 84 + 50 * claimed == size)
-        return KIND_STL_BINARY;
+        return MODEL_STL_BINARY;
     while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
         at++;
     bool solid = size - at >= 6 && strncasecmp((const char *)data + at, "solid", 5) == 0 && data[at + 5] <= ' ';
     size_t head = size - at < 4096 ? size - at : 4096;
     if (is_word(extension, length, "stl"))
-        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? KIND_STL_TEXT
-                                                                                                : KIND_STL_BINARY;
+        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT
+                                                                                                : MODEL_STL_BINARY;
     if (solid && holds(data + at, head, "facet normal"))
-        return KIND_STL_TEXT;
+        return MODEL_STL_TEXT;
     if (is_word(extension, length, "ply"))
-        return KIND_PLY;
+        return MODEL_PLY;
     if (is_word(extension, length, "gltf") || is_word(extension, length, "glb") || (at < size && data[at] == '{'))
-        return KIND_GLTF;
-    return KIND_OBJ;
+        return MODEL_GLTF;
+    return MODEL_OBJ;
 }
 
 /* What a failed download leaves in place of a model. */
@@ -441,15 +441,15 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
     if (page)
         return error_set(error, ERROR_SCENE, "%s: %s", model->path, page);
     switch (kind_of(model->path, data, size)) {
-    case KIND_OBJ:
+    case MODEL_OBJ:
         return obj_load(model, (const char *)data, size, error);
-    case KIND_PLY:
+    case MODEL_PLY:
         return ply_load(model, data, size, error);
-    case KIND_STL_TEXT:
+    case MODEL_STL_TEXT:
         return stl_load(model, data, size, false, error);
-    case KIND_STL_BINARY:
+    case MODEL_STL_BINARY:
         return stl_load(model, data, size, true, error);
-    case KIND_GLTF:
+    case MODEL_GLTF:
         return gltf_load(model, data, size, error);
     }
     UNREACHABLE("a file of no kind");
