@@ -77,6 +77,7 @@ static bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t *
     stream.next_in = (z_const Bytef *)(uintptr_t)data;
     size_t limit = START + size * GROWTH, at = 0;
     bool ok = true, more = true;
+    /* A gzip file may consist of several members, one behind the other. */
     while (ok && more) {
         ok = member(&stream, path, (struct file_bytes){data, size}, &bytes, limit, error);
         at = consumed(&stream, data);
@@ -85,6 +86,7 @@ static bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t *
             (void)inflateReset(&stream);
     }
     (void)inflateEnd(&stream);
+    /* Tapes and some programs pad with zeros. */
     for (size_t i = at; ok && i < size; i++)
         if (data[i] != 0)
             ok = error_set(error, ERROR_SCENE, "%s: byte %zu: other bytes follow the gzip data", path, i);
@@ -228,6 +230,7 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
         .face_start = m->starts.items,
         .vertex_index = m->vertex_index.items,
     };
+    /* Normals and uv have indices of their own, or those of the vertices. */
     if (m->normals.count && (m->normals_by_vertex || m->normal_index.count)) {
         input.normal_count = (uint32_t)m->normals.count;
         input.normals = m->normals.items;
@@ -375,6 +378,7 @@ static bool model_finish(struct model *model, struct error *error) {
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!finish_mesh(model, &model_meshes(model)[i], error))
             return false;
+    /* A file without nodes has its one mesh. */
     if (model->nodes.count == 0) {
         struct model_node *node = model_add_node(model, error);
         if (!node)
@@ -403,6 +407,7 @@ static enum model_kind kind_of(const char *path, const uint8_t *data, size_t siz
         return MODEL_GLTF;
     if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
         return MODEL_PLY;
+    /* A binary STL file says how long it is; no other file does by accident. */
     uint64_t claimed =
         size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 | (uint64_t)data[83] << 24
                    : 0;
@@ -411,6 +416,7 @@ static enum model_kind kind_of(const char *path, const uint8_t *data, size_t siz
     while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
         at++;
     bool solid = size - at >= 6 && strncasecmp((const char *)data + at, "solid", 5) == 0 && data[at + 5] <= ' ';
+    /* Binary STL files may begin with "solid", too: what follows decides. */
     size_t head = size - at < 4096 ? size - at : 4096;
     if (is_word(extension, length, "stl"))
         return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT
