@@ -322,10 +322,10 @@ static void print_paths(struct text_state *t) {
 
 /* Why the pixel has N x N samples. */
 static void print_mark(struct text_writer *writer, const struct pixel_trace *pixel_trace) {
-    const char *neighbour = direction(pixel_trace->mark_x, pixel_trace->mark_y);
-    double distance = pixel_trace->mark_distance, tolerance = pixel_trace->mark_tolerance;
+    const char *neighbour = direction(pixel_trace->mark.x, pixel_trace->mark.y);
+    double distance = pixel_trace->mark.distance, tolerance = pixel_trace->mark.tolerance;
     text_writer_print(writer, "%d x %d samples: ", pixel_trace->samples, pixel_trace->samples);
-    switch (pixel_trace->mark_reason) {
+    switch (pixel_trace->mark.reason) {
     case MARK_COLOUR:
         text_writer_print(writer, "the first one differs from the %s neighbour's by %.6g > %g\n", neighbour, distance,
                           tolerance);

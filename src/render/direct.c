@@ -30,7 +30,8 @@ static bool is_free(struct integrator_state *state, const struct hit *hit, struc
     state->shadow_rays++;
     bool free = !world_any(state->job->world, &shadow, state->scratch);
     uint32_t blocker = world_blocker(state->scratch);
-    observe_shadow_rays(state->observer, 1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker);
+    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS,
+            .shadow = {1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker});
     return free;
 }
 
@@ -79,7 +80,7 @@ static double visible_share(struct integrator_state *state, const struct light *
     state->shadow_rays += all;
     /* Nothing lies between the point and the whole lamp. */
     if (occluder_candidates.known && occluder_candidates.count == 0) {
-        observe_shadow_rays(state->observer, all, all, OBSERVER_NO_BLOCKER);
+        OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {all, all, OBSERVER_NO_BLOCKER});
         return 1;
     }
     struct vec3 targets[AREA_BATCH];
@@ -94,7 +95,7 @@ static double visible_share(struct integrator_state *state, const struct light *
         if (integrator_cancelled(state))
             return 0;
     }
-    observe_shadow_rays(state->observer, all, seen, OBSERVER_NO_BLOCKER);
+    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {all, seen, OBSERVER_NO_BLOCKER});
     return (double)seen / (double)all;
 }
 
@@ -116,7 +117,7 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
             world_visible(world, &occluder_candidates,
                           &(struct shadow_rays){context->from, hit->time, targets->at, count}, state->scratch, visible);
         state->shadow_rays += count;
-        observe_shadow_rays(state->observer, count, seen, OBSERVER_NO_BLOCKER);
+        OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {count, seen, OBSERVER_NO_BLOCKER});
         return;
     }
     for (uint32_t i = 0; i < count; i++) {
@@ -174,7 +175,8 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
         return vec3_all(0);
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
     struct vec3 reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
-    observe_light_sample(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
+    OBSERVE(state->observer, OBSERVED_LIGHT_SAMPLE,
+            .position = {arrival.distance, arrival.strength, arrival.direction, reflected});
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);
@@ -196,15 +198,15 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         const struct light *light = &world->lights[i];
         /* The light has a list of what it lights. */
         if (light->lit && !light->lit[hit->primitive]) {
-            observe_light_skipped(state->observer, i, light);
+            OBSERVE(state->observer, OBSERVED_LIGHT_SKIPPED, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
             continue;
         }
         state->scratch->light = i % WORLD_SHADOW_CACHE;
-        observe_light_begin(state->observer, i, light);
+        OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
         struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);
         reached |= (uint64_t)(own.x != 0 || own.y != 0 || own.z != 0) << i % 64;
-        observe_light_end(state->observer, i, light, own);
+        OBSERVE(state->observer, OBSERVED_LIGHT_END, .light = {i, light, OBSERVER_NO_BLOCKER, own});
     }
     /* Anti-aliasing compares which lights reach the first hits of neighbouring pixels. */
     if (state->camera_hit) {
@@ -217,8 +219,7 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         photons = photon_map_light(state->caustics, world, hit, bsdf);
         sum = vec3_add(sum, photons);
     }
-    observe_direct(state->observer,
-                   &(struct observed_direct){state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons,
-                                             sum, asked});
+    OBSERVE(state->observer, OBSERVED_DIRECT,
+            .direct = {state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons, sum, asked});
     return sum;
 }

@@ -138,10 +138,9 @@ static size_t pixel_index(const struct film *film, int64_t x, int64_t y) {
 static void finish_pixel(struct film *film, const struct worker *worker, int64_t x, int64_t y,
                          const struct path_pixel *pixel) {
     path_film_store(film, pixel_index(film, x, y), pixel);
-    observe_pixel(worker->state.observer,
-                  &(struct observed_pixel){.colour = path_pixel_below_line(pixel, path_pixel_mean(pixel)),
-                                           .full = true,
-                                           .first_counts = true});
+    OBSERVE(
+        worker->state.observer, OBSERVED_PIXEL,
+        .pixel = {.colour = path_pixel_below_line(pixel, path_pixel_mean(pixel)), .full = true, .first_counts = true});
 }
 
 /* The sums of the pixel before a pass: those of the film, or zero in the first pass. lines: of the part, or NULL. */

@@ -367,7 +367,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         path->kind = RAY_HOLE;
         return path->holes++ < HOLE_LIMIT || end_path(path, PATH_IN_TOO_MANY_HOLES);
     }
-    observe_surface(state->observer, &bsdf);
+    OBSERVE(state->observer, OBSERVED_SURFACE, .surface = &bsdf);
     if (path->parts && path->sight)
         meet_features(path, hit, &bsdf);
     if (path->sight)
@@ -440,14 +440,16 @@ static void observe_next(struct observed_path *observed, const struct integrator
         return;
     double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
     if (observed->count > 0)
-        observe_ray_sent(state->observer, path->kind,
-                         quotient(path->weight, observed->rays[observed->count - 1].stages.weight), RAY_FOLLOWED);
+        OBSERVE(state->observer, OBSERVED_RAY_SENT,
+                .sent = {path->kind, quotient(path->weight, observed->rays[observed->count - 1].stages.weight),
+                         RAY_FOLLOWED});
     struct observed_ray *ray = &observed->rays[observed->count++];
     *ray = (struct observed_ray){path->weight, path->light, {.weight = path->weight}};
     path->stages = &ray->stages;
     note_arrival(path, 0);
     const struct ray sent = path->ray;
-    observe_ray_begin(state->observer, &sent, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1));
+    OBSERVE(state->observer, OBSERVED_RAY_BEGIN,
+            .begin = {&sent, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1)});
 }
 
 /* The end of the current ray: what its hit adds to the path. */
@@ -459,13 +461,13 @@ static void observe_hit(const struct observed_path *observed, const struct path_
     struct vec3 gains[STAGES];
     for (int i = STAGE_EMISSION; i < STAGES; i++)
         gains[i] = quotient(vec3_sub(stages->lights[i], stages->lights[i - 1]), stages->weight);
-    observe_vertex(state->observer,
-                   &(struct observed_vertex){.end = path->end,
-                                             .distance = stages->distance,
-                                             .emission = gains[STAGE_EMISSION],
-                                             .photons = gains[STAGE_PHOTONS],
-                                             .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
-                                             .has_photons = tracer->photon_lights != NULL});
+    OBSERVE(state->observer, OBSERVED_VERTEX,
+            .vertex = {.end = path->end,
+                       .distance = stages->distance,
+                       .emission = gains[STAGE_EMISSION],
+                       .photons = gains[STAGE_PHOTONS],
+                       .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
+                       .has_photons = tracer->photon_lights != NULL});
 }
 
 static void observe_end(const struct observed_path *observed, const struct integrator_state *state,
@@ -473,12 +475,12 @@ static void observe_end(const struct observed_path *observed, const struct integ
     for (int i = observed->count - 1; i >= 0; i--) {
         const struct observed_ray *ray = &observed->rays[i];
         struct vec3 before = ray->stages.lights[STAGE_BEFORE_HIT];
-        observe_ray_end(state->observer,
-                        &(struct observed_end){.evaluated = true,
-                                               .seen = quotient(vec3_sub(path->light, before), ray->stages.weight),
-                                               .left = quotient(ray->stages.weight, ray->weight),
-                                               .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
-                                               .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
+        OBSERVE(state->observer, OBSERVED_RAY_END,
+                .end = {.evaluated = true,
+                        .seen = quotient(vec3_sub(path->light, before), ray->stages.weight),
+                        .left = quotient(ray->stages.weight, ray->weight),
+                        .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
+                        .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
     }
 }
 

@@ -163,20 +163,20 @@ static void record_surface(struct pixel_trace *pixel_trace, const struct bsdf *s
 static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light,
                         uint32_t primitive) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
-    struct pixel_trace_light *is_recorded = ray ? take(pixel_trace, sizeof *is_recorded) : NULL;
-    pixel_trace->light = is_recorded;
-    if (!is_recorded)
+    struct pixel_trace_light *recorded = ray ? take(pixel_trace, sizeof *recorded) : NULL;
+    pixel_trace->light = recorded;
+    if (!recorded)
         return;
-    *is_recorded = (struct pixel_trace_light){.number = number,
-                                              .light = light,
-                                              .primitive = primitive,
-                                              .area_light = !light_is_delta(light),
-                                              .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
+    *recorded = (struct pixel_trace_light){.number = number,
+                                           .light = light,
+                                           .primitive = primitive,
+                                           .area_light = !light_is_delta(light),
+                                           .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
-        ray->last_light->next = is_recorded;
+        ray->last_light->next = recorded;
     else
-        ray->lights = is_recorded;
-    ray->last_light = is_recorded;
+        ray->lights = recorded;
+    ray->last_light = recorded;
 }
 
 static void record_light_position(struct pixel_trace *pixel_trace, const struct observed_light_sample *position) {
@@ -211,9 +211,9 @@ static void end_light(struct pixel_trace *pixel_trace, struct vec3 colour) {
 
 static void skip_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
     begin_light(pixel_trace, number, light, OBSERVER_NO_BLOCKER);
-    struct pixel_trace_light *is_recorded = light_of(pixel_trace);
-    if (is_recorded)
-        is_recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
+    struct pixel_trace_light *recorded = light_of(pixel_trace);
+    if (recorded)
+        recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
     pixel_trace->light = NULL;
 }
 
@@ -237,14 +237,6 @@ static void record_vertex(struct pixel_trace *pixel_trace, const struct observed
     ray->has_photons = vertex->has_photons;
     ray->photons = vertex->photons;
     ray->direct = vertex->direct;
-}
-
-static void record_mark(struct pixel_trace *pixel_trace, const struct observed_mark *mark) {
-    pixel_trace->mark_reason = mark->reason;
-    pixel_trace->mark_x = mark->x;
-    pixel_trace->mark_y = mark->y;
-    pixel_trace->mark_distance = mark->distance;
-    pixel_trace->mark_tolerance = mark->tolerance;
 }
 
 static void record_pixel(struct pixel_trace *pixel_trace, const struct observed_pixel *pixel) {
@@ -310,7 +302,7 @@ static void notice(void *context, const struct observation *what) {
         record_pixel(pixel_trace, &what->pixel);
         break;
     case OBSERVED_MARK:
-        record_mark(pixel_trace, &what->mark);
+        pixel_trace->mark = what->mark;
         break;
     }
 }

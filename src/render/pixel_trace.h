@@ -94,13 +94,10 @@ struct pixel_trace {
      * known. */
     struct vec3 first[3][3];
     bool known[3][3];
-    bool full;   /* every pixel is sampled again */
-    bool marked; /* this one was */
-    /* By the neighbour at mark_x, mark_y from it (-1..1; both 0: by none): a squared distance above the tolerance. */
-    enum mark_reason mark_reason;
-    int mark_x, mark_y;
-    double mark_distance, mark_tolerance;
-    int samples; /* N of N x N */
+    bool full;                 /* every pixel is sampled again */
+    bool marked;               /* this one was */
+    struct observed_mark mark; /* why */
+    int samples;               /* N of N x N */
     struct pixel_trace_sample *sample, *last_sample;
     float rgb[3]; /* in the film */
     uint32_t rays, omitted;

@@ -132,9 +132,9 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
 }
 
 struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
-    observe_sample_begin(worker->state.observer, position);
+    OBSERVE(worker->state.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = position);
     struct vec3 colour = sample_single(renderer, worker, position);
-    observe_sample_end(worker->state.observer, position, colour);
+    OBSERVE(worker->state.observer, OBSERVED_SAMPLE_END, .sample = {position, colour});
     return colour;
 }
 
