@@ -847,44 +847,10 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
+#define KIND_LIKE(kind, name, words, like) [kind] = (like),
+
 bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
-    static const int wanted[KIND_COUNT] = {
-        [KIND_NUMBER] = LIKE_NUMBER,
-        [KIND_WHOLE] = LIKE_NUMBER,
-        [KIND_BOOLEAN] = LIKE_BOOLEAN,
-        [KIND_TEXT] = LIKE_TEXT,
-        [KIND_FILE] = LIKE_TEXT,
-        [KIND_OUTPUT] = LIKE_TEXT,
-        [KIND_CHOICE] = LIKE_TEXT,
-        [KIND_AXIS] = LIKE_TEXT,
-        [KIND_POINT] = LIKE_TABLE,
-        [KIND_DIRECTION] = LIKE_TABLE,
-        [KIND_COLOUR] = LIKE_TABLE | LIKE_TEXT,
-        [KIND_TRIPLE] = LIKE_TABLE,
-        [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_INTERVAL] = LIKE_TABLE,
-        [KIND_QUATERNION] = LIKE_TABLE,
-        [KIND_PAIR] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODE] = 1 << HANDLE_NODE,
-        [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
-        [KIND_MATERIALS] = LIKE_TABLE,
-        [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
-        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY,
-        [KIND_FOG] = 1 << HANDLE_FOG,
-        [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODES] = LIKE_TABLE,
-        [KIND_LIGHTS] = LIKE_TABLE,
-        [KIND_POINTS] = LIKE_TABLE,
-        [KIND_PAIRS] = LIKE_TABLE,
-        [KIND_STOPS] = LIKE_TABLE,
-        [KIND_FACES] = LIKE_TABLE,
-        [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_ROWS] = LIKE_TABLE,
-        [KIND_CURVES] = LIKE_TABLE,
-        [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
-        [KIND_CALLBACK] = LIKE_FUNCTION,
-    };
-    assert(wanted[kind]); /* every kind has a case */
+    static const int wanted[] = {KIND_LIST(KIND_LIKE)};
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
                    (flags & OR_CURVE ? LIKE_FUNCTION : 0);

@@ -27,9 +27,9 @@ struct script_context *context_of(lua_State *L);
 void context_begin_call(struct script_context *context, const struct script_function *function);
 
 /* The functions of gr, even if the script has replaced them, with --lenient: keeps the table on top, which is popped;
- * pushes one of them. */
+ * pushes it. */
 void context_keep_functions(lua_State *L);
-void context_push_function(lua_State *L, const char *name);
+void context_push_functions(lua_State *L);
 
 /* Whether a value is the table gr, as the first argument of gr:sphere(...) is. */
 bool context_is_gr(lua_State *L, int index);
