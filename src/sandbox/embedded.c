@@ -8,7 +8,9 @@
 static const char globals = 0; /* its globals are in the registry under this address */
 
 static int raise_text(lua_State *L) {
-    sandbox_raise(sandbox_enter(L), "%s", lua_tostring(L, 1));
+    char where[PATH_SIZE + 128];
+    sandbox_where(sandbox_enter(L), where, sizeof where);
+    return luaL_error(L, "%s%s", where, lua_tostring(L, 1));
 }
 
 static int words_of_value(lua_State *L) {
@@ -31,7 +33,7 @@ static void copy_library(lua_State *L, const char *library) {
 }
 
 void embedded_open(lua_State *L) {
-    static const char *const libraries[] = {"math", "string", "table"};
+    static const char *const libraries[] = {"debug", "math", "string", "table"};
     static const luaL_Reg helpers[] = {{"raise", raise_text}, {"words", words_of_value}, {NULL, NULL}};
     lua_newtable(L);
     copy_library(L, LUA_GNAME);

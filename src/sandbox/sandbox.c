@@ -4,7 +4,6 @@
 #include "sandbox/sandbox.h"
 
 #include "base/hash.h"
-#include "sandbox/embedded.h"
 #include "sandbox/libraries_internal.h"
 #include "sandbox/protect.h"
 #include "sandbox/streams_internal.h"
@@ -35,7 +34,6 @@ bool sandbox_begin(struct sandbox *sandbox, struct error *error) {
 
 void sandbox_open(lua_State *L) {
     libraries_open(L);
-    embedded_open(L);
     protect_open(L);
     files_open(L);
     streams_open(L);
