@@ -79,3 +79,11 @@ void embedded_run(lua_State *L, const char *const lines[], const luaL_Reg *helpe
     lua_replace(L, top + 1);
     lua_settop(L, top + 1);
 }
+
+int embedded_end(lua_State *L, int level) {
+    lua_Debug frame;
+    int end = level;
+    for (; lua_getstack(L, level, &frame) && lua_getinfo(L, "Sl", &frame) && frame.currentline <= 0; level++)
+        end = strcmp(frame.source, "=?") == 0 ? level + 1 : end;
+    return end;
+}

@@ -12,5 +12,7 @@ void embedded_open(lua_State *L);
 /* Runs the lines, which end with NULL, and pushes their result. Their globals are also the helpers, raise(text), which
  * raises an error with the line of the scene, and words(value). May raise without memory. */
 void embedded_run(lua_State *L, const char *const lines[], const luaL_Reg *helpers);
+/* The level of the stack behind such functions and what they call, for tracebacks; `level` if there are none. */
+int embedded_end(lua_State *L, int level);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/suggestion.h"
-#include "sandbox/other_files_internal.h"
+#include "sandbox/hints.h"
 #include "sandbox/sandbox.h"
 
 #include <assert.h>
@@ -219,7 +219,7 @@ static const char *stem_of(struct sandbox *sandbox, const char *path) {
 
 const char *files_hint_of_missing_scene(struct sandbox *sandbox) {
     const char *path = sandbox->files.path, *slash = strrchr(path, '/'), *found, *stem = stem_of(sandbox, path);
-    const char *hint = other_command_words(slash ? slash + 1 : path);
+    const char *hint = hint_of_command(sandbox, slash ? slash + 1 : path);
     const char *with_ending = arena_format(&sandbox->call, "%s.lua", path);
     struct file_identity identity;
     struct suggestion suggestion;
@@ -279,7 +279,7 @@ int files_load(lua_State *L, const char *path) {
     }
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options->no_sandbox ? "bt" : "t");
     const char *other = status == LUA_ERRSYNTAX && strcmp(path, sandbox->files.path) == 0
-                            ? other_file_words(path, bytes.data, bytes.size)
+                            ? hint_of_file(sandbox, path, bytes.data, bytes.size)
                             : NULL;
     file_unmap(&bytes);
     if (other) {

@@ -23,5 +23,10 @@ bool hint_has_colon(struct sandbox *sandbox, const char *method);
 /* A hint for a syntax error, for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is
  * called while an error is handled. */
 const char *hint_of_lua_error(lua_State *L, const char *message);
+/* What a file is that Lua cannot compile, and what to do with it: "is a picture; ..."; NULL: it may be a script with an
+ * error. */
+const char *hint_of_file(struct sandbox *sandbox, const char *path, const void *data, size_t size);
+/* What to type instead of the name of a scene that is not there, as in `gray help`, or NULL. */
+const char *hint_of_command(struct sandbox *sandbox, const char *name);
 
 #endif

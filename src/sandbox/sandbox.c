@@ -41,6 +41,8 @@ void sandbox_open(lua_State *L) {
 
 uint64_t sandbox_end(struct sandbox *sandbox) {
     streams_close(sandbox);
+    if (sandbox->hints)
+        lua_close(sandbox->hints);
     arena_destroy(&sandbox->files.search.arena);
     arena_destroy(&sandbox->call);
     arena_destroy(&sandbox->keep);

@@ -13,6 +13,7 @@
 #include "compat/order.h"
 #include "compat/traverse.h"
 #include "record/record.h"
+#include "sandbox/embedded.h"
 #include "sandbox/hints.h"
 #include "script/dispatch_internal.h"
 #include "script/gr_textures_internal.h"
@@ -157,7 +158,7 @@ static int describe_error(lua_State *L) {
     error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
               hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
-    luaL_traceback(L, L, *rest ? rest : NULL, 1);
+    luaL_traceback(L, L, *rest ? rest : NULL, embedded_end(L, 1));
     if (strcmp(lua_tostring(L, -1), "stack traceback:\n\t[C]: in ?") == 0) { /* of a syntax error */
         lua_pushliteral(L, "");
         lua_replace(L, -2);
