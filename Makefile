@@ -207,11 +207,14 @@ $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	$(Q)$(COMPILE) -o $@ $< 2>$(@:.o=.warned); status=$$?; cat $(@:.o=.warned) >&2; \
 	    [ -s $(@:.o=.warned) ] || rm -f $(@:.o=.warned); exit $$status
 endif
-# The file NAME.lua is the constant NAME_lua. A check that only reads makes no object.
+# The file NAME.lua is the constant NAME_lua, its lines; NAME.txt is NAME_txt, the entries of its lines, which tabs divide,
+# without lines of comments. A check that only reads makes no object.
+STRINGS.lua = s/[\\"]/\\&/g; s/.*/"&\\n",/
+STRINGS.txt = /^\#/d; s/[\\"]/\\&/g; s/\t/", "/g; s/.*/"&",/
 $(EMBEDDED_OBJECTS): $(BUILD)/%.o: % $(FLAGS_STAMP)
 	@mkdir -p $(@D)
 	$(call say,CC,$<)
-	$(Q){ echo 'const char *const $(subst .,_,$(notdir $<))[] = {'; sed 's/[\\"]/\\&/g; s/.*/"&\\n",/' $<; echo '0};'; } >$(@:.o=.c)
+	$(Q){ echo 'const char *const $(subst .,_,$(notdir $<))[] = {'; sed '$(STRINGS$(suffix $<))' $<; echo '0};'; } >$(@:.o=.c)
 	$(Q)$(CC) $(CFLAGS) -c -o $@ $(@:.o=.c) && touch $@
 $(FLAGS_STAMP): force
 	@mkdir -p $(@D)

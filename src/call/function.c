@@ -55,7 +55,13 @@ bool form_next(const struct script_function *function, const char **form, int *i
     }
 }
 
+#define KIND_NAME(kind, name, words, like) [kind] = (name),
 #define KIND_WORDS(kind, name, words, like) [kind] = (words),
+
+const char *kind_name(enum kind kind) {
+    static const char *const names[] = {KIND_LIST(KIND_NAME)};
+    return names[kind];
+}
 
 const char *kind_words(enum kind kind) {
     static const char *const words[] = {KIND_LIST(KIND_WORDS)};

@@ -225,5 +225,7 @@ bool function_renders(const struct script_function *function);
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What the script must pass: "a number", "a colour {r, g, b}". */
 const char *kind_words(enum kind kind);
+/* "number", "colour". */
+const char *kind_name(enum kind kind);
 
 #endif

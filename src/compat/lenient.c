@@ -16,8 +16,6 @@
 #include <stdarg.h>
 #include <string.h>
 
-#define KIND_NAME(kind, name, words, like) [kind] = (name),
-
 extern const char *const lenient_lua[];
 
 /* Warnings. */
@@ -222,7 +220,6 @@ static void set_text(lua_State *L, const char *name, const char *text) {
 }
 
 static void push_parameter(lua_State *L, const struct script_parameter *p) {
-    static const char *const kinds[] = {KIND_LIST(KIND_NAME)};
     static const struct {
         unsigned flag;
         const char *name;
@@ -231,7 +228,7 @@ static void push_parameter(lua_State *L, const struct script_parameter *p) {
                  {GHOST_IS_NONE, "ghost_is_none"}};
     lua_newtable(L);
     set_text(L, "name", p->name);
-    set_text(L, "kind", kinds[p->kind]);
+    set_text(L, "kind", kind_name(p->kind));
     set_text(L, "choices", p->choices);
     lua_pushnumber(L, p->low);
     lua_setfield(L, -2, "low");

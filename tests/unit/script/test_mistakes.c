@@ -161,11 +161,11 @@ static void check_names(const char *use, const char *before, const char *manual)
 
 TEST(what_foreign_words_lead_to_exists) {
     struct arena arena = {0};
-    const char *manual = script_manual(&arena), *use;
+    const char *manual = script_manual(&arena);
     CHECK(manual != NULL);
-    for (size_t i = 0; manual && (use = foreign_use_at(i)) != NULL; i++) {
-        check_names(use, "gr.", manual);
-        check_names(use, "node:", manual);
+    for (const char *const *row = foreign_words_txt; manual && *row; row += FOREIGN_COLUMNS) {
+        check_names(row[FOREIGN_USE], "gr.", manual);
+        check_names(row[FOREIGN_USE], "node:", manual);
     }
     arena_destroy(&arena);
 }
