@@ -13,68 +13,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAMES_LIMIT = 2000, READ_AGAIN_LIMIT = 1 << 26 };
+enum { READ_AGAIN_LIMIT = 1 << 26 };
 
 extern const char *const hints_lua[];
 
 /* A call of a function of hints.lua, and its answer. */
 struct question {
     const char *function, *texts[2];
-    size_t sizes[2];          /* 0: they end with a zero */
-    const char *const *names; /* the last argument, a list that ends with NULL; or NULL */
-    lua_State *script;        /* its running function: `at` */
+    const char *const *names; /* the last argument, a list */
+    size_t count;
+    lua_State *script; /* its running function: `at` */
     lua_Debug at;
     struct nil_field *answer;
 };
 
 /* --- what Lua calls --- */
-
-/* Pushes the value of a local variable, an upvalue or a global of the running function; *is_global says which. */
-static void push_variable(const struct question *question, const char *name, bool *is_global) {
-    lua_State *L = question->script;
-    lua_Debug at = question->at;
-    int base = lua_gettop(L);
-    const char *other;
-    bool found = false;
-    lua_pushnil(L);
-    for (int n = 1; (other = lua_getlocal(L, &at, n)) != NULL; n++) {
-        bool same = strcmp(other, name) == 0; /* the last one shadows those before it */
-        lua_copy(L, -1, same ? base + 1 : -1);
-        lua_pop(L, 1);
-        found = found || same;
-    }
-    lua_getinfo(L, "f", &at);
-    for (int n = 1; !found && (other = lua_getupvalue(L, base + 2, n)) != NULL; n++) {
-        found = strcmp(other, name) == 0;
-        lua_copy(L, -1, found ? base + 1 : -1);
-        lua_pop(L, 1);
-    }
-    *is_global = !found;
-    if (!found) {
-        lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
-        for (lua_pushnil(L); lua_next(L, base + 3); lua_pop(L, 1))
-            if (lua_type(L, -2) == LUA_TSTRING && strcmp(lua_tostring(L, -2), name) == 0)
-                lua_copy(L, -1, base + 1);
-    }
-    lua_settop(L, base + 1);
-}
-
-/* Pushes on H a list of the names in the table on top of the other state, or sets them in the table there. */
-static void copy_names(lua_State *H, lua_State *L, bool as_list) {
-    int table = lua_gettop(H);
-    lua_Integer count = 0;
-    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
-        if (lua_type(L, -2) != LUA_TSTRING || ++count > NAMES_LIMIT)
-            continue;
-        lua_pushstring(H, lua_tostring(L, -2));
-        if (as_list) {
-            lua_rawseti(H, table, count);
-        } else {
-            lua_pushboolean(H, 1);
-            lua_rawset(H, table);
-        }
-    }
-}
 
 static struct question *question_of(lua_State *H) {
     lua_rawgetp(H, LUA_REGISTRYINDEX, hints_lua);
@@ -83,15 +36,50 @@ static struct question *question_of(lua_State *H) {
     return question;
 }
 
+/* A name that the running function sees, with the value on top of its state: into the table on H, or at `slot` there if
+ * it is the wanted one. Returns whether it is. */
+static bool see(lua_State *H, lua_State *L, const char *name, const char *wanted, int slot) {
+    bool same = wanted && strcmp(name, wanted) == 0;
+    if (same)
+        lua_copy(L, -1, slot);
+    if (!wanted && name[0] != '(') {
+        lua_pushboolean(H, !lua_isnil(L, -1));
+        lua_setfield(H, -2, name);
+    }
+    return same;
+}
+
+/* Sees the globals, the upvalues and the local variables, the last of a name last. wanted: pushes its value on the
+ * other state. Returns whether that is a global. */
+static bool look(lua_State *H, const char *wanted) {
+    const struct question *question = question_of(H);
+    lua_State *L = question->script;
+    lua_Debug at = question->at;
+    const char *name;
+    int slot = lua_gettop(L) + 1;
+    lua_pushnil(L);
+    lua_getinfo(L, "f", &at);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    bool is_global = true;
+    for (lua_pushnil(L); lua_next(L, slot + 2); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING)
+            (void)see(H, L, lua_tostring(L, -2), wanted, slot);
+    for (int n = 1; (name = lua_getupvalue(L, slot + 1, n)) != NULL; lua_pop(L, 1), n++)
+        is_global &= !see(H, L, name, wanted, slot);
+    for (int n = 1; (name = lua_getlocal(L, &at, n)) != NULL; lua_pop(L, 1), n++)
+        is_global &= !see(H, L, name, wanted, slot);
+    lua_settop(L, slot);
+    return is_global;
+}
+
 /* Returns the file of the running function, the line, and whether it begins there; nothing if none runs or its globals
  * are not those of the script: other environments may have more names. */
 static int running(lua_State *H) {
     struct question *question = question_of(H);
     lua_State *L = question->script;
-    bool is_global;
     if (!lua_checkstack(L, 20) || !sandbox_find_frame(L, &question->at) || question->at.source[0] != '@')
         return 0;
-    push_variable(question, "_ENV", &is_global);
+    bool is_global = look(H, "_ENV");
     lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
     bool usual = is_global || lua_rawequal(L, -1, -2); /* a function that uses no global has no _ENV */
     lua_pop(L, 2);
@@ -105,41 +93,26 @@ static int running(lua_State *H) {
 
 /* Returns the names that the running function sees: true if they have a value. */
 static int variables(lua_State *H) {
-    const struct question *question = question_of(H);
-    lua_State *L = question->script;
-    lua_Debug at = question->at;
-    const char *name;
-    int top = lua_gettop(L);
     lua_newtable(H);
-    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
-    copy_names(H, L, false);
-    lua_getinfo(L, "f", &at);
-    for (int n = 1; (name = lua_getupvalue(L, top + 2, n)) != NULL; lua_pop(L, 1), n++) {
-        lua_pushboolean(H, !lua_isnil(L, -1));
-        lua_setfield(H, -2, name);
-    }
-    for (int n = 1; (name = lua_getlocal(L, &at, n)) != NULL; lua_pop(L, 1), n++) {
-        if (name[0] == '(')
-            continue;
-        lua_pushboolean(H, !lua_isnil(L, -1));
-        lua_setfield(H, -2, name);
-    }
-    lua_settop(L, top);
+    (void)look(H, NULL);
     return 1;
 }
 
 /* keys(VARIABLE): the list of its names if it is a table, else nil; and whether it is a global. */
 static int keys(lua_State *H) {
-    const struct question *question = question_of(H);
-    bool is_global;
-    push_variable(question, lua_tostring(H, 1), &is_global);
-    if (lua_istable(question->script, -1)) {
+    lua_State *L = question_of(H)->script;
+    bool is_global = look(H, lua_tostring(H, 1));
+    if (lua_istable(L, -1))
         lua_newtable(H);
-        copy_names(H, question->script, true);
-    } else {
+    else
         lua_pushnil(H);
+    lua_Integer count = 0;
+    for (lua_pushnil(L); lua_istable(L, -2) && lua_next(L, -2); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            continue;
+        lua_pushstring(H, lua_tostring(L, -2));
+        lua_rawseti(H, -2, ++count);
     }
-    lua_pop(question->script, 1);
     lua_pushboolean(H, is_global);
     return 2;
 }
@@ -255,16 +228,10 @@ static int answer(lua_State *H) {
         {"running", running},     {"variables", variables}, {"keys", keys},   {"read", read_text},
         {"tokens", tokens},       {"nearest", nearest},     {"lacks", lacks}, {"refused", refused},
         {"source_of", source_of}, {"dialects", dialects},   {NULL, NULL}};
-    static const luaL_Reg libraries[] = {{LUA_GNAME, luaopen_base},
-                                         {LUA_STRLIBNAME, luaopen_string},
-                                         {LUA_TABLIBNAME, luaopen_table},
-                                         {LUA_MATHLIBNAME, luaopen_math},
-                                         {LUA_DBLIBNAME, luaopen_debug}};
     struct question *question = lua_touserdata(H, 1);
     struct arena *arena = &sandbox_of(H)->call;
     if (lua_getglobal(H, "hints") != LUA_TTABLE) { /* the first one */
-        for (size_t i = 0; i < sizeof libraries / sizeof *libraries; i++)
-            luaL_requiref(H, libraries[i].name, libraries[i].func, 1);
+        luaL_openlibs(H);
         embedded_open(H);
         embedded_run(H, hints_lua, helpers);
         lua_pushvalue(H, -1);
@@ -274,14 +241,11 @@ static int answer(lua_State *H) {
     lua_rawsetp(H, LUA_REGISTRYINDEX, hints_lua);
     lua_getfield(H, -1, question->function);
     for (int i = 0; i < 2; i++)
-        if (question->sizes[i] > 0)
-            lua_pushlstring(H, question->texts[i], question->sizes[i]);
-        else
-            lua_pushstring(H, question->texts[i]);
+        lua_pushstring(H, question->texts[i]);
     lua_newtable(H);
-    for (int i = 0; question->names && question->names[i]; i++) {
+    for (size_t i = 0; i < question->count; i++) {
         lua_pushstring(H, question->names[i]);
-        lua_rawseti(H, -2, i + 1);
+        lua_rawseti(H, -2, (lua_Integer)i + 1);
     }
     lua_call(H, 3, 3);
     const char *texts[2];
@@ -324,10 +288,12 @@ const char *hint_of_nil(struct sandbox *sandbox) {
     return or_nothing(ask(sandbox, (struct question){.function = "nil_value", .script = sandbox->lua}));
 }
 
-bool hint_find_nil_field(struct sandbox *sandbox, const char *const *names, const char *rest, struct nil_field *out) {
+bool hint_find_nil_field(struct sandbox *sandbox, const char *const *names, size_t count, const char *rest,
+                         struct nil_field *out) {
     const struct question question = {.function = "nil_field",
                                       .texts = {rest, sandbox->running.name},
                                       .names = names,
+                                      .count = count,
                                       .script = sandbox->lua,
                                       .answer = out};
     /* A long generated script is not read for each of its lines. */
@@ -343,11 +309,13 @@ const char *hint_of_lua_error(lua_State *L, const char *message) {
 }
 
 const char *hint_of_file(struct sandbox *sandbox, const char *path, const void *data, size_t size) {
-    const struct question question = {
-        .function = "other_file", .texts = {path, data}, .sizes = {0, size < 16 ? size : 16}};
-    return ask(sandbox, question);
+    const char *start = arena_copy_text(&sandbox->call, data, size < 16 ? size : 16);
+    return ask(sandbox, (struct question){.function = "other_file", .texts = {path, start}});
 }
 
-const char *hint_of_command(struct sandbox *sandbox, const char *name) {
-    return ask(sandbox, (struct question){.function = "command", .texts = {name}});
+const char *hint_of_missing(struct sandbox *sandbox, const char *path, const char *there, const char *const *files,
+                            size_t count) {
+    const struct question question = {
+        .function = "missing_scene", .texts = {path, there}, .names = files, .count = count};
+    return or_nothing(ask(sandbox, question));
 }

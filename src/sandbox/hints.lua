@@ -383,13 +383,28 @@ function hints.other_file(path, text)
     return ending_words(path)
 end
 
--- What to type instead of the name of a scene that is not there, as in `gray help`.
-function hints.command(name)
-    local commands = {help = 'gray --help lists the options', man = 'gray --man is the manual',
-        version = 'gray --version prints the version'}
-    commands.usage, commands.manual = commands.help, commands.man
-    return commands[string.lower(name)] or
+local commands = {help = 'gray --help lists the options', man = 'gray --man is the manual',
+    version = 'gray --version prints the version'}
+commands.usage, commands.manual = commands.help, commands.man
+
+-- The name of a file without its folder and its ending.
+local function stem_of(path)
+    local name = match(path, '[^/]*$')
+    return match(name, '^(.*)%.') or name
+end
+
+-- Of a scene that is not there: the file `there`, the most similar name among files, or what to type instead of a
+-- command.
+function hints.missing_scene(path, there, files)
+    local name, stems, path_of = match(path, '[^/]*$'), {}, {}
+    local words = commands[string.lower(name)] or
         ending_words(name) == picture and '-o FILE names the picture to write, as in gray -o FILE scene.lua'
+    for _, file in ipairs(not words and files or {}) do
+        local stem = stem_of(file)
+        if match(file, '.%.lua$') and not path_of[stem] then stems[#stems + 1], path_of[stem] = stem, file end
+    end
+    local meant = there or path_of[nearest(stem_of(path), stems) or 0]
+    return meant and "; did you mean '" .. meant .. "'?" or words and '; ' .. words
 end
 
 return hints
