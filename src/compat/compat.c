@@ -131,7 +131,8 @@ void compat_open(lua_State *L) {
     lua_getglobal(L, "math");
     luaL_setfuncs(L, maths, 0);
     embedded_run(L, compat_lua, helpers);
-    lua_pop(L, 2);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, compat_lua);
+    lua_pop(L, 1);
     wrap_with_upvalue(L, "math", "random", math_random);
     wrap_with_upvalue(L, "string", "format", string_format);
 
@@ -143,4 +144,10 @@ void compat_open(lua_State *L) {
     lua_setfield(L, -2, "__metatable");
     lua_setmetatable(L, -2); /* of every number */
     lua_pop(L, 1);
+}
+
+void compat_push_literal(lua_State *L, const char *text) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, compat_lua);
+    lua_pushstring(L, text);
+    lua_call(L, 1, 1);
 }

@@ -133,3 +133,17 @@ end
 
 scene.math.mod, scene.string.gfind, scene.unpack = math.fmod, string.gmatch, table.unpack
 scene.math.randomseed() -- random numbers start from the seed of the command line
+
+-- The value of a text that is a literal, or the text. Tables are evaluated without any globals.
+return function(text)
+    local first, last, number = string.sub(text, 1, 1), string.sub(text, -1), tonumber(text)
+    if number then return number end
+    if text == 'nil' then return nil end
+    local is_quoted = #text > 1 and first == last and (first == '"' or first == "'")
+    local is_table = first == '{' and last == '}' and not string.find(text, 'function', 1, true)
+    local chunk = (is_quoted or is_table or text == 'true' or text == 'false') and
+        load('return ' .. text, '=-D', 't', {})
+    local done, value = pcall(chunk or error)
+    if done and (is_table or not is_quoted or type(value) == 'string') then return value end
+    return text
+end

@@ -319,3 +319,7 @@ const char *hint_of_missing(struct sandbox *sandbox, const char *path, const cha
         .function = "missing_scene", .texts = {path, there}, .names = files, .count = count};
     return or_nothing(ask(sandbox, question));
 }
+
+const char *hint_of_dialect(struct sandbox *sandbox, const char *name) {
+    return or_nothing(ask(sandbox, (struct question){.function = "unknown_dialect", .texts = {name}}));
+}

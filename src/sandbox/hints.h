@@ -32,5 +32,7 @@ const char *hint_of_file(struct sandbox *sandbox, const char *path, const void *
  * type instead, as in `gray help`; or "". */
 const char *hint_of_missing(struct sandbox *sandbox, const char *path, const char *there, const char *const *files,
                             size_t count);
+/* "; did you mean ...; the library has ...": about a dialect that it does not have. */
+const char *hint_of_dialect(struct sandbox *sandbox, const char *name);
 
 #endif

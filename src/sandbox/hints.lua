@@ -407,4 +407,12 @@ function hints.missing_scene(path, there, files)
     return meant and "; did you mean '" .. meant .. "'?" or words and '; ' .. words
 end
 
+function hints.unknown_dialect(name)
+    local names = {}
+    for _, path in ipairs(dialects()) do names[#names + 1] = match(path, '([^/]*)%.lua$') end
+    local meant = nearest(name, names)
+    return (meant and "; did you mean '" .. meant .. "'?" or '') .. '; the library has ' ..
+        (#names > 0 and table.concat(names, ', ') or 'none')
+end
+
 return hints
