@@ -51,7 +51,7 @@ static bool see(lua_State *H, lua_State *L, const char *name, const char *wanted
 
 /* Sees the globals, the upvalues and the local variables, the last of a name last. wanted: pushes its value on the
  * other state. Returns whether that is a global. */
-static bool look(lua_State *H, const char *wanted) {
+static bool visit_names(lua_State *H, const char *wanted) {
     const struct question *question = question_of(H);
     lua_State *L = question->script;
     lua_Debug at = question->at;
@@ -79,7 +79,7 @@ static int running(lua_State *H) {
     lua_State *L = question->script;
     if (!lua_checkstack(L, 20) || !sandbox_find_frame(L, &question->at) || question->at.source[0] != '@')
         return 0;
-    bool is_global = look(H, "_ENV");
+    bool is_global = visit_names(H, "_ENV");
     lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
     bool usual = is_global || lua_rawequal(L, -1, -2); /* a function that uses no global has no _ENV */
     lua_pop(L, 2);
@@ -94,14 +94,14 @@ static int running(lua_State *H) {
 /* Returns the names that the running function sees: true if they have a value. */
 static int variables(lua_State *H) {
     lua_newtable(H);
-    (void)look(H, NULL);
+    (void)visit_names(H, NULL);
     return 1;
 }
 
 /* keys(VARIABLE): the list of its names if it is a table, else nil; and whether it is a global. */
 static int keys(lua_State *H) {
     lua_State *L = question_of(H)->script;
-    bool is_global = look(H, lua_tostring(H, 1));
+    bool is_global = visit_names(H, lua_tostring(H, 1));
     if (lua_istable(L, -1))
         lua_newtable(H);
     else

@@ -213,7 +213,7 @@ TEST(wrong_keys_are_errors_that_name_the_key) {
 }
 
 /* gr.keys is Lua of the program in the state of the scene. */
-TEST(a_scene_does_not_reach_into_the_lua_of_gr_keys) {
+TEST(a_scene_cannot_change_the_lua_of_gr_keys) {
     static struct listener listener;
     (void)runs("local get, format = rawget, string.format\n"
                "for _, t in ipairs{math, string, table, _G} do\n"
