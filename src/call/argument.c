@@ -812,7 +812,7 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
-#define KIND_LIKE(kind, name, words, like) [kind] = (like),
+#define KIND_LIKE(kind, name, words, annotation, like) [kind] = (like),
 
 bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
     static const int wanted[] = {KIND_LIST(KIND_LIKE)};

@@ -55,8 +55,8 @@ bool form_next(const struct script_function *function, const char **form, int *i
     }
 }
 
-#define KIND_NAME(kind, name, words, like) [kind] = (name),
-#define KIND_WORDS(kind, name, words, like) [kind] = (words),
+#define KIND_NAME(kind, name, words, annotation, like) [kind] = (name),
+#define KIND_WORDS(kind, name, words, annotation, like) [kind] = (words),
 
 const char *kind_name(enum kind kind) {
     static const char *const names[] = {KIND_LIST(KIND_NAME)};

@@ -20,8 +20,8 @@
 
 struct script_context;
 
-/* The kinds of arguments: name, what the script must pass, and the Lua types of that (argument.c). The plain C form is
- * in struct script_value:
+/* The kinds of arguments: name, what the script must pass, the type in annotations (NULL: the choices), and the Lua
+ * types (argument.c). The plain C form is in struct script_value:
  *   KIND_NUMBER: number
  *   KIND_WHOLE: number: a float with a whole value is fine
  *   KIND_BOOLEAN: boolean
@@ -57,41 +57,44 @@ struct script_context;
  *   KIND_FUNCTION: program: a function of Lua, recorded
  *   KIND_CALLBACK: a function of Lua that is called; it stays on the stack */
 #define KIND_LIST(X)                                                                                                   \
-    X(KIND_NUMBER, "number", "a number", LIKE_NUMBER)                                                                  \
-    X(KIND_WHOLE, "whole", "a whole number", LIKE_NUMBER)                                                              \
-    X(KIND_BOOLEAN, "boolean", "true or false", LIKE_BOOLEAN)                                                          \
-    X(KIND_TEXT, "text", "a string", LIKE_TEXT)                                                                        \
-    X(KIND_FILE, "file", "the name of a file", LIKE_TEXT)                                                              \
-    X(KIND_OUTPUT, "output", "the name of a file", LIKE_TEXT)                                                          \
-    X(KIND_CHOICE, "choice", "a word", LIKE_TEXT)                                                                      \
-    X(KIND_AXIS, "axis", "'x', 'y' or 'z'", LIKE_TEXT)                                                                 \
-    X(KIND_POINT, "point", "a point {x, y, z}", LIKE_TABLE)                                                            \
-    X(KIND_DIRECTION, "direction", "a direction {x, y, z}", LIKE_TABLE)                                                \
-    X(KIND_COLOUR, "colour", "a colour {r, g, b}", LIKE_TABLE | LIKE_TEXT)                                             \
-    X(KIND_TRIPLE, "triple", "a table of 3 numbers", LIKE_TABLE)                                                       \
-    X(KIND_SIZE, "size", "a number or a table of 3 numbers", LIKE_TABLE | LIKE_NUMBER)                                 \
-    X(KIND_INTERVAL, "interval", "a table of two rising numbers", LIKE_TABLE)                                          \
-    X(KIND_QUATERNION, "quaternion", "a table of 4 numbers {w, x, y, z}", LIKE_TABLE)                                  \
-    X(KIND_PAIR, "pair", "a number or a table of 2 numbers", LIKE_TABLE | LIKE_NUMBER)                                 \
-    X(KIND_NODE, "node", "a node", 1 << HANDLE_NODE)                                                                   \
-    X(KIND_MATERIAL, "material", "a material", 1 << HANDLE_MATERIAL)                                                   \
-    X(KIND_MATERIALS, "materials", "a table of materials", LIKE_TABLE)                                                 \
-    X(KIND_IMAGE, "image", "the name of a picture file or a texture", LIKE_TEXT | 1 << HANDLE_TEXTURE)                 \
+    X(KIND_NUMBER, "number", "a number", "number", LIKE_NUMBER)                                                        \
+    X(KIND_WHOLE, "whole", "a whole number", "integer", LIKE_NUMBER)                                                   \
+    X(KIND_BOOLEAN, "boolean", "true or false", "boolean", LIKE_BOOLEAN)                                               \
+    X(KIND_TEXT, "text", "a string", "string", LIKE_TEXT)                                                              \
+    X(KIND_FILE, "file", "the name of a file", "string", LIKE_TEXT)                                                    \
+    X(KIND_OUTPUT, "output", "the name of a file", "string", LIKE_TEXT)                                                \
+    X(KIND_CHOICE, "choice", "a word", NULL, LIKE_TEXT)                                                                \
+    X(KIND_AXIS, "axis", "'x', 'y' or 'z'", NULL, LIKE_TEXT)                                                           \
+    X(KIND_POINT, "point", "a point {x, y, z}", "gr.triple", LIKE_TABLE)                                               \
+    X(KIND_DIRECTION, "direction", "a direction {x, y, z}", "gr.triple", LIKE_TABLE)                                   \
+    X(KIND_COLOUR, "colour", "a colour {r, g, b}", "gr.triple|string", LIKE_TABLE | LIKE_TEXT)                         \
+    X(KIND_TRIPLE, "triple", "a table of 3 numbers", "gr.triple", LIKE_TABLE)                                          \
+    X(KIND_SIZE, "size", "a number or a table of 3 numbers", "number|gr.triple", LIKE_TABLE | LIKE_NUMBER)             \
+    X(KIND_INTERVAL, "interval", "a table of two rising numbers", "number[]", LIKE_TABLE)                              \
+    X(KIND_QUATERNION, "quaternion", "a table of 4 numbers {w, x, y, z}", "number[]", LIKE_TABLE)                      \
+    X(KIND_PAIR, "pair", "a number or a table of 2 numbers", "number|number[]", LIKE_TABLE | LIKE_NUMBER)              \
+    X(KIND_NODE, "node", "a node", "gr.node", 1 << HANDLE_NODE)                                                        \
+    X(KIND_MATERIAL, "material", "a material", "gr.material", 1 << HANDLE_MATERIAL)                                    \
+    X(KIND_MATERIALS, "materials", "a table of materials", "table<string|integer, gr.material>", LIKE_TABLE)           \
+    X(KIND_IMAGE, "image", "the name of a picture file or a texture", "string|gr.texture",                             \
+      LIKE_TEXT | 1 << HANDLE_TEXTURE)                                                                                 \
     X(KIND_BACKGROUND, "background", "a colour {r, g, b}, a sky, a function or 'gradient'",                            \
+      "gr.triple|string|gr.sky|gr.texture|function|'gradient'",                                                        \
       LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY)                                                        \
-    X(KIND_FOG, "fog", "a fog", 1 << HANDLE_FOG)                                                                       \
-    X(KIND_CAUSTICS, "caustics", "a number of photons or {photons = ..., radius = ...}", LIKE_TABLE | LIKE_NUMBER)     \
-    X(KIND_NODES, "nodes", "a table of nodes", LIKE_TABLE)                                                             \
-    X(KIND_LIGHTS, "lights", "a table of lights", LIKE_TABLE)                                                          \
-    X(KIND_POINTS, "points", "a table of points {x, y, z}", LIKE_TABLE)                                                \
-    X(KIND_PAIRS, "pairs", "a table of pairs {u, v}", LIKE_TABLE)                                                      \
-    X(KIND_STOPS, "stops", "a table of stops {height, r, g, b}", LIKE_TABLE)                                           \
-    X(KIND_FACES, "faces", "a table of tuples of indices", LIKE_TABLE)                                                 \
-    X(KIND_NUMBERS, "numbers", "a number or a table of numbers", LIKE_TABLE | LIKE_NUMBER)                             \
-    X(KIND_ROWS, "rows", "a table of tables of numbers", LIKE_TABLE)                                                   \
-    X(KIND_CURVES, "curves", "a table of tables of pairs {x, z}", LIKE_TABLE)                                          \
-    X(KIND_FUNCTION, "function", "a function", LIKE_FUNCTION | 1 << HANDLE_TEXTURE)                                    \
-    X(KIND_CALLBACK, "callback", "a function", LIKE_FUNCTION)
+    X(KIND_FOG, "fog", "a fog", "gr.fog", 1 << HANDLE_FOG)                                                             \
+    X(KIND_CAUSTICS, "caustics", "a number of photons or {photons = ..., radius = ...}",                               \
+      "integer|{photons?: integer, radius?: number}", LIKE_TABLE | LIKE_NUMBER)                                        \
+    X(KIND_NODES, "nodes", "a table of nodes", "gr.node[]", LIKE_TABLE)                                                \
+    X(KIND_LIGHTS, "lights", "a table of lights", "gr.light[]", LIKE_TABLE)                                            \
+    X(KIND_POINTS, "points", "a table of points {x, y, z}", "gr.triple[]", LIKE_TABLE)                                 \
+    X(KIND_PAIRS, "pairs", "a table of pairs {u, v}", "number[][]", LIKE_TABLE)                                        \
+    X(KIND_STOPS, "stops", "a table of stops {height, r, g, b}", "number[][]", LIKE_TABLE)                             \
+    X(KIND_FACES, "faces", "a table of tuples of indices", "integer[][]", LIKE_TABLE)                                  \
+    X(KIND_NUMBERS, "numbers", "a number or a table of numbers", "number|number[]", LIKE_TABLE | LIKE_NUMBER)          \
+    X(KIND_ROWS, "rows", "a table of tables of numbers", "number[][]", LIKE_TABLE)                                     \
+    X(KIND_CURVES, "curves", "a table of tables of pairs {x, z}", "number[][][]", LIKE_TABLE)                          \
+    X(KIND_FUNCTION, "function", "a function", "function|gr.texture", LIKE_FUNCTION | 1 << HANDLE_TEXTURE)             \
+    X(KIND_CALLBACK, "callback", "a function", "function", LIKE_FUNCTION)
 enum kind { KIND_LIST(LIST_MEMBER) KIND_COUNT };
 
 /* What gr.texture, gr.bump and their like made. */
