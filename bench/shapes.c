@@ -5,6 +5,7 @@
  *   shapes [NAME ...]        NAME is a part of a shape's name; without one all are measured */
 #include "base/arena.h"
 #include "csg/csg.h"
+#include "csg/csg_build.h"
 #include "shape/blob.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"

@@ -2,6 +2,7 @@
 #include "tests/stage.h"
 
 #include "film/aov.h"
+#include "render/integrator.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #ifndef GRAY_TESTS_STAGE_H
 #define GRAY_TESTS_STAGE_H
 
+#include "render/integrator.h"
 #include "render/render.h"
 #include "world/world.h"
 

@@ -3,8 +3,6 @@
  * rounding errors away from the origin; `slack` covers those near it. */
 #include "accel/beam.h"
 
-#include "accel/box_tree.h"
-
 bool beam_make(struct beam *out, const struct ray_packet *rays) {
     const double first[3] = {fabs(rays->direction[0][0]), fabs(rays->direction[1][0]), fabs(rays->direction[2][0])};
     int z = first[1] > first[0];

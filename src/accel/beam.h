@@ -31,4 +31,16 @@ struct beam_traversal {
 void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tree *tree, const struct beam *beam);
 bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_t *item);
 
+/* The shaft from one point to a parallelogram (Haines and Wallace, "Shaft Culling for Efficient Ray-Traced Radiosity",
+ * 1991): every segment from the point to the parallelogram lies inside. */
+struct shaft {
+    struct box bounds;
+    struct vec3 normal[5]; /* outward; a box that is on the outer side of one of them is outside */
+    double offset[5];
+    int planes;
+};
+struct shaft shaft_make(struct vec3 from, struct vec3 corner, struct vec3 edge1, struct vec3 edge2);
+/* Items whose box meets the shaft, at most `limit`; returns the count, or limit + 1 when there are more. */
+uint32_t box_tree_in_shaft(const struct box_tree *tree, const struct shaft *shaft, uint32_t *items, uint32_t limit);
+
 #endif

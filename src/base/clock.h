@@ -18,4 +18,9 @@ static inline double clock_seconds(clockid_t clock) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* Seconds of the clock that never jumps. */
+static inline double clock_now(void) {
+    return clock_seconds(CLOCK_MONOTONIC);
+}
+
 #endif

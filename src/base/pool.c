@@ -9,7 +9,6 @@
 #include <limits.h>
 #include <linux/futex.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -48,7 +47,7 @@ struct pool {
 void pool_poll(struct pool *pool, int worker) {
     if (worker != 0 || !pool->poll)
         return;
-    double now = clock_seconds(CLOCK_MONOTONIC);
+    double now = clock_now();
     if (now - pool->polled < 0.005)
         return;
     pool->poll(pool->poll_context);

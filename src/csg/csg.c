@@ -1,5 +1,5 @@
 /* CSG by one sweep along the line. Every leaf is closed, so its crossings cut the line into inside and outside; the
- * lists of all leaves are merged by t, and the truth of the whole expression is tracked (csg_plan.c has the tree that
+ * lists of all leaves are merged by t, and the truth of the whole expression is tracked (csg_build.c has the tree that
  * makes one change cheap). The surface is where it changes. A mesh counts by parity, for any orientation of its
  * triangles.
  *
@@ -18,12 +18,12 @@
  *
  * Leaves that contain the solid are tested first: a ray that misses one misses the solid, and after it leaves one there
  * are no more crossings. Every other leaf is tested when the sweep reaches the box in which it matters: the argument of
- * csg_plan.c that a leaf may be taken as false outside its box is true at every single point.
+ * csg_build.c that a leaf may be taken as false outside its box is true at every single point.
  *
  * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
 #include "csg/csg.h"
 
-#include "csg/csg_plan_internal.h"
+#include "csg/csg_build_internal.h"
 
 /* The error of a crossing is bounded by so many times the magnitudes that went into it: each of the few operations and
  * each transform in a chain of some dozens costs 2^-53. */

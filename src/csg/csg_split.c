@@ -41,7 +41,7 @@ static struct box tidy(struct box b) {
     return box_is_empty(&b) ? box_empty() : b;
 }
 
-/* a and b under an AND, by the rule of csg_plan.c; an OR is the same with true and false exchanged. */
+/* a and b under an AND, by the rule of csg_build.c; an OR is the same with true and false exchanged. */
 static struct span both(const struct span *a, const struct span *b, bool is_all) {
     bool a_decides = a->far != is_all, b_decides = b->far != is_all;
     struct span out = {.first = a->first, .far = a_decides || b_decides ? !is_all : is_all};

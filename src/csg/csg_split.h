@@ -3,7 +3,7 @@
 #ifndef GRAY_CSG_CSG_SPLIT_H
 #define GRAY_CSG_CSG_SPLIT_H
 
-#include "csg/csg.h"
+#include "csg/csg_build.h"
 
 /* As csg_build, in as many parts as have disjoint boxes; together they have the same crossings as the whole.
  * In the order of their first operands. */

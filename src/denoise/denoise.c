@@ -80,7 +80,7 @@ struct level {
     float *estimate[2][3]; /* of the halves */
 };
 
-struct denoiser {
+struct denoise_run {
     const struct denoise_source *source;
     struct pool *pool;
     float (*out)[3];
@@ -118,6 +118,13 @@ static void copy_plane(const struct level *d, const float *plane, int x0, int y0
             local[y * side + x] = plane[nearest_at(d, x0 + x, y0 + y)];
 }
 
+/* The part of such a square that is in the picture. */
+static struct film_rectangle bounds_of(const struct level *d, int x0, int y0, int side) {
+    return (struct film_rectangle){(uint32_t)clamp_int(-x0, 0, side), (uint32_t)clamp_int(-y0, 0, side),
+                                   (uint32_t)clamp_int(d->width - x0, 0, side),
+                                   (uint32_t)clamp_int(d->height - y0, 0, side)};
+}
+
 /* Limits all numbers so that sums of their squares stay finite. */
 static float bounded(float x) {
     const float limit = 1e15F;
@@ -125,7 +132,7 @@ static float bounded(float x) {
 }
 
 /* The pixels of a row; slot 0 to 2: of the rows that the worker keeps, the one that is replaced. */
-static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int worker, int slot) {
+static const struct denoise_pixel *get_row(struct denoise_run *d, uint32_t y, int worker, int slot) {
     struct denoise_pixel *row = d->rows + (3 * (size_t)worker + (size_t)slot) * (size_t)d->levels[0].width;
     d->source->row(d->source->context, y, row);
     return row;
@@ -134,7 +141,7 @@ static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int w
 /* --- colours: outliers and variance --- */
 
 static void load_colours(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker, 0);
     for (int x = 0; x < d->level->width; x++)
         for (int h = 0; h < 2; h++)
@@ -151,7 +158,7 @@ static float brightness(float *const colour[3], size_t at) {
 
 /* The brightest value that supports the brightness of a pixel of one half: the same pixel of the other half, its
  * neighbours in the other half, and all neighbours in its own half except the brightest one. */
-static float brightest_support(const struct denoiser *d, int half, int x, int y) {
+static float brightest_support(const struct denoise_run *d, int half, int x, int y) {
     size_t at = pixel_at(d->level, x, y);
     float first = 0, second = 0, others = brightness(d->loaded[1 - half], at);
     for (int j = -1; j <= 1; j++) {
@@ -171,7 +178,7 @@ static float brightest_support(const struct denoiser *d, int half, int x, int y)
 /* Scales pixels down that are more than twice as bright as their support: single improbable paths would become
  * blotches. */
 static void remove_outliers(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     (void)worker;
     for (int x = 0; x < d->level->width; x++) {
         size_t at = pixel_at(d->level, x, (int)y);
@@ -188,7 +195,7 @@ static void remove_outliers(void *context, uint32_t y, int worker) {
 
 /* For nine rows around row y, from column x0 on, the sums of: half the squared difference of the halves, the
  * variance of samples, and the latter smoothed over five rows. */
-static void sum_columns(const struct denoiser *d, int c, int x0, int y, float sums[3][STRIP + 2 * VARIANCE_WINDOW]) {
+static void sum_columns(const struct denoise_run *d, int c, int x0, int y, float sums[3][STRIP + 2 * VARIANCE_WINDOW]) {
     static const float kernel[2 * VARIANCE_WINDOW + 1] = {0, 0, 0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F, 0, 0};
     memset(sums, 0, 3 * sizeof *sums);
     for (int j = 0; j <= 2 * VARIANCE_WINDOW; j++) {
@@ -207,7 +214,7 @@ static void sum_columns(const struct denoiser *d, int c, int x0, int y, float su
  * are unbiased, and smoothed. */
 static void estimate_variance(void *context, uint32_t y, int worker) {
     const float largest = 1e30F; /* its square may overflow, its sums do not */
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     (void)worker;
     for (int item = 0; item < 3 * ((d->level->width + STRIP - 1) / STRIP); item++) {
         float sums[3][STRIP + 2 * VARIANCE_WINDOW];
@@ -230,7 +237,7 @@ static void estimate_variance(void *context, uint32_t y, int worker) {
 /* --- features: non-local means by their own variance --- */
 
 static void load_features(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker, 0);
     for (int x = 0; x < d->level->width; x++) {
         size_t at = pixel_at(d->level, x, (int)y);
@@ -245,7 +252,7 @@ static void load_features(void *context, uint32_t y, int worker) {
 
 static void filter_features(void *context, uint32_t item, int worker) {
     enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL };
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     struct denoise_scratch *s = d->scratch + worker;
     int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
         by = (int)item / across * BLOCK;
@@ -254,7 +261,7 @@ static void filter_features(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->noise[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_noise[i]);
     }
     d->kernels->filter_features(s, d->group, d->first_feature == DENOISE_DEPTH,
-                                (struct denoise_bounds){-bx, -by, d->level->width - bx, d->level->height - by});
+                                bounds_of(d->level, bx - WINDOW - 1, by - WINDOW - 1, SIDE));
     for (int y = 0; y < BLOCK && by + y < d->level->height; y++)
         for (int x = 0; x < BLOCK && bx + x < d->level->width; x++)
             for (int i = 0; i < d->group; i++)
@@ -288,7 +295,8 @@ static void keep_estimates(struct denoise_scratch *s, int regression, int half) 
 }
 
 /* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
-static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
+static void regress_half(const struct denoise_run *d, struct denoise_scratch *s, int half,
+                         struct film_rectangle bounds) {
     d->kernels->compare(s, 1 - half);
     for (int b = 0; b < REGRESSIONS; b++) {
         d->kernels->regress(s, half, regressions[b], bounds);
@@ -299,7 +307,7 @@ static void regress_half(const struct denoiser *d, struct denoise_scratch *s, in
 /* --- choice of the candidate --- */
 
 /* The weights of the candidates at the pixels of a row of the block: the larger the score, the smaller the weight. */
-static void choose_candidates(const struct denoiser *d, struct denoise_scratch *s, int y,
+static void choose_candidates(const struct denoise_run *d, struct denoise_scratch *s, int y,
                               float shares[CANDIDATES][BLOCK]) {
     d->kernels->score_candidates(s, y, shares);
     for (int x = 0; x < BLOCK; x++) {
@@ -340,14 +348,14 @@ static void store_pixel(const struct level *level, const struct denoise_scratch 
 
 /* Blocks begin where coordinates in the whole picture are multiples of ALIGNMENT, and so do centres. */
 static void regress_block(void *context, uint32_t item, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     struct denoise_scratch *s = d->scratch + worker;
     float shares[CANDIDATES][BLOCK];
     int left = -(int)(d->level->x0 % ALIGNMENT), top = -(int)(d->level->y0 % ALIGNMENT);
     int across = (d->level->width - left + BLOCK - 1) / BLOCK;
     int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
     int x0 = bx - MARGIN, y0 = by - MARGIN;
-    const struct denoise_bounds bounds = {-x0, -y0, d->level->width - x0, d->level->height - y0};
+    const struct film_rectangle bounds = bounds_of(d->level, x0, y0, LOCAL);
     for (int c = 0; c < 3; c++) {
         copy_plane(d->level, d->level->colour[0][c], x0, y0, LOCAL, s->colour[0][c]);
         copy_plane(d->level, d->level->colour[1][c], x0, y0, LOCAL, s->colour[1][c]);
@@ -386,7 +394,7 @@ static float mean_of(const struct level *level, const float *plane, int x, int y
 
 /* Compute a row of the level from the level before. */
 static void shrink_features(void *context, uint32_t y, int worker) {
-    const struct denoiser *d = context;
+    const struct denoise_run *d = context;
     const struct level *level = d->level, *finer = level - 1;
     int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
     (void)worker;
@@ -399,7 +407,7 @@ static void shrink_features(void *context, uint32_t y, int worker) {
 }
 
 static void shrink_colours(void *context, uint32_t y, int worker) {
-    const struct denoiser *d = context;
+    const struct denoise_run *d = context;
     const struct level *level = d->level, *finer = level - 1;
     int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
     (void)worker;
@@ -416,7 +424,7 @@ static void shrink_colours(void *context, uint32_t y, int worker) {
 
 /* Subtracts the finer level: the estimates become differences to its means, and the colours become these means. */
 static void subtract_finer(void *context, uint32_t y, int worker) {
-    const struct denoiser *d = context;
+    const struct denoise_run *d = context;
     const struct level *level = d->level, *finer = level - 1;
     int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
     (void)worker;
@@ -449,7 +457,7 @@ static void add_correction(const struct level *level, int half, size_t from, con
 
 /* Adds the interpolated corrections of the level to a row of the finer level; they at most double or halve a value. */
 static void correct_finer(void *context, uint32_t y, int worker) {
-    const struct denoiser *d = context;
+    const struct denoise_run *d = context;
     const struct level *level = d->level, *finer = level - 1;
     uint32_t whole_y = finer->y0 + y;
     int near_y = (int)(whole_y / 2 - level->y0), far_y = near_y + (whole_y % 2 ? 1 : -1);
@@ -553,7 +561,7 @@ _Static_assert((int)RESIDUAL_WINDOW == 3, "the kernel of find_residual has four 
 
 /* Stores mean residuals in d->out. The first pass finds silhouettes. */
 static void find_residuals(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     (void)worker;
     for (int x = 0; x < d->level->width; x++) {
         size_t at = pixel_at(d->level, x, (int)y);
@@ -569,7 +577,7 @@ static void find_residuals(void *context, uint32_t y, int worker) {
 }
 
 /* The mean of the evidence around a silhouette: that of one pixel would select noise. 0 if the halves disagree. */
-static float mean_evidence(const struct denoiser *d, int x, int y) {
+static float mean_evidence(const struct denoise_run *d, int x, int y) {
     float sum = 0, agreement = 0, count = 0;
     for (int j = -EVIDENCE_WINDOW; j <= EVIDENCE_WINDOW; j++) {
         for (int i = -EVIDENCE_WINDOW; i <= EVIDENCE_WINDOW; i++) {
@@ -588,7 +596,7 @@ static float mean_evidence(const struct denoiser *d, int x, int y) {
 
 /* Adds the residuals; a value remains at least a quarter of what it was. */
 static void add_residuals(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     (void)worker;
     for (int x = 0; x < d->level->width; x++) {
         size_t at = pixel_at(d->level, x, (int)y);
@@ -621,7 +629,8 @@ static float albedo_of(const struct denoise_pixel *pixel, int c) {
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
  * average with its albedo; neighbours at another depth are not of its texture. At silhouettes extremes are more
  * probable. rows: those around the pixel. */
-static float supported_mean(const struct denoiser *d, const struct denoise_pixel *const rows[3], int c, int x, int y) {
+static float supported_mean(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int c, int x,
+                            int y) {
     const struct level *level = d->level;
     const float *depth = level->feature[DENOISE_DEPTH];
     size_t at = pixel_at(level, x, y);
@@ -670,7 +679,7 @@ static bool is_empty(const struct denoise_pixel *pixel) {
 
 /* The mean of the halves, plus glow. */
 static void finish_row(void *context, uint32_t y, int worker) {
-    struct denoiser *d = context;
+    struct denoise_run *d = context;
     const struct denoise_pixel *rows[3];
     for (int j = 0; j < 3; j++)
         rows[j] = get_row(d, (uint32_t)clamp_int((int)y + j - 1, 0, d->level->height - 1), worker, j);
@@ -709,7 +718,7 @@ static void free_level(struct level *level) {
         free_plane(&level->feature[f]);
 }
 
-static bool run(struct denoiser *d, uint32_t count, pool_function *fn, struct error *error) {
+static bool run(struct denoise_run *d, uint32_t count, pool_function *fn, struct error *error) {
     return pool_run(d->pool, count, fn, d) || error_set(error, ERROR_CANCELLED, "stopped while denoising");
 }
 
@@ -717,7 +726,7 @@ static bool no_memory(struct error *error) {
     return error_no_memory(error, "a picture that is denoised");
 }
 
-static bool denoise_colours(struct denoiser *d, struct error *error) {
+static bool denoise_colours(struct denoise_run *d, struct error *error) {
     for (int c = 0; c < 3; c++)
         if (!make_plane(d->level, &d->loaded[0][c]) || !make_plane(d->level, &d->loaded[1][c]) ||
             !make_plane(d->level, &d->level->colour[0][c]) || !make_plane(d->level, &d->level->colour[1][c]) ||
@@ -735,7 +744,7 @@ static bool denoise_colours(struct denoiser *d, struct error *error) {
     return true;
 }
 
-static bool denoise_features(struct denoiser *d, struct error *error) {
+static bool denoise_features(struct denoise_run *d, struct error *error) {
     static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
     for (int i = 0; i < 3; i++)
         if (!make_plane(d->level, &d->mean[i]) || !make_plane(d->level, &d->noise[i]))
@@ -769,7 +778,7 @@ static const struct denoise_kernels *choose_kernels(void) {
     return &denoise_kernels_base;
 }
 
-static bool make_estimates(struct denoiser *d, struct error *error) {
+static bool make_estimates(struct denoise_run *d, struct error *error) {
     for (int c = 0; c < 3; c++)
         for (int half = 0; half < 2; half++)
             if (!make_plane(d->level, &d->level->estimate[half][c]))
@@ -781,7 +790,7 @@ static bool make_estimates(struct denoiser *d, struct error *error) {
 }
 
 /* The planes that a level computes from the one before. */
-static bool make_coarse(struct denoiser *d, struct error *error) {
+static bool make_coarse(struct denoise_run *d, struct error *error) {
     struct level *level = d->level;
     for (int f = 0; f < DENOISE_FEATURES; f++)
         if (!make_plane(level, &level->feature[f]))
@@ -795,7 +804,7 @@ static bool make_coarse(struct denoiser *d, struct error *error) {
     return run(d, (uint32_t)level->height, shrink_colours, error);
 }
 
-static bool denoise_all(struct denoiser *d, struct error *error) {
+static bool denoise_all(struct denoise_run *d, struct error *error) {
     const struct denoise_source *source = d->source;
     size_t workers = (size_t)pool_workers(d->pool);
     d->rows = mem_alloc_zero(3 * workers * source->width, sizeof *d->rows);
@@ -834,7 +843,7 @@ static struct level coarser(const struct level *level) {
 }
 
 bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error) {
-    struct denoiser d = {.source = source, .out = out, .pool = pool, .kernels = choose_kernels()};
+    struct denoise_run d = {.source = source, .out = out, .pool = pool, .kernels = choose_kernels()};
     d.levels[0].width = (int)source->width;
     d.levels[0].height = (int)source->height;
     d.levels[0].x0 = source->x0;

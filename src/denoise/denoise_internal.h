@@ -5,6 +5,7 @@
 #define GRAY_DENOISE_DENOISE_INTERNAL_H
 
 #include "denoise/denoise.h"
+#include "film/film.h"
 
 enum {
     DENOISE_BLOCK = 96, /* side of the squares that a worker takes */
@@ -69,19 +70,15 @@ struct denoise_scratch {
     denoise_window columns[DENOISE_COLUMNS], weights;
 };
 
-/* Squares of a picture or part of one: x0, y0, x1, y1 in coordinates of the scratch. */
-struct denoise_bounds {
-    int x0, y0, x1, y1;
-};
-
+/* bounds: the picture, as far as it is in the planes of the scratch, in their coordinates. */
 struct denoise_kernels {
     /* Adds up the features of a block, weighted by the likeness of patches; group: how many there are. */
-    void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds);
+    void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds);
     /* The distances of all centres from their windows, in the colours of a half. */
     void (*compare)(struct denoise_scratch *s, int half);
     /* Adds up what the regressions of all centres say about the colours of a half. */
     void (*regress)(struct denoise_scratch *s, int half, struct denoise_regression regression,
-                    struct denoise_bounds bounds);
+                    struct film_rectangle bounds);
     /* Fills errors and doubts from the estimates. */
     void (*compare_candidates)(struct denoise_scratch *s);
     /* The scores of the candidates at the pixels of a row of the block: the smallest is the best. */

@@ -102,15 +102,15 @@ static void compare_features(struct denoise_scratch *s, int group, bool depth, i
 }
 
 /* Adds the pixels at an offset of (dx, dy), weighted by the similarity of patches of 3 x 3 pixels. */
-static void add_features(struct denoise_scratch *s, int group, int dx, int dy, struct denoise_bounds bounds) {
+static void add_features(struct denoise_scratch *s, int group, int dx, int dy, struct film_rectangle bounds) {
     enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW + 1, STRIDE = DENOISE_FEATURE_LOCAL };
-    int x0 = bounds.x0 - dx > 0 ? bounds.x0 - dx : 0;
-    int x1 = bounds.x1 - dx < DENOISE_BLOCK ? bounds.x1 - dx : DENOISE_BLOCK;
+    int x0 = (int)bounds.x0 - FIRST - dx, x1 = (int)bounds.x1 - FIRST - dx;
+    int y0 = (int)bounds.y0 - FIRST - dy, y1 = (int)bounds.y1 - FIRST - dy;
     for (int y = 0; y < DENOISE_BLOCK; y++) {
         const float *above = s->unlikeness + y * SIDE, *row = above + SIDE, *under = row + SIDE;
         int q = (FIRST + y + dy) * STRIDE + FIRST + dx, at = y * DENOISE_BLOCK;
         float columns[SIDE], weights[DENOISE_BLOCK];
-        if (y + dy < bounds.y0 || y + dy >= bounds.y1)
+        if (y < y0 || y >= y1)
             continue;
         for (int x = 0; x < SIDE; x++)
             columns[x] = above[x] + row[x] + under[x];
@@ -126,7 +126,7 @@ static void add_features(struct denoise_scratch *s, int group, int dx, int dy, s
     }
 }
 
-static void filter_features(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds) {
+static void filter_features(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds) {
     enum { WINDOW = DENOISE_FEATURE_WINDOW };
     memset(s->feature_sums, 0, sizeof s->feature_sums);
     for (int dy = -WINDOW; dy <= WINDOW; dy++) {
@@ -218,15 +218,16 @@ struct window {
     float inside[LANES]; /* 1 or 0 */
 };
 
-static struct window find_window(int cx, int cy, int radius, struct denoise_bounds bounds) {
+static struct window find_window(int cx, int cy, int radius, struct film_rectangle bounds) {
     struct window w = {.x = cx, .y = cy};
-    int low = cy - radius > bounds.y0 ? cy - radius : bounds.y0;
-    int high = cy + radius + 1 < bounds.y1 ? cy + radius + 1 : bounds.y1;
+    int x0 = (int)bounds.x0, y0 = (int)bounds.y0, x1 = (int)bounds.x1, y1 = (int)bounds.y1;
+    int low = cy - radius > y0 ? cy - radius : y0;
+    int high = cy + radius + 1 < y1 ? cy + radius + 1 : y1;
     w.row0 = low - cy + DENOISE_WINDOW;
     w.row1 = high - cy + DENOISE_WINDOW;
     for (int l = 0; l < LANES; l++) {
         int dx = l - DENOISE_WINDOW, x = cx + dx;
-        w.inside[l] = dx >= -radius && dx <= radius && x >= bounds.x0 && x < bounds.x1 ? 1 : 0;
+        w.inside[l] = dx >= -radius && dx <= radius && x >= x0 && x < x1 ? 1 : 0;
     }
     return w;
 }
@@ -501,7 +502,7 @@ static void regress_centre(struct denoise_scratch *s, int half, const struct win
 }
 
 static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
-                    struct denoise_bounds bounds) {
+                    struct film_rectangle bounds) {
     memset(s->sums, 0, sizeof s->sums);
     for (int r = 0; r < DENOISE_SIDE; r++) {
         for (int l = 0; l < LANES; l++) {
@@ -515,7 +516,7 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_regressi
         int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
         if ((cx - DENOISE_MARGIN) % regression.step != 0 || (cy - DENOISE_MARGIN) % regression.step != 0)
             continue;
-        if (cx < bounds.x0 || cy < bounds.y0 || cx >= bounds.x1 || cy >= bounds.y1)
+        if (cx < (int)bounds.x0 || cy < (int)bounds.y0 || cx >= (int)bounds.x1 || cy >= (int)bounds.y1)
             continue;
         struct window w = find_window(cx, cy, regression.radius, bounds);
         weigh(s, &w, &s->distances[i], regression.colours);

@@ -4,6 +4,7 @@
  * jump is unbounded. */
 #include "expr/expr_derivative.h"
 
+#include "expr/expr_derivative_internal.h"
 #include "expr/expr_slopes_internal.h"
 
 #include <float.h>

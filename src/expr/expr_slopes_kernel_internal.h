@@ -2,6 +2,7 @@
  * roots, choices, sines and exponentials on vectors of boxes, everything else box by box with expr_rooted_apply. The
  * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of
  * vectors. */
+#include "expr/expr_derivative_internal.h"
 #include "expr/expr_slopes_internal.h"
 #include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"
@@ -572,6 +573,9 @@ static inline __attribute__((always_inline)) void run_lanes(struct machine *run,
         struct expr_choice decided = {0, 0};
         switch (
             (unsigned)in->operation) { /* no list: every operation without vectors, new ones too, is right box by box */
+        case EXPR_COPY:
+            *out = *from[0];
+            break;
         case EXPR_ADD:
         case EXPR_SUBTRACT:
             run_sum(run, from[0], from[1], in->operation == EXPR_SUBTRACT, out);

@@ -9,7 +9,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +66,13 @@ uint32_t film_tiles_across(const struct film *film) {
 
 uint32_t film_tile_count(const struct film *film) {
     return film_tiles_across(film) * ((film->y0 + film->height - 1) / FILM_TILE - film->y0 / FILM_TILE + 1);
+}
+
+struct film_rectangle film_rectangle_grown(const struct film_rectangle *r, uint32_t rim, uint32_t width,
+                                           uint32_t height) {
+    return (struct film_rectangle){r->x0 > rim ? r->x0 - rim : 0, r->y0 > rim ? r->y0 - rim : 0,
+                                   rim < width - r->x1 ? r->x1 + rim : width,
+                                   rim < height - r->y1 ? r->y1 + rim : height};
 }
 
 struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile) {

@@ -73,6 +73,9 @@ static inline bool film_tile_shows(uint8_t state) {
 struct film_rectangle {
     uint32_t x0, y0, x1, y1;
 };
+/* With a rim of so many pixels, as far as that is in a picture of this size. */
+struct film_rectangle film_rectangle_grown(const struct film_rectangle *r, uint32_t rim, uint32_t width,
+                                           uint32_t height);
 
 static inline bool film_record_equal(struct film_record a, struct film_record b) {
     return a.floats == b.floats && a.marks == b.marks;

@@ -2,10 +2,7 @@
  * 48 bits, so 2^24 samples can be added without a visible loss. See path_film.h. */
 #include "film/path_film.h"
 
-#include "base/mem.h"
-
 #include <float.h>
-#include <math.h>
 #include <string.h>
 
 enum {

@@ -13,7 +13,6 @@
 #include "settings/setting.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char magic[8] = "GRAYTILE";

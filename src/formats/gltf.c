@@ -6,7 +6,8 @@
  *
  * Any number of primitives may use one accessor, so a small file can request very large meshes. A multiple of the
  * size of the file bounds everything that is made from it. */
-#include "formats/model.h"
+#include "formats/gltf_data_internal.h"
+#include "formats/gltf_material_internal.h"
 
 #ifndef HAVE_JANSSON
 

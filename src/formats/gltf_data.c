@@ -3,7 +3,7 @@
  * once, when an accessor is made; reading then checks only the numbers. */
 #ifdef HAVE_JANSSON
 
-#include "formats/gltf_internal.h"
+#include "formats/gltf_data_internal.h"
 
 #include <math.h>
 #include <stdio.h>

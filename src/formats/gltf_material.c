@@ -7,8 +7,9 @@
  * wall. Sheen is fuzz. Textures of extensions are not read. Unlit materials are classic ones. */
 #ifdef HAVE_JANSSON
 
-#include "formats/gltf_internal.h"
+#include "formats/gltf_data_internal.h"
 
+#include "formats/gltf_material_internal.h"
 #include "image/image.h"
 #include "math/elementary.h"
 

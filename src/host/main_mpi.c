@@ -3,10 +3,10 @@
  * Nothing here waits for another rank, which may be stopped or dead: messages are stored until they are sent, incoming
  * messages are received in pieces, and the wait for the end of all ranks is limited. */
 #define _GNU_SOURCE
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/mem.h"
 #include "host/program.h"
-#include "output/progress.h"
 
 #include <mpi.h>
 #include <signal.h>
@@ -128,7 +128,7 @@ static bool receive_message(void *context, int *from, int *kind, void *data, siz
 
 static double read_clock(void *context) {
     (void)context;
-    return progress_clock();
+    return clock_now();
 }
 
 static void note_end(void *context, int silent, double patience) {

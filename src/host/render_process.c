@@ -3,29 +3,22 @@
  * in the arena of the job, which is emptied for the next one. */
 #include "host/render_process_internal.h"
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/mem.h"
-#include "base/pool.h"
-#include "base/terminal_text.h"
 #include "denoise/denoise.h"
-#include "film/aov.h"
 #include "film/path_film.h"
-#include "image/image.h"
+#include "host/render_reports.h"
 #include "inspect/inspect.h"
-#include "output/picture_files.h"
 #include "output/progress.h"
+#include "render/integrator.h"
 #include "render/overlay.h"
-#include "render/render.h"
 #include "render/scene_check.h"
-#include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
-#include "world/world.h"
+#include "world/world_cache.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum { LARGE_JOB = 64 << 20 /* bytes */ };
 
@@ -210,9 +203,7 @@ static bool too_much_memory(const struct render_process *process, struct error *
 /* Of something that scene_check has seen. */
 static void notice_of_picture(void *context, const char *text) {
     const struct picture_work *work = context;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%.1400s: %s", work->request->where, text);
-    render_process_report_scene(work->process, LINE_NOTICE, line);
+    render_process_say(work->process, LINE_NOTICE, "%.1400s: %s", work->request->where, text);
 }
 
 /* From the flattened scene to the finished film. */
@@ -221,13 +212,13 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct render_job *job = &work->job;
     struct picture_report *report = &work->report;
     bool in_window = work->picture_request.in_window;
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (build_world(work, work->request->lights, work->request->light_count, error))
         job->world = &work->world;
     else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;
     bool ok = true;
-    double built = progress_clock(), built_worked = progress_processor_clock();
+    double built = clock_now(), built_worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (job->world) {
         integrator_warn(job, render_process_warn, process);
         if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
@@ -244,8 +235,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;
-    report->rays.render_seconds = progress_clock() - built;
-    report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
+    report->rays.render_seconds = clock_now() - built;
+    report->rays.render_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - built_worked;
     render_process_fill_report(work, job->film, report);
     if (ok && job->world)
         render_process_warn_of_nan(process, job->world);
@@ -320,16 +311,6 @@ static struct picture_request picture_request_of(const struct options *options, 
                                     .check = options->check || is_asked(options)};
 }
 
-/* Enlarges the part that is rendered, within the picture. */
-static void add_rim(struct picture_request *picture, uint32_t rim) {
-    const struct film_rectangle shown = picture->shown;
-    uint32_t right = picture->full_width - shown.x1, below = picture->full_height - shown.y1;
-    picture->x0 = shown.x0 > rim ? shown.x0 - rim : 0;
-    picture->y0 = shown.y0 > rim ? shown.y0 - rim : 0;
-    picture->width = shown.x1 + (right > rim ? rim : right) - picture->x0;
-    picture->height = shown.y1 + (below > rim ? rim : below) - picture->y0;
-}
-
 /* Of a frame that a later one may be equal to; else zero. With --lenient, scripts change their scene for a picture. */
 static struct digest digest_of_frame(const struct picture_work *work) {
     bool never = !is_frame(work) || work->picture_request.check || work->picture_request.in_window ||
@@ -364,13 +345,13 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     picture->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;
-    picture->x0 = area.x0, picture->y0 = area.y0, picture->width = area.width, picture->height = area.height;
     if (warning[0] != '\0')
         render_process_warn_at(process, work->request->where, warning);
-    picture->shown =
-        (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width, picture->y0 + picture->height};
+    picture->shown = (struct film_rectangle){area.x0, area.y0, area.x0 + area.width, area.y0 + area.height};
     uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
-    add_rim(picture, rim + finish_rim(&job->settings.finish, picture->full_height));
+    rim += finish_rim(&job->settings.finish, picture->full_height);
+    struct film_rectangle all = film_rectangle_grown(&picture->shown, rim, picture->full_width, picture->full_height);
+    picture->x0 = all.x0, picture->y0 = all.y0, picture->width = all.x1 - all.x0, picture->height = all.y1 - all.y0;
     if (job->settings.view_is_target)
         picture->camera.view = vec3_sub(job->camera.view, job->camera.eye);
     picture->files = file_read_log_sum(&process->read_log);
@@ -378,6 +359,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
+    bool turns = process->options->script.frames.turntable > 0;
+    scene_set_time(work->request->scene, turns ? 0 : frame_time(&work->request->frame));
     work->shows = digest_of_frame(work);
     picture->repeats = repeats_frame(work);
     if (!settle(process, error))
@@ -510,10 +493,8 @@ static bool render(void *context, const struct render_request *request, struct e
     }
     if (!process->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s%s%s", error->elsewhere ? "" : request->where, error->elsewhere ? "" : ": ",
-                   error->text);
-    render_process_report_scene(process, LINE_ERROR, line);
+    render_process_say(process, LINE_ERROR, "%s%s%s", error->elsewhere ? "" : request->where,
+                       error->elsewhere ? "" : ": ", error->text);
     process->status = ERROR_SCENE;
     return true;
 }
@@ -730,7 +711,7 @@ void render_process_run(const struct options *options, const struct host_service
     scene_writer_init(&errors, &services->control->error_stream);
     const struct file_listener listener = {
         .searches = services->wait ? wait_for_files : NULL,
-        .log = options->checkpoint || options->shards || options->mpi ? &process.read_log : NULL,
+        .log = options->checkpoint || options->keeps_tiles || options->shards || options->mpi ? &process.read_log : NULL,
         .heard = services->read ? report_read : NULL,
         .wrote = services->read ? report_write : NULL,
         .contents = services->read && options->watch,

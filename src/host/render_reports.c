@@ -1,15 +1,18 @@
 /* The reports of the render process: lines, warnings about scenes, and the numbers of a picture. */
-#include "host/render_process_internal.h"
+#include "host/render_reports.h"
 
 #include "base/hash.h"
 #include "film/aov.h"
 #include "image/image.h"
-#include "session/text.h"
+#include "session/options.h"
+#include "session/options_table.h"
 #include "settings/setting.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 
 /* Writes the output of the script; the supervisor reports failures, once for all scripts. */
@@ -31,6 +34,15 @@ void render_process_report_scene(const struct render_process *process, enum line
     if (mark[0] != '\0')
         (void)snprintf(line, sizeof line, "%s%s", mark, text);
     render_process_report(process, kind, mark[0] != '\0' ? line : text);
+}
+
+void render_process_say(const struct render_process *process, enum line_kind kind, const char *format, ...) {
+    char text[2 * NAME_LIMIT];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    render_process_report_scene(process, kind, text);
 }
 
 /* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
@@ -55,9 +67,7 @@ static void warn_once(struct render_process *process, const char *key, const cha
     if (!is_first(process, key))
         return;
     bool has_word = strncmp(text, word, strlen(word)) == 0;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
-    render_process_report_scene(process, LINE_WARNING, line);
+    render_process_say(process, LINE_WARNING, "%s: %s%s", process->script, has_word ? "" : word, text);
 }
 
 void render_process_warn(void *context, const char *text) {
@@ -89,12 +99,10 @@ void render_process_report_replaced(const struct render_process *process) {
         const char *joint = value[0] == '\0' ? "" : needs_sign ? "=" : " ";
         const char *rival = replaced->fields & ~(UINT64_C(1) << i) ? setting_table[setting_rival(i)].field : "";
         bool own = replaced->fields >> i & 1, both = own && rival[0] != '\0';
-        char line[2 * NAME_LIMIT];
-        (void)snprintf(line, sizeof line, "%.4000s: %.*s%s%.64s replaces the field%s %s%s%s of %" PRIu64 " picture%s",
-                       process->script, (int)strcspn(row->option, "|"), row->option, joint, value, both ? "s" : "",
-                       own ? row->field : "", both ? " and " : "", rival, replaced->pictures,
-                       replaced->pictures > 1 ? "s" : "");
-        render_process_report_scene(process, LINE_NOTICE, line);
+        render_process_say(
+            process, LINE_NOTICE, "%.4000s: %.*s%s%.64s replaces the field%s %s%s%s of %" PRIu64 " picture%s",
+            process->script, (int)strcspn(row->option, "|"), row->option, joint, value, both ? "s" : "",
+            own ? row->field : "", both ? " and " : "", rival, replaced->pictures, replaced->pictures > 1 ? "s" : "");
     }
 }
 
@@ -145,14 +153,13 @@ void render_process_fill_report(const struct picture_work *work, const struct fi
 
 void render_process_report_world(const struct render_process *process, const char *file,
                                  const struct picture_report *report) {
-    char line[4096 + 512], grid[64] = "";
+    char grid[64] = "";
     const uint32_t *cells = report->grid_cells;
     if (cells[0] > 0) /* not a hierarchy, a kd-tree or none */
         (void)snprintf(grid, sizeof grid, " grid of %u x %u x %u,", cells[0], cells[1], cells[2]);
-    (void)snprintf(line, sizeof line, "%s: %s: %llu primitives, %llu triangles,%s built in %.3f s, %d threads",
-                   process->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
-                   grid, report->rays.build_seconds, report->threads);
-    render_process_report_scene(process, LINE_DETAIL, line);
+    render_process_say(process, LINE_DETAIL, "%s: %s: %llu primitives, %llu triangles,%s built in %.3f s, %d threads",
+                       process->script, file, (unsigned long long)report->primitives,
+                       (unsigned long long)report->triangles, grid, report->rays.build_seconds, report->threads);
 }
 
 /* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its
@@ -173,7 +180,7 @@ static const char *shown_name(const struct picture_work *work, char room[NAME_LI
 void render_process_report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
-    char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
+    char words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
     if (!has_limit || work->picture_request.in_window || rays->pixels == 0 ||
         (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
@@ -197,6 +204,104 @@ void render_process_report_samples(const struct picture_work *work) {
     else
         (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
                        mean, settings_path_samples(settings), settings->noise);
-    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, shown_name(work, room), words);
-    render_process_report_scene(work->process, LINE_NOTICE, line);
+    render_process_say(work->process, LINE_NOTICE, "%s: %s: %s", work->process->script, shown_name(work, room), words);
+}
+
+/* --- options and fields without effect --- */
+
+/* Notices about options and fields that have no effect on a picture (setting_effect): once in a run for each option,
+ * once for each line of a script with such a field. An option on the command line chooses the integrator for scenes
+ * that were written for another one, so their fields get no notice then. */
+
+static bool is_linear_file(const struct picture_work *work, const char *file) {
+    const char *dot = strrchr(file, '.');
+    bool linear = dot && (!strcasecmp(dot, ".pfm") || !strcasecmp(dot, ".hdr") || !strcasecmp(dot, ".exr"));
+    return linear && !work->picture_request.in_window && !work->process->options->display;
+}
+
+static bool has_effect(enum setting_effect effect, const struct picture_work *work, const char *file) {
+    const struct settings *settings = &work->job.settings;
+    switch (effect) {
+    case EFFECT_ALWAYS:
+        return true;
+    case EFFECT_WHITTED:
+        return settings->integrator == INTEGRATOR_WHITTED;
+    case EFFECT_PATH:
+        return settings->integrator == INTEGRATOR_PATH;
+    case EFFECT_TOON:
+        return settings->style == STYLE_TOON;
+    case EFFECT_DISPLAY:
+        return !is_linear_file(work, file);
+    case EFFECT_BYTES:
+        return !is_linear_file(work, file) && !settings->deep;
+    case EFFECT_FRAMES:
+        return work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE;
+    case EFFECT_GIF:
+        return work->process->options->animation == ANIMATION_GIF;
+    }
+    return true;
+}
+
+/* A value that turns something off is never in vain. */
+static bool is_off(const struct setting *row, const void *base) {
+    uint64_t bits = setting_bits(row, base);
+    return bits == 0 || (row->kind == SETTING_DENOISE && bits == DENOISER_NONE);
+}
+
+/* Whether the film is that of the picture before. --check and other processes leave films without pixels here. */
+void effects_count_frame(struct picture_work *work) {
+    struct render_process *process = work->process;
+    const struct film *film = &work->film;
+    struct digest seen = {0};
+    if (film->pixels && !work->job.handout && !work->picture_request.check && !work->picture_request.in_window)
+        seen = digest_bytes(film->pixels, (size_t)film->width * film->height * sizeof *film->pixels, seen);
+    if (process->frames_shown == 0)
+        process->first_frame = seen;
+    process->frames_differ |= digest_is_zero(seen) || !digest_equal(seen, process->first_frame);
+    process->frames_shown++;
+}
+
+void effects_note_frames(struct render_process *process) {
+    const struct options *options = process->options;
+    bool one = options->animation != ANIMATION_NONE && options->script.frames.selection.step == 0;
+    char line[NAME_LIMIT + 256];
+    if (options->watch || options->check || options->window)
+        return;
+    if (process->frames_shown == 1 && one) {
+        (void)snprintf(line, sizeof line,
+                       "gray: %.600s has one frame: --frames N runs the script for N of them, and gr.frames draws them",
+                       options->output);
+        render_process_report(process, LINE_NOTICE, line);
+    } else if (process->frames_shown > 1 && !process->frames_differ) {
+        render_process_say(process, LINE_NOTICE,
+                           "%.4095s: all %u frames are equal: nothing in them depends on gr.time, gr.clock or gr.frame "
+                           "(--turntable N moves the camera)",
+                           process->script, (unsigned)process->frames_shown);
+    }
+}
+
+void effects_note(struct picture_work *work) {
+    static const char *const words[] = {SETTING_EFFECTS(LIST_WORD)};
+    struct render_process *process = work->process;
+    const struct options *options = process->options;
+    const char *const *given = options->script.given;
+    const char *file = options->output ? options->output : work->request->file;
+    char line[2048], key[1600];
+    for (int i = 0; i < option_count(); i++) {
+        const struct setting *row = option_at(i);
+        bool set = i < setting_count, by_integrator = given && given[SETTING_INDEX(integrator)];
+        bool option = set ? given && given[i] : row->effect != EFFECT_ALWAYS;
+        bool field = set && !option && !by_integrator && work->request->fields >> i & 1;
+        if ((!option && !field) || is_off(row, set ? (const void *)&work->job.settings : (const void *)options) ||
+            has_effect(row->effect, work, file))
+            continue;
+        uint64_t bit = UINT64_C(1) << (set ? i : i - setting_count), *vain = &process->vain[!set];
+        if (option && *vain & bit)
+            continue;
+        *vain |= option ? bit : 0;
+        (void)snprintf(key, sizeof key, "%.1400s: %.*s", work->request->where,
+                       option ? (int)strcspn(row->option, "|") : 64, option ? row->option : row->field);
+        (void)snprintf(line, sizeof line, "%s has no effect: it is for %s", key, words[row->effect]);
+        render_process_notice_once(process, key, line);
+    }
 }

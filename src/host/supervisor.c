@@ -2,12 +2,15 @@
  * one continues with the next script. */
 #include "host/supervisor_internal.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
+#include "host/supervisor_child.h"
+#include "host/supervisor_messages.h"
+#include "host/supervisor_signals.h"
 #include "session/text.h"
 
 #include <errno.h>
 #include <poll.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -75,8 +78,8 @@ static void report_script(struct supervisor *supervisor) {
 static bool files_changed(struct supervisor *supervisor) {
     if (!supervisor->watch.open)
         return false;
-    watch_read(&supervisor->watch, progress_clock());
-    return watch_changed(&supervisor->watch, progress_clock());
+    watch_read(&supervisor->watch, clock_now());
+    return watch_changed(&supervisor->watch, clock_now());
 }
 
 /* Runs until the child closes the channel, or waits for changes. */
@@ -98,7 +101,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         if (watched[1].revents)
             supervisor_read_signals(supervisor);
         leave_abandoned(supervisor);
-        if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
+        if (supervisor->deadline > 0 && clock_now() > supervisor->deadline)
             break;
         output_show_progress(&supervisor->output);
         report_script(supervisor);
@@ -124,7 +127,7 @@ static void talk_to_child(struct supervisor *supervisor) {
 /* An existing child continues; without one, a new one is started. */
 static void run_children(struct supervisor *supervisor) {
     struct error error;
-    supervisor->viewer.window.script_began = progress_clock();
+    supervisor->viewer.window.script_began = clock_now();
     bool there = supervisor->child > 0;
     while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
         supervisor->broken = false;
@@ -148,7 +151,7 @@ static void run_children(struct supervisor *supervisor) {
 /* Between two runs: nothing is rendered, the window shows the last good picture. True when something has changed. */
 static bool wait_for_change(struct supervisor *supervisor) {
     supervisor->waits = true;
-    watch_settle(&supervisor->watch, supervisor->status != 0, progress_clock());
+    watch_settle(&supervisor->watch, supervisor->status != 0, clock_now());
     if (!supervisor->window && !supervisor->restarts)
         output_report(&supervisor->output, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
     supervisor->stop = false;
@@ -188,7 +191,7 @@ static bool watch_scripts(struct supervisor *supervisor, struct error *error) {
     if (!watch_open(&supervisor->watch, error))
         return false;
     for (int i = 0; i < supervisor->options->script_count; i++) {
-        if (!watch_add(&supervisor->watch, supervisor->options->scripts[i], NULL, progress_clock()))
+        if (!watch_add(&supervisor->watch, supervisor->options->scripts[i], NULL, clock_now()))
             return error_no_memory(error, "the list of files that are watched");
     }
     return true;
@@ -293,12 +296,9 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     else
         supervisor_note_error(supervisor, &error);
     viewer_end(&supervisor->viewer);
-    if (supervisor->quit_at > 0) {
-        char line[80];
-        (void)snprintf(line, sizeof line, "gray: the window closed in %.1f ms",
-                       1000 * (progress_clock() - supervisor->quit_at));
-        output_report(&supervisor->output, LINE_DETAIL, line);
-    }
+    if (supervisor->quit_at > 0)
+        output_say(&supervisor->output, LINE_DETAIL, "gray: the window closed in %.1f ms",
+                   1000 * (clock_now() - supervisor->quit_at));
     watch_close(&supervisor->watch);
     if (!output_finish(&supervisor->output, supervisor->status == 0, &error) && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);

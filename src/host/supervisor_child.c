@@ -1,8 +1,9 @@
 /* The life of the render process: how it is started and confined, how long its script may take, and what its end means.
  * The supervisor has no thread while it forks (only while it writes a picture). */
 #define _GNU_SOURCE
-#include "host/supervisor_internal.h"
+#include "host/supervisor_child.h"
 
+#include "base/clock.h"
 #include "base/fault.h"
 #include "base/pool.h"
 #include "base/process.h"
@@ -92,7 +93,7 @@ static _Noreturn void give_up(const struct process_work *work, const struct erro
  * While a picture is open, the child always has work. A script may wait for the reader of its output, but it must not
  * be stopped. Time in which this process was stopped itself does not count. */
 bool supervisor_child_is_stalled(struct supervisor *supervisor) {
-    double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
+    double limit = supervisor->options->farm_stall, now = clock_now(), pause = limit / 32;
     double passed = now - supervisor->stall.checked;
     if (!supervisor->output.farm || limit <= 0 || passed < pause)
         return false;
@@ -162,7 +163,7 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
     supervisor->script.used = 0;
     supervisor->script.frames = 0;
     supervisor->script.out_of_time = supervisor->stall.found = false;
-    supervisor->stall.checked = progress_clock();
+    supervisor->stall.checked = clock_now();
     supervisor->stall.clock = supervisor->stall.seconds = 0;
     supervisor_start_script_clock(supervisor);
     channel_close(&ends[1]);
@@ -175,13 +176,13 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
 /* The channel is closed before the process is gone: wait, but not for ever. */
 int supervisor_reap_child(struct supervisor *supervisor) {
     const struct timespec pause = {0, 2000000};
-    double limit = progress_clock() + farewell;
+    double limit = clock_now() + farewell;
     int how = 0;
     for (;;) {
         pid_t got = waitpid(supervisor->child, &how, WNOHANG);
         if (got == supervisor->child || (got < 0 && errno != EINTR))
             break;
-        if (progress_clock() > limit || supervisor->deadline > 0)
+        if (clock_now() > limit || supervisor->deadline > 0)
             (void)kill(supervisor->child, SIGKILL);
         (void)nanosleep(&pause, NULL);
     }
@@ -246,6 +247,18 @@ static bool tries_again(struct supervisor *supervisor, int how) {
     return true;
 }
 
+/* Files are written after the window is closed. */
+void supervisor_abandon_picture(struct supervisor *supervisor) {
+    struct picture *picture = &supervisor->output.current;
+    bool other = supervisor->window && picture->open && !viewer_has_tiles(&supervisor->viewer);
+    for (uint32_t tile = 0; other && !picture->request.check && tile < film_tile_count(&picture->film); tile++)
+        atomic_store(&picture->film.tiles[tile], FILM_TILE_WANTED);
+    viewer_detach(&supervisor->viewer);
+    if (supervisor->quit_at > 0)
+        viewer_end(&supervisor->viewer);
+    output_abandon(&supervisor->output);
+}
+
 /* What the end of the child means for the scripts that are left. */
 void supervisor_judge_end(struct supervisor *supervisor, int how) {
     bool all_ended = supervisor->next_script >= supervisor->options->script_count;
@@ -264,7 +277,6 @@ void supervisor_judge_end(struct supervisor *supervisor, int how) {
                   WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
         supervisor_note_error(supervisor, &error);
     }
-    viewer_detach(&supervisor->viewer);
-    output_abandon(&supervisor->output);
+    supervisor_abandon_picture(supervisor);
     supervisor->retry.kept = 0;
 }

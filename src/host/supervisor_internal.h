@@ -26,7 +26,7 @@ struct script_clock {
 struct stall_check {
     double clock;   /* of the child, when it was seen to move last */
     double seconds; /* since then, in which it might have moved */
-    double checked; /* on progress_clock */
+    double checked; /* on clock_now */
     bool found;     /* the child was killed for that */
 };
 
@@ -73,43 +73,9 @@ struct supervisor {
  * freeing the memory of a large scene takes longer than a kill. */
 static const double supervisor_patience = 0.03;
 
-/* supervisor.c */
 void supervisor_note_status(struct supervisor *supervisor, int status); /* the worst stays */
 /* In the terminal; errors also in the window. */
 void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text);
 void supervisor_note_error(struct supervisor *supervisor, const struct error *error);
-
-/* supervisor_signals.c */
-bool supervisor_listen(struct supervisor *supervisor, struct error *error);
-void supervisor_read_signals(struct supervisor *supervisor);
-/* Ends everything: requests the child to stop, and kills it soon after; a second call kills it at once. */
-void supervisor_interrupt(struct supervisor *supervisor);
-/* While a picture waits for the reader of a pipe; context: the supervisor. */
-bool supervisor_is_stopped(void *context);
-/* Until standard error takes text; false: it does not, and the run is to end. context: the supervisor. */
-bool supervisor_wait_for_reader(void *context);
-
-/* supervisor_child.c */
-bool supervisor_start_child(struct supervisor *supervisor, struct error *error);
-/* Its status as of waitpid, when it is gone. */
-int supervisor_reap_child(struct supervisor *supervisor);
-/* What the end of the child means for the scripts that are left. */
-void supervisor_judge_end(struct supervisor *supervisor, int how);
-void supervisor_stop_script_clock(struct supervisor *supervisor);
-void supervisor_start_script_clock(struct supervisor *supervisor);
-/* Milliseconds until the script could have used up its time; -1: no limit; 0: it has. */
-int supervisor_script_patience(const struct supervisor *supervisor);
-/* Whether the child of a farm has hung for too long. */
-bool supervisor_child_is_stalled(struct supervisor *supervisor);
-
-/* supervisor_messages.c */
-void supervisor_handle_message(struct supervisor *supervisor, const struct message *message);
-void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kind, bool ok, bool already,
-                            const struct error *error, int descriptor);
-void supervisor_step_window(struct supervisor *supervisor);
-/* The window without a picture. */
-void supervisor_open_window(struct supervisor *supervisor);
-/* The scripts are ended, to run again. */
-void supervisor_restart(struct supervisor *supervisor);
 
 #endif

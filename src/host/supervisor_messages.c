@@ -1,8 +1,12 @@
 /* Answers to the render process. Invariant: files are written by this process alone, and only from a film that the
  * render process has declared complete. */
-#include "host/supervisor_internal.h"
+#include "host/supervisor_messages.h"
 
+#include "host/supervisor_child.h"
+
+#include "base/clock.h"
 #include "base/mem.h"
+#include "viewer/viewer_save.h"
 
 #include <poll.h>
 #include <string.h>
@@ -112,7 +116,7 @@ static void answer_begin(struct supervisor *supervisor, const struct message *me
                                            output->current.name};
     supervisor->viewer.window.number = film ? output->pictures : supervisor->viewer.window.number;
     if (film && supervisor->window &&
-        !viewer_begin(&supervisor->viewer, supervisor->window, &picture, progress_clock(), &error)) {
+        !viewer_begin(&supervisor->viewer, supervisor->window, &picture, clock_now(), &error)) {
         output_abandon(output);
         film = ok = false;
     }
@@ -136,14 +140,14 @@ static void end_picture(struct supervisor *supervisor, bool quit) {
     send_command(supervisor, &command);
 }
 
-/* Closing the window loses no picture: it is written already, or the user did not wait for it. */
+/* A picture that is not written yet is interrupted as by Ctrl-C. */
 static void quit_window(struct supervisor *supervisor) {
     supervisor->ended = true;
-    supervisor->quit_at = progress_clock();
+    supervisor->quit_at = clock_now();
     if (supervisor->deadline > 0 || supervisor->waits)
         return;
     supervisor->stop = true;
-    supervisor->deadline = progress_clock() + patience_quit;
+    supervisor->deadline = clock_now() + patience_quit;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     if (!supervisor->viewer.written)
         supervisor_note_status(supervisor, ERROR_CANCELLED);
@@ -156,7 +160,7 @@ void supervisor_restart(struct supervisor *supervisor) {
     if (supervisor->deadline > 0)
         return;
     supervisor->stop = supervisor->restarts = true;
-    supervisor->deadline = progress_clock() + patience_again;
+    supervisor->deadline = clock_now() + patience_again;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     viewer_keep(&supervisor->viewer);
     atomic_store(&supervisor->control->next_frame, viewer_next_frame(&supervisor->viewer));
@@ -164,28 +168,32 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* ok: a file with that name was written. */
+static void show_written(struct supervisor *supervisor, bool ok, const char *name, const struct error *error) {
+    char line[NAME_LIMIT + 64];
+    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error->text);
+    viewer_show_notice(&supervisor->viewer, line, !ok);
+}
+
 static void save_from_window(struct supervisor *supervisor,
                              bool (*take)(const struct viewer *viewer, const struct file_target *picture, char *name,
                                           struct error *error)) {
     struct error error;
-    char name[NAME_LIMIT], line[NAME_LIMIT + 64];
+    char name[NAME_LIMIT];
     const struct file_target picture = {.path = supervisor->viewer.name, .rules = &supervisor->output.files.saved};
     bool ok = take(&supervisor->viewer, &picture, name, &error);
-    (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
-    output_report(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, line);
-    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error.text);
-    viewer_show_notice(&supervisor->viewer, line, !ok);
+    output_say(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, ok ? "gray: notice: %s is written" : "%s",
+               ok ? name : error.text);
+    show_written(supervisor, ok, name, &error);
 }
 
 /* The script's picture, under its name. */
 static void write_from_window(struct supervisor *supervisor) {
     struct error error;
-    char line[NAME_LIMIT + 64];
     bool ok = output_write(&supervisor->output, &error);
     if (!ok && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);
-    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? supervisor->viewer.name : error.text);
-    viewer_show_notice(&supervisor->viewer, line, !ok);
+    show_written(supervisor, ok, supervisor->viewer.name, &error);
 }
 
 void supervisor_open_window(struct supervisor *supervisor) {
@@ -201,7 +209,7 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    if (!supervisor->waits && progress_clock() - supervisor->viewer.window.script_began > patience_open)
+    if (!supervisor->waits && clock_now() - supervisor->viewer.window.script_began > patience_open)
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
@@ -209,7 +217,7 @@ void supervisor_step_window(struct supervisor *supervisor) {
     if (viewer->player.seeking) /* it may have changed */
         atomic_store(&supervisor->control->next_frame, viewer_next_frame(viewer));
     while (viewer->window.open && supervisor->deadline <= 0) {
-        switch (viewer_step(viewer, progress_clock())) {
+        switch (viewer_step(viewer, clock_now())) {
         case VIEWER_NOTHING:
             return;
         case VIEWER_STOP_PASS:
@@ -253,7 +261,7 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
     if (ok)
         settle(supervisor, supervisor->output.pictures);
     if (supervisor->finishing) { /* the tiles in progress were the last ones: the picture is complete */
-        supervisor->deadline = progress_clock() + supervisor_patience;
+        supervisor->deadline = clock_now() + supervisor_patience;
         atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     }
     supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
@@ -300,7 +308,7 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
     picture_files_keep(&supervisor->output.files, read->version.identity, read->written);
     if (read->written)
         return;
-    if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, progress_clock())) {
+    if (supervisor->watch.open && !watch_add(&supervisor->watch, read->path, &read->version, clock_now())) {
         (void)error_no_memory(&error, "the list of files that are watched");
         supervisor_note_error(supervisor, &error);
     }
@@ -334,15 +342,14 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
         if (!current->open || !supervisor->window || supervisor->viewer.pass.state == PASS_WAITING ||
             !preview_reply_read(message, &reply))
             break;
-        viewer_receive_reply(&supervisor->viewer, &reply, progress_clock());
+        viewer_receive_reply(&supervisor->viewer, &reply, clock_now());
         if (supervisor->deadline > 0)
             end_picture(supervisor, true);
         return;
     case MESSAGE_ABANDON:
         if (!current->open || supervisor->retry.kept)
             break;
-        viewer_detach(&supervisor->viewer);
-        output_abandon(&supervisor->output);
+        supervisor_abandon_picture(supervisor);
         supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_SCRIPT:

@@ -1,7 +1,8 @@
 /* Signals are blocked and read from a descriptor beside the channel, so that no handler changes any state. */
 #define _GNU_SOURCE
-#include "host/supervisor_internal.h"
+#include "host/supervisor_signals.h"
 
+#include "base/clock.h"
 #include "base/fault.h"
 #include "session/text.h"
 
@@ -31,23 +32,20 @@ bool supervisor_listen(struct supervisor *supervisor, struct error *error) {
     return true;
 }
 
-/* The first Ctrl-C, if tiles are kept (--checkpoint, --partial): tiles in progress are finished. */
+/* The first Ctrl-C with --checkpoint: tiles in progress are finished. */
 static bool finish_tiles(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
     const struct picture *picture = &supervisor->output.current;
-    bool wanted = (options->checkpoint || options->partial) && picture->open && !picture->request.check &&
-                  !supervisor->output.farm && !supervisor->window && !options->watch &&
-                  atomic_load(&supervisor->control->tiles) > 0;
-    char line[NAME_LIMIT + 160];
+    bool wanted = options->checkpoint && picture->open && !picture->request.check && !supervisor->output.farm &&
+                  !supervisor->window && !options->watch && atomic_load(&supervisor->control->tiles) > 0;
     if (!wanted || supervisor->finishing || supervisor->deadline > 0)
         return false;
     supervisor->stop = supervisor->finishing = true;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
     atomic_store(&supervisor->control->drain, 1);
-    (void)snprintf(line, sizeof line,
-                   "gray: interrupted, %s is not written; tiles under way are finished (Ctrl-C again: at once)",
-                   picture->name);
-    output_report(&supervisor->output, LINE_ERROR, line);
+    output_say(&supervisor->output, LINE_ERROR,
+               "gray: interrupted, %s is not written; tiles under way are finished (Ctrl-C again: at once)",
+               picture->name);
     return true;
 }
 
@@ -63,7 +61,7 @@ void supervisor_interrupt(struct supervisor *supervisor) {
         atomic_store(&supervisor->control->cancel, 1);
     if (supervisor->waits || supervisor->all_written) /* nothing is interrupted: it is how watching ends */
         return;
-    supervisor->deadline = progress_clock() + supervisor_patience;
+    supervisor->deadline = clock_now() + supervisor_patience;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
     supervisor->output.interrupted = true;
     atomic_store(&supervisor->control->cancel, 1);
@@ -73,9 +71,7 @@ void supervisor_interrupt(struct supervisor *supervisor) {
         output_report(&supervisor->output, LINE_ERROR, "gray: interrupted");
         return;
     }
-    char line[NAME_LIMIT + 64];
-    (void)snprintf(line, sizeof line, "gray: interrupted, %s is not written", picture->name);
-    output_report(&supervisor->output, LINE_ERROR, line);
+    output_say(&supervisor->output, LINE_ERROR, "gray: interrupted, %s is not written", picture->name);
 }
 
 void supervisor_read_signals(struct supervisor *supervisor) {

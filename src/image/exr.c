@@ -3,7 +3,6 @@
 #include "image/exr.h"
 
 #include "base/fault.h"
-#include "base/file_output.h"
 #include "base/mem.h"
 #include "image/levels.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "image/blue_noise_internal.h"
+#include "image/fxaa_internal.h"
 #include "image/png_write.h"
 #include "math/elementary.h"
 

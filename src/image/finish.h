@@ -51,10 +51,6 @@ bool finish_light(const struct finish *finish, double exposure, const struct fin
 /* rgb: the numbers of the picture file, clamped to 0..1. False: no memory. */
 bool finish_display(const struct finish *finish, const struct finish_area *area, float (*rgb)[3], struct error *error);
 
-/* T. Lottes, "FXAA", NVIDIA white paper, 2009: see fxaa.c. in and out are different arrays of numbers in 0..1. */
-enum { FXAA_RIM = 18 };
-void fxaa_apply(const struct finish_area *area, const float (*in)[3], float (*out)[3]);
-
 /* The byte for a number in 0..1 (others are clamped, NaN gives 0) at a pixel of the whole picture. Numbers k / 255 give
  * k, and the mean over the mask is the number. ORDERED: B. Bayer, "An optimum method for two-level rendition of
  * continuous-tone pictures", ICC 1973, 8 x 8. BLUE: a mask of 64 x 64 by void-and-cluster (tools/blue_noise.py). NONE:

@@ -3,7 +3,6 @@
  * says for widths from 8 to 32767; other widths are written flat. */
 #include "image/float_write.h"
 
-#include "base/file_output.h"
 #include "base/mem.h"
 
 #include <math.h>

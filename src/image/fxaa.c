@@ -3,7 +3,7 @@
  * The pixel is moved across the edge by the fraction that the line between the two ends covers. A pixel that differs
  * from all neighbours is mixed with their mean. Uniform areas, and edges along an axis, which have no ends, do not
  * change. */
-#include "image/finish.h"
+#include "image/fxaa_internal.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -72,6 +72,9 @@ struct rgba image_lookup(const struct image *image, struct image_point at, struc
  * IMAGE_CLAMP. */
 void image_lookup_slopes(const struct image *image, struct image_point at, struct image_sampling how, struct rgba *by_u,
                          struct rgba *by_v);
+/* The mip level for a footprint of `texels` texels: its binary logarithm, linear between powers of two (0.09 off at
+ * most, continuous, and the same on every machine), at least 0 and at most `last`. NaN gives 0. */
+double image_level_for(double texels, int last);
 /* Pictures of any format that this build reads; the first bytes select the format. */
 
 /* Errors name the path. JPEG files have 8 bits per channel, without alpha. */

@@ -9,7 +9,6 @@
 
 #include "base/mem.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Half of a size that is made of `parts` equal parts, if it is; plain half (at least 1) otherwise. */

@@ -50,13 +50,6 @@ struct image {
  * size is refused. */
 struct image *image_allocate(const char *name, uint32_t width, uint32_t height, int bits, struct error *error);
 bool image_build_levels(struct image *image, struct error *error);
-/* Sets what the file states about its colours: `transfer` and `colours`. False: no memory. */
-bool png_colour_read(struct image *image, const uint8_t *data, size_t size);
-/* A PNG file in memory: every colour type, bit depth and interlace; texels are not changed by cICP, iCCP, sRGB and gAMA
- * (transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
- * are errors before memory is allocated. */
-struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
-
 /* One texel, premultiplied, in units squared. */
 static inline struct rgba image_level_texel(const struct image *image, int level, uint32_t x, uint32_t y) {
     const struct image_level *l = &image->levels[level];
@@ -85,9 +78,5 @@ static inline struct rgba image_from_units(struct rgba c) {
 static inline struct rgba image_mix(struct rgba a, struct rgba b, double t) {
     return (struct rgba){a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t, a.a + (b.a - a.a) * t};
 }
-
-/* The mip level for a footprint of `texels` texels: its binary logarithm, linear between powers of two (0.09 off at
- * most, continuous, and the same on every machine), at least 0 and at most `last`. NaN gives 0. */
-double image_level_for(double texels, int last);
 
 #endif

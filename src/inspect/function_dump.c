@@ -81,12 +81,10 @@ static void dump_function(struct functions *functions, const struct expr_program
         return;
     const char *source = program->source ? program->source : "";
     text_writer_print(writer, json && functions->has_one ? "," : "");
-    text_writer_print(writer, json ? "{\"source\":" : "  ");
-    json ? text_writer_json(writer, source) : text_writer_name(writer, source);
-    text_writer_print(writer,
-                      json ? ",\"operations\":%u,\"constants\":%u,\"registers\":%u,\"code\":["
-                           : ": %u operations, %u constants, %u registers\n",
-                      program->count, program->constant_count, program->register_count);
+    text_writer_put(writer,
+                    json ? "{\"source\":%q,\"operations\":%u,\"constants\":%u,\"registers\":%u,\"code\":["
+                         : "  %n: %u operations, %u constants, %u registers\n",
+                    source, program->count, program->constant_count, program->register_count);
     dump_program(writer, program, json);
     text_writer_print(writer, json ? "]}" : "");
     functions->has_one = true;
@@ -108,14 +106,7 @@ void inspect_functions(const struct inspected *picture, struct text_writer *writ
     const struct world *world = picture->job->world;
     const struct fog *fog = picture->job->fog;
     struct functions functions = {.writer = writer, .json = picture->json};
-    if (picture->json) {
-        text_writer_print(writer, "{\"picture\":");
-        text_writer_json(writer, picture->file);
-        text_writer_print(writer, ",\"functions\":[");
-    } else {
-        text_writer_name(writer, picture->file);
-        text_writer_print(writer, ": functions\n");
-    }
+    text_writer_put(writer, picture->json ? "{\"picture\":%q,\"functions\":[" : "%n: functions\n", picture->file);
     for (uint32_t i = 0; i < world->texture_count; i++)
         if (world->textures[i].kind == TEXTURE_FUNCTION)
             dump_function(&functions, world->textures[i].recorded.program);

@@ -5,9 +5,7 @@
 
 #include "base/hash.h"
 #include "csg/csg.h"
-#include "inspect/inspect.h"
 #include "render/camera.h"
-#include "world/node_path.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,8 @@
  * each is its light. Numbers have six digits, for reading; --json prints all digits. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
-#include "material/texture_mapping.h"
+#include "light/light_edit.h"
+#include "world/world_describe.h"
 
 #include <math.h>
 
@@ -13,13 +14,10 @@ struct text_state {
     bool changed; /* for the link that is printed */
 };
 
-static void indent(const struct text_state *t, int deeper) {
-    int width = 2 * (t->depth + deeper);
-    text_writer_print(t->writer, "%*s", width < 200 ? width : 200, "");
-}
-
-static void triple(const struct text_state *t, const char *before, struct vec3 v) {
-    text_writer_print(t->writer, "%s(%.6g, %.6g, %.6g)", before, v.x, v.y, v.z);
+/* The blanks before a line about a ray. */
+static int deep(const struct text_state *t) {
+    int width = 2 * (t->depth + 1);
+    return width < 200 ? width : 200;
 }
 
 static bool same(struct vec3 a, struct vec3 b) {
@@ -30,8 +28,7 @@ static void changed_triple(struct text_state *t, const char *name, struct vec3 n
     if (same(now, before))
         return;
     t->changed = true;
-    text_writer_print(t->writer, " %s", name);
-    triple(t, " ", now);
+    text_writer_put(t->writer, " %s %v", name, now);
 }
 
 static void changed_number(struct text_state *t, const char *name, double now, double before) {
@@ -51,14 +48,8 @@ static void changed_flag(struct text_state *t, const char *name, bool now, bool 
 /* One link: its effect. */
 static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_inputs *before) {
     const struct surface_inputs *inputs = &link->inputs;
-    indent(t, 1);
-    text_writer_print(t->writer, "%s", material_step_name(link->material));
-    if (link->material->name && link->material->name[0]) {
-        text_writer_print(t->writer, " '");
-        text_writer_name(t->writer, link->material->name);
-        text_writer_print(t->writer, "'");
-    }
-    text_writer_print(t->writer, ":");
+    const char *name = link->material->name ? link->material->name : "";
+    text_writer_put(t->writer, name[0] ? "%i%s '%n':" : "%i%s:", deep(t), material_step_name(link->material), name);
     t->changed = false;
     changed_triple(t, "kd", inputs->kd, before->kd);
     changed_triple(t, "ks", inputs->ks, before->ks);
@@ -78,61 +69,53 @@ static void print_link(struct text_state *t, const struct pixel_trace_link *link
 }
 
 static void print_shading(const struct text_state *t, const struct pixel_trace_ray *ray) {
-    indent(t, 1);
-    text_writer_print(t->writer, "shading:");
+    text_writer_put(t->writer, "%ishading:", deep(t));
     for (int i = 0; i < ray->bsdf.count; i++) {
         const struct lobe *lobe = &ray->bsdf.lobes[i];
-        text_writer_print(t->writer, "%s %s", i > 0 ? "," : "", lobe_name(lobe->kind));
-        triple(t, " ", lobe->weight);
+        text_writer_put(t->writer, "%s %s %v", i > 0 ? "," : "", lobe_name(lobe->kind), lobe->weight);
         if (lobe_flags(lobe->kind) & BSDF_EXPONENT)
-            text_writer_print(t->writer, "^%.6g", lobe->exponent);
+            text_writer_put(t->writer, "^%g", lobe->exponent);
     }
-    if (ray->bsdf.count == 0)
-        text_writer_print(t->writer, " none");
-    if (ray->bsdf.alpha > 0)
-        text_writer_print(t->writer, ", rough (alpha %.6g)", ray->bsdf.alpha);
-    triple(t, "; normal ", ray->bsdf.lit);
-    text_writer_print(t->writer, "%s\n", ray->bsdf.dark ? "; seen from behind, where no light counts" : "");
-    if (ray->bsdf.fresnel >= 0) {
-        indent(t, 1);
-        text_writer_print(t->writer, "fresnel: %.6g is reflected, %.6g refracted, index before / behind %.6g%s\n",
-                          ray->bsdf.fresnel, 1 - ray->bsdf.fresnel, ray->bsdf.eta,
-                          ray->bsdf.transmits ? "" : ": total reflection");
-    } else if (!ray->bsdf.transmits && ray->bsdf.eta != 1) {
-        indent(t, 1);
-        text_writer_print(t->writer, "total internal reflection: nothing is refracted\n");
-    }
+    text_writer_put(t->writer, ray->bsdf.count == 0 ? " none" : "");
+    text_writer_put(t->writer, ray->bsdf.alpha > 0 ? ", rough (alpha %g)" : "", ray->bsdf.alpha);
+    text_writer_put(t->writer, "; normal %v%s\n", ray->bsdf.lit,
+                    ray->bsdf.dark ? "; seen from behind, where no light counts" : "");
+    if (ray->bsdf.fresnel >= 0)
+        text_writer_put(t->writer, "%ifresnel: %g is reflected, %g refracted, index before / behind %g%s\n", deep(t),
+                        ray->bsdf.fresnel, 1 - ray->bsdf.fresnel, ray->bsdf.eta,
+                        ray->bsdf.transmits ? "" : ": total reflection");
+    else if (!ray->bsdf.transmits && ray->bsdf.eta != 1)
+        text_writer_put(t->writer, "%itotal internal reflection: nothing is refracted\n", deep(t));
 }
 
 /* Lights of a path may also be emissive surfaces, and the background. */
 static void print_light_name(const struct text_state *t, const struct pixel_trace_light *light) {
+    text_writer_put(t->writer, "%i", deep(t));
     if (light->primitive != OBSERVER_NO_BLOCKER) {
-        text_writer_print(t->writer, "light of ");
-        text_writer_name(t->writer, trace_path(t->report, light->primitive));
+        text_writer_put(t->writer, "light of %n", trace_path(t->report, light->primitive));
         return;
     }
     if (light->number >= t->report->picture->job->world->light_count) {
-        text_writer_print(t->writer, "light of the background");
+        text_writer_put(t->writer, "light of the background");
         return;
     }
-    text_writer_print(t->writer, "light %u, %s", light->number + 1, light_kind_name(light->light->kind));
+    text_writer_put(t->writer, "light %u, %s", light->number + 1, light_kind_name(light->light->kind));
     unsigned has = light_properties(light->light);
     if (has & LIGHT_HAS_POSITION)
-        triple(t, " at ", light->light->position);
+        text_writer_put(t->writer, " at %v", light->light->position);
     else if (has & LIGHT_HAS_DIRECTION)
-        triple(t, " along ", light->light->direction);
-    triple(t, " of ", light->light->colour);
+        text_writer_put(t->writer, " along %v", light->light->direction);
+    text_writer_put(t->writer, " of %v", light->light->colour);
 }
 
 static void print_light(const struct text_state *t, const struct pixel_trace_light *light) {
-    indent(t, 1);
     print_light_name(t, light);
     switch (light->lit) {
     case PIXEL_TRACE_LIGHT_NOT_OURS:
-        text_writer_print(t->writer, ": does not light this\n");
+        text_writer_put(t->writer, ": does not light this\n");
         return;
     case PIXEL_TRACE_LIGHT_NO_EFFECT:
-        text_writer_print(t->writer, ": the surface reflects none of it to the viewer\n");
+        text_writer_put(t->writer, ": the surface reflects none of it to the viewer\n");
         return;
     case PIXEL_TRACE_LIGHT_REACHES:
     case PIXEL_TRACE_LIGHT_BLOCKED:
@@ -140,71 +123,54 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
     }
     bool is_shaded_once = !light->area_light && light->distance > 0;
     if (is_shaded_once && light->distance < INFINITY)
-        text_writer_print(t->writer, ": distance %.6g, falloff %.6g", light->distance, light->strength);
+        text_writer_put(t->writer, ": distance %g, falloff %g", light->distance, light->strength);
     if (is_shaded_once)
-        triple(t, ", reflected by ", light->reflected);
-    if (light->has_blocker) {
-        text_writer_print(t->writer, ", blocked by ");
-        text_writer_name(t->writer, trace_path(t->report, light->blocker));
-    } else if (light->asked == 1) {
-        text_writer_print(t->writer, light->arrived ? ", seen" : ", blocked");
-    } else {
-        text_writer_print(t->writer, ", %u of %u shadow rays arrive", light->arrived, light->asked);
-    }
-    triple(t, ": ", light->colour);
-    text_writer_print(t->writer, "\n");
+        text_writer_put(t->writer, ", reflected by %v", light->reflected);
+    if (light->has_blocker)
+        text_writer_put(t->writer, ", blocked by %n", trace_path(t->report, light->blocker));
+    else if (light->asked == 1)
+        text_writer_put(t->writer, light->arrived ? ", seen" : ", blocked");
+    else
+        text_writer_put(t->writer, ", %u of %u shadow rays arrive", light->arrived, light->asked);
+    text_writer_put(t->writer, ": %v\n", light->colour);
 }
 
 static void print_hit(const struct text_state *t, const struct pixel_trace_ray *ray) {
     const struct world *world = t->report->picture->job->world;
     const struct hit *hit = &ray->hit;
     const struct geometry *geometry = primitive_geometry(world, hit->primitive);
-    indent(t, 1);
-    text_writer_print(t->writer, "meets ");
-    text_writer_name(t->writer, trace_path(t->report, hit->primitive));
-    text_writer_print(t->writer, ", %s", geometry_kind_name(geometry));
-    if (geometry->csg)
-        text_writer_print(t->writer, ", operand %u of %u, %s", hit->leaf + 1, geometry->csg->leaf_count,
-                          shape_kind_name(geometry_shape(geometry, hit->leaf)->kind));
-    text_writer_print(t->writer, ", part %u, from %s, at distance %.6g\n", hit->part, hit->front ? "outside" : "inside",
-                      ray->distance);
-    indent(t, 1);
-    triple(t, "point ", hit->point);
-    triple(t, ", normal ", hit->normal_geometric);
-    if (!same(hit->normal, hit->normal_geometric))
-        triple(t, ", interpolated ", hit->normal);
     double u, v;
+    text_writer_put(t->writer, "%imeets %n, %s", deep(t), trace_path(t->report, hit->primitive),
+                    geometry_kind_name(geometry));
+    if (geometry->csg)
+        text_writer_put(t->writer, ", operand %u of %u, %s", hit->leaf + 1, geometry->csg->leaf_count,
+                        shape_kind_name(geometry_shape(geometry, hit->leaf)->kind));
+    text_writer_put(t->writer, ", part %u, from %s, at distance %g\n", hit->part, hit->front ? "outside" : "inside",
+                    ray->distance);
+    text_writer_put(t->writer, "%ipoint %v, normal %v", deep(t), hit->point, hit->normal_geometric);
+    if (!same(hit->normal, hit->normal_geometric))
+        text_writer_put(t->writer, ", interpolated %v", hit->normal);
     if (world_native_uv(world, hit, &u, &v))
-        text_writer_print(t->writer, ", uv (%.6g, %.6g)", u, v);
-    text_writer_print(t->writer, ", material %u of %u\n", world->material_numbers[hit->material] + 1,
-                      world->material_number_count);
+        text_writer_put(t->writer, ", uv (%g, %g)", u, v);
+    text_writer_put(t->writer, ", material %u of %u\n", world->material_numbers[hit->material] + 1,
+                    world->material_number_count);
 }
 
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
 static void print_terms(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct vec3 emission = ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission;
-    if (!ray->is_vertex) {
-        indent(t, 1);
-        triple(t, "ambient ", ray->ambient_light);
-        triple(t, " times ", ray->bsdf.ambient);
-        triple(t, ": ", ray->ambient);
-        text_writer_print(t->writer, "\n");
-    }
+    if (!ray->is_vertex)
+        text_writer_put(t->writer, "%iambient %v times %v: %v\n", deep(t), ray->ambient_light, ray->bsdf.ambient,
+                        ray->ambient);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
         print_light(t, light);
-    if (ray->has_photons) {
-        indent(t, 1);
-        triple(t, "caustics: ", ray->photons);
-        text_writer_print(t->writer, "\n");
-    }
-    if (!same(ray->bsdf.emission, vec3_all(0))) {
-        indent(t, 1);
-        triple(t, "own light: ", emission);
-        if (!same(ray->bsdf.emission, emission))
-            triple(t, ", a part of ", ray->bsdf.emission);
-        text_writer_print(t->writer, "\n");
-    }
+    if (ray->has_photons)
+        text_writer_put(t->writer, "%icaustics: %v\n", deep(t), ray->photons);
+    if (!same(ray->bsdf.emission, vec3_all(0)))
+        text_writer_put(t->writer,
+                        same(ray->bsdf.emission, emission) ? "%iown light: %v\n" : "%iown light: %v, a part of %v\n",
+                        deep(t), emission, ray->bsdf.emission);
 }
 
 static const char *const path_ends[] = {
@@ -219,10 +185,8 @@ static const char *const path_ends[] = {
 
 static void print_end(const struct text_state *t, const struct pixel_trace_ray *ray) {
     const char *reason = ray->is_vertex ? path_ends[ray->vertex.end] : NULL;
-    if (!reason)
-        return;
-    indent(t, 1);
-    text_writer_print(t->writer, "the path ends here: %s\n", reason);
+    if (reason)
+        text_writer_put(t->writer, "%ithe path ends here: %s\n", deep(t), reason);
 }
 
 /* The terms of the surface's colour, in the order in which they are added. */
@@ -243,76 +207,58 @@ static void print_surface(struct text_state *t, const struct pixel_trace_ray *ra
         print_ray(t, child);
     t->depth--;
     print_end(t, ray);
-    if (ray->opacity < 1) {
-        indent(t, 1);
-        text_writer_print(t->writer,
-                          ray->is_vertex
-                              ? "opacity %.6g: the probability of the surface, else the path passes the hole\n"
-                              : "opacity %.6g: the weight of the surface; the rest comes through the hole\n",
-                          ray->opacity);
-    }
+    if (ray->opacity < 1)
+        text_writer_put(t->writer,
+                        ray->is_vertex ? "%iopacity %g: the probability of the surface, else the path passes the hole\n"
+                                       : "%iopacity %g: the weight of the surface; the rest comes through the hole\n",
+                        deep(t), ray->opacity);
 }
 
 static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
-    if (ray->cut == RAY_TOO_WEAK) {
-        indent(t, 1);
-        text_writer_print(t->writer, "the hit at distance %.6g cannot change the pixel (--cutoff)\n", ray->distance);
-    } else if (ray->is_vertex && ray->vertex.end == PATH_SEES_LIGHT) {
-        indent(t, 1);
-        text_writer_print(t->writer, "hits a visible light at distance %.6g\n", ray->vertex.distance);
-    } else if (ray->area_light) {
-        indent(t, 1);
-        text_writer_print(t->writer, "hits a visible %s at distance %.6g\n", light_kind_name(ray->area_light->kind),
-                          ray->distance);
-    } else if (ray->met) {
+    if (ray->cut == RAY_TOO_WEAK)
+        text_writer_put(t->writer, "%ithe hit at distance %g cannot change the pixel (--cutoff)\n", deep(t),
+                        ray->distance);
+    else if (ray->is_vertex && ray->vertex.end == PATH_SEES_LIGHT)
+        text_writer_put(t->writer, "%ihits a visible light at distance %g\n", deep(t), ray->vertex.distance);
+    else if (ray->area_light)
+        text_writer_put(t->writer, "%ihits a visible %s at distance %g\n", deep(t),
+                        light_kind_name(ray->area_light->kind), ray->distance);
+    else if (ray->met)
         print_surface(t, ray);
-    } else {
-        indent(t, 1);
-        text_writer_print(t->writer, "hits nothing: background, %s\n",
-                          sky_kind_name(t->report->picture->job->world->sky.kind));
-        if (ray->is_vertex && ray->parent) {
-            indent(t, 1);
-            triple(t, "its light: ", ray->vertex.emission);
-            text_writer_print(t->writer, "\n");
-        }
-    }
+    else
+        text_writer_put(t->writer, "%ihits nothing: background, %s\n", deep(t),
+                        sky_kind_name(t->report->picture->job->world->sky.kind));
+    bool leaves = ray->cut != RAY_TOO_WEAK && !ray->met && !ray->area_light;
+    if (leaves && ray->is_vertex && ray->vertex.end != PATH_SEES_LIGHT && ray->parent)
+        text_writer_put(t->writer, "%iits light: %v\n", deep(t), ray->vertex.emission);
 }
 
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
-    indent(t, 0);
-    text_writer_print(t->writer, "ray %u, %s", ray->number,
-                      ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
+    struct text_writer *writer = t->writer;
+    text_writer_put(writer, "%iray %u, %s", deep(t) - 2, ray->number,
+                    ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
     if (ray->parent)
-        triple(t, ", weight ", ray->weight);
+        text_writer_put(writer, ", weight %v", ray->weight);
     if (!ray->begun) {
-        text_writer_print(t->writer, ": not traced, %s\n",
-                          ray->cut == RAY_OVER_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
-                                                     : "it cannot change the pixel (--cutoff)");
+        text_writer_put(writer, ": not traced, %s\n",
+                        ray->cut == RAY_OVER_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
+                                                   : "it cannot change the pixel (--cutoff)");
         return;
     }
-    triple(t, ": from ", ray->origin);
-    triple(t, " along ", ray->direction);
-    if (ray->time != 0)
-        text_writer_print(t->writer, ", time %.6g", ray->time);
+    text_writer_put(writer, ": from %v along %v", ray->origin, ray->direction);
+    text_writer_put(writer, ray->time != 0 ? ", time %g" : "", ray->time);
     if (ray->media_count > 0)
-        text_writer_print(t->writer, ", inside of %u, index %.6g", ray->media_count, ray->media_ior);
-    text_writer_print(t->writer, "\n");
+        text_writer_put(writer, ", inside of %u, index %g", ray->media_count, ray->media_ior);
+    text_writer_put(writer, "\n");
     print_met(t, ray);
-    indent(t, 1);
-    if (ray->is_vertex && same(ray->left, vec3_all(1)) && !same(ray->in_scattered, vec3_all(0))) {
-        triple(t, "lights on the way add ", ray->in_scattered);
-        text_writer_print(t->writer, "\n");
-        indent(t, 1);
-    } else if (!same(ray->left, vec3_all(1))) {
-        triple(t, "of ", ray->seen);
-        triple(t, " the way leaves ", ray->left);
-        if (!same(ray->in_scattered, vec3_all(0)))
-            triple(t, " and fog adds ", ray->in_scattered);
-        text_writer_print(t->writer, "\n");
-        indent(t, 1);
-    }
-    triple(t, "brings ", ray->brings);
-    text_writer_print(t->writer, "\n");
+    /* What the way to the hit adds and leaves. */
+    bool clear = same(ray->left, vec3_all(1)), lit = !same(ray->in_scattered, vec3_all(0));
+    if (clear && lit && ray->is_vertex)
+        text_writer_put(writer, "%ilights on the way add %v\n", deep(t), ray->in_scattered);
+    else if (!clear)
+        text_writer_put(writer, lit ? "%iof %v the way leaves %v and fog adds %v\n" : "%iof %v the way leaves %v\n",
+                        deep(t), ray->seen, ray->left, ray->in_scattered);
+    text_writer_put(writer, "%ibrings %v\n", deep(t), ray->brings);
 }
 
 static const char *direction(int x, int y) {
@@ -327,8 +273,7 @@ static void print_sample(struct text_state *t, const struct pixel_trace_sample *
     t->depth = 1;
     for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
         print_ray(t, ray);
-    triple(t, "  colour ", sample->colour);
-    text_writer_print(t->writer, "\n");
+    text_writer_put(t->writer, "  colour %v\n", sample->colour);
 }
 
 /* Of two samples the one with more light, or the first one. */
@@ -354,14 +299,13 @@ static void print_paths(struct text_state *t) {
         error = vec3_scale(variance, 1 / (count - 1));
         error = vec3_make(sqrt(error.x), sqrt(error.y), sqrt(error.z));
     }
-    triple(t, "mean ",
-           vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]));
-    triple(t, ", standard error ", error);
     const struct settings *settings = &t->report->picture->job->settings;
-    text_writer_print(t->writer, ", of %.0f samples%s; the brightest paths:\n", count,
-                      settings->noise > 0        ? " (--spp; --noise may need fewer)"
-                      : settings->time_limit > 0 ? " (--spp, without --time-limit)"
-                                                 : "");
+    text_writer_put(t->writer, "mean %v, standard error %v, of %u samples%s; the brightest paths:\n",
+                    vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]),
+                    error, (unsigned)count,
+                    settings->noise > 0        ? " (--spp; --noise may need fewer)"
+                    : settings->time_limit > 0 ? " (--spp, without --time-limit)"
+                                               : "");
     const struct pixel_trace_sample *last = NULL;
     for (int i = 0; i < BRIGHTEST; i++) {
         const struct pixel_trace_sample *next = NULL;
@@ -444,9 +388,8 @@ static void print_sum(struct text_state *t) {
 void pixel_trace_print(const struct trace_report *report, struct text_writer *writer) {
     struct text_state t = {.report = report, .writer = writer};
     const struct render_job *job = report->picture->job;
-    text_writer_name(writer, report->picture->file);
-    text_writer_print(writer, ", pixel %u,%u of %u x %u: ", report->pixel_trace->x, report->pixel_trace->y, job->width,
-                      job->height);
+    text_writer_put(writer, "%n, pixel %u,%u of %u x %u: ", report->picture->file, report->pixel_trace->x,
+                    report->pixel_trace->y, job->width, job->height);
     if (integrator_traits(job->settings.integrator).progressive)
         print_paths(&t);
     else

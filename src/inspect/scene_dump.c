@@ -1,5 +1,6 @@
 /* The flattened world as it was built: one line for each primitive, in flattening order, then materials and lights. */
 #include "inspect/inspect.h"
+#include "light/light_edit.h"
 #include "mesh/mesh.h"
 
 #include <stdio.h>
@@ -29,11 +30,9 @@ static void dump_line(const struct dump *d, uint32_t primitive, const char *path
                        first + prototype->slot_count - 1);
     if (mesh)
         (void)snprintf(triangles, sizeof triangles, "%u", mesh_triangle_count(mesh));
-    text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)  ", primitive + 1,
-                      geometry_kind_name(&prototype->geometry), triangles, material, moves ? "moves" : "", box->min.x,
-                      box->min.y, box->min.z, box->max.x, box->max.y, box->max.z);
-    text_writer_name(d->writer, path);
-    text_writer_print(d->writer, "\n");
+    text_writer_print(d->writer, "%8u  %-14s %9s %9s  %-5s ", primitive + 1, geometry_kind_name(&prototype->geometry),
+                      triangles, material, moves ? "moves" : "");
+    text_writer_put(d->writer, "%v to %v  %n\n", box->min, box->max, path);
     if (!prototype->geometry.csg)
         return;
     for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++) {
@@ -47,10 +46,9 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
     const struct prototype *prototype = primitive_prototype(d->world, primitive);
     const struct mesh *mesh = geometry_mesh(&prototype->geometry);
     struct text_writer *writer = d->writer;
-    text_writer_print(writer, "%s{\"number\":%u,\"node\":", primitive > 0 ? "," : "", primitive + 1);
-    text_writer_json(writer, path);
-    text_writer_print(writer, ",\"node_number\":%u,\"shape\":\"%s\"", primitive_node(d->world, primitive)->serial,
-                      geometry_kind_name(&prototype->geometry));
+    text_writer_put(writer, "%s{\"number\":%u,\"node\":%q,\"node_number\":%u,\"shape\":\"%s\"",
+                    primitive > 0 ? "," : "", primitive + 1, path, primitive_node(d->world, primitive)->serial,
+                    geometry_kind_name(&prototype->geometry));
     if (mesh)
         text_writer_print(writer, ",\"triangles\":%u", mesh_triangle_count(mesh));
     if (mesh && mesh_dropped_faces(mesh) > 0)
@@ -67,16 +65,11 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
                           prototype->slot_count > 1 ? prototype->slot_count : 1);
     }
     struct transform map = world_placement(d->world, primitive, 0);
-    text_writer_print(writer, ",\"min\":");
-    text_writer_json_vector(writer, d->world->boxes[primitive].min);
-    text_writer_print(writer, ",\"max\":");
-    text_writer_json_vector(writer, d->world->boxes[primitive].max);
-    text_writer_print(writer, ",\"world_from_object\":[");
-    for (int i = 0; i < 12; i++) {
-        text_writer_print(writer, i > 0 ? "," : "");
-        text_writer_json_number(writer, map.forward.m[i / 4][i % 4]);
-    }
-    text_writer_print(writer, "]}");
+    text_writer_put(writer, ",\"min\":%a,\"max\":%a,\"world_from_object\":[", d->world->boxes[primitive].min,
+                    d->world->boxes[primitive].max);
+    for (int i = 0; i < 12; i++)
+        text_writer_put(writer, i > 0 ? ",%j" : "%j", map.forward.m[i / 4][i % 4]);
+    text_writer_put(writer, "]}");
 }
 
 static bool dump_primitives(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
@@ -89,66 +82,43 @@ static bool dump_primitives(void *context, uint32_t first, uint32_t count, const
     return true;
 }
 
-static void link_json(struct text_writer *writer, const struct material *link) {
+static void dump_link(const struct dump *d, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
-    text_writer_print(writer, "{\"kind\":\"%s\"", material_step_name(link));
-    if (link->name && link->name[0]) {
-        text_writer_print(writer, ",\"name\":");
-        text_writer_json(writer, link->name);
-    }
-    if (!link->base) {
-        text_writer_print(writer, ",\"kd\":");
-        text_writer_json_vector(writer, phong->kd);
-        text_writer_print(writer, ",\"ks\":");
-        text_writer_json_vector(writer, phong->ks);
-    }
-    text_writer_print(writer, link->base ? "}," : "}");
-}
-
-static void link_text(struct text_writer *writer, const struct material *link) {
-    const struct phong *phong = &material_origin(link)->phong;
-    text_writer_print(writer, "%s", material_step_name(link));
-    if (link->name && link->name[0]) {
-        text_writer_print(writer, " '");
-        text_writer_name(writer, link->name);
-        text_writer_print(writer, "'");
-    }
+    const char *name = link->name ? link->name : "";
+    text_writer_put(d->writer, d->json ? "{\"kind\":\"%s\"" : "%s", material_step_name(link));
+    if (name[0])
+        text_writer_put(d->writer, d->json ? ",\"name\":%q" : " '%n'", name);
     if (!link->base)
-        text_writer_print(writer, " kd (%.6g, %.6g, %.6g) ks (%.6g, %.6g, %.6g)", phong->kd.x, phong->kd.y, phong->kd.z,
-                          phong->ks.x, phong->ks.y, phong->ks.z);
-    text_writer_print(writer, link->base ? " over " : "");
+        text_writer_put(d->writer, d->json ? ",\"kd\":%a,\"ks\":%a" : " kd %v ks %v", phong->kd, phong->ks);
+    text_writer_put(d->writer, "%s%s", d->json ? "}" : "", !link->base ? "" : d->json ? "," : " over ");
 }
 
 static void dump_material(const struct dump *d, uint32_t material) {
     struct text_writer *writer = d->writer;
-    const struct material *last = d->world->authored.materials[material];
     uint32_t number = number_of(d, material);
     text_writer_print(writer, d->json ? "%s{\"number\":%u,\"links\":[" : "%.0s%8u  ", d->json && number > 1 ? "," : "",
                       number);
-    for (const struct material *link = last; link; link = link->base)
-        d->json ? link_json(writer, link) : link_text(writer, link);
+    for (const struct material *link = d->world->authored.materials[material]; link; link = link->base)
+        dump_link(d, link);
     text_writer_print(writer, d->json ? "]}" : "\n");
 }
 
 static void dump_light(const struct dump *d, uint32_t number) {
     const struct light *light = &d->world->lights[number];
     unsigned has = light_properties(light);
-    bool located = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, area_light = !light_is_delta(light);
-    struct vec3 at = located ? light->position : light->direction, colour = light->colour;
-    text_writer_print(
-        d->writer, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
-        d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), area_light ? "true" : "false");
+    bool area_light = !light_is_delta(light);
+    const char *kind = light_kind_name(light->kind);
     if (d->json)
-        text_writer_json_vector(d->writer, colour);
+        text_writer_put(d->writer, "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%b,\"colour\":%a", number > 0 ? "," : "",
+                        number + 1, kind, area_light, light->colour);
     else
-        text_writer_print(d->writer, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z,
-                          area_light ? ", a lamp" : "");
-    if ((located || directed) && d->json) {
-        text_writer_print(d->writer, located ? ",\"position\":" : ",\"direction\":");
-        text_writer_json_vector(d->writer, at);
-    } else if (located || directed) {
-        text_writer_print(d->writer, " %s (%.6g, %.6g, %.6g)", located ? "at" : "along", at.x, at.y, at.z);
-    }
+        text_writer_print(d->writer, "%8u  ", number + 1);
+    if (!d->json)
+        text_writer_put(d->writer, "%s of %v%s", kind, light->colour, area_light ? ", a lamp" : "");
+    if (has & LIGHT_HAS_POSITION)
+        text_writer_put(d->writer, d->json ? ",\"position\":%a" : " at %v", light->position);
+    else if (has & LIGHT_HAS_DIRECTION)
+        text_writer_put(d->writer, d->json ? ",\"direction\":%a" : " along %v", light->direction);
     text_writer_print(d->writer, d->json ? "}" : "\n");
 }
 
@@ -171,18 +141,13 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
     bool json = picture->json;
     const struct world *world = picture->job->world;
     struct dump d = {picture, world, writer, json};
-    if (json) {
-        text_writer_print(writer, "{\"picture\":");
-        text_writer_json(writer, picture->file);
-        text_writer_print(writer, ",\"primitives\":[");
-    } else {
-        text_writer_name(writer, picture->file);
+    text_writer_put(writer, json ? "{\"picture\":%q,\"primitives\":[" : "%n", picture->file);
+    if (!json)
         text_writer_print(writer,
                           ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
                           "  number  shape          triangles  material        box  node\n",
                           world->primitive_count, (unsigned long long)world->triangles, world->material_number_count,
                           world->light_count, sky_kind_name(world->sky.kind));
-    }
     bool ok = world_visit_node_paths(world, picture->root, dump_primitives, &d, error);
     if (ok)
         dump_rest(&d);

@@ -9,12 +9,12 @@
 #include "base/error.h"
 #include "expr/expr_field.h"
 #include "image/transfer.h"
+#include "light/light_bounds.h"
 #include "light/light_mesh.h"
 #include "light/light_shapes_internal.h"
 #include "light/sky_light_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
-#include "math/range.h"
 
 /* A disc whose square fills more than this solid angle is sampled by that of the square, although a fifth of the square
  * is outside the disc: bench/area_lights.c. */

@@ -182,8 +182,6 @@ double light_pdf(const struct light *light, const struct light_context *context,
 /* The hit of a ray on the surface of an area light; t in the ray's interval. Never a mesh, whose surface is in the
  * scene (if it is not: light_triangle_meets_ray), nor a sky, which is behind everything. */
 bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit);
-/* Whether a ray towards it finds its light, from the light or from its mesh or sky, so that a mirror shows it. */
-bool light_is_seen(const struct light *light);
 /* The radiance that it emits along a ray that hits it. */
 struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
 /* The box of the surface that light_meets_ray tests. False: there is none. */
@@ -230,20 +228,13 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
 /* The factor for the power of a photon after a path of `length`. */
 double light_photon_attenuation(const struct light *light, double length);
 
-/* --- listings and editors --- */
+/* --- selection (light_sampler.h) --- */
 
-const char *light_kind_name(enum light_kind kind);
-enum light_property {
-    LIGHT_HAS_POSITION = 1,  /* that of its own */
-    LIGHT_HAS_DIRECTION = 2, /* the direction of emission, or the normal of a disc */
-    LIGHT_HAS_EDGES = 4,
-    LIGHT_HAS_RADIUS = 8,     /* about its direction, where it has one */
-    LIGHT_HAS_CONE = 16,      /* about its direction */
-    LIGHT_HAS_RANGE = 32,     /* its range grows with it */
-    LIGHT_IS_ENVIRONMENT = 64 /* it comes from all sides, mirrors show it, and it rotates only about the y axis */
-};
-unsigned light_properties(const struct light *light);
-/* The centre of a light with a position, and of a mesh once the world is built. False: there is none. */
-bool light_centre(const struct light *light, struct vec3 *out);
+struct light_bounds; /* light_bounds.h */
+/* How many parts of a light are chosen separately: the triangles of a mesh; 1 of others. */
+uint32_t light_part_count(const struct light *light);
+/* Of a part. NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
+enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
+enum light_extent light_bounds_of(const struct light *light, uint32_t part, struct light_bounds *out);
 
 #endif

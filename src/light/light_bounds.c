@@ -1,6 +1,7 @@
 /* Bounds of lights, for light_sampler.c: their union and their importance. The formulas for cones are
  * those of Pharr, Jakob and Humphreys, sections 3.8.4 and 12.6.3. All bounds are conservative: the importance is 0 only
  * if no light arrives. */
+#include "light/light_bounds.h"
 #include "light/light_shapes_internal.h"
 #include "math/elementary.h"
 #include "math/range.h"

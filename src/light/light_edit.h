@@ -1,8 +1,24 @@
-/* Changes of lights. */
+/* Changes of lights, and what listings and editors show of them. */
 #ifndef GRAY_LIGHT_LIGHT_EDIT_H
 #define GRAY_LIGHT_LIGHT_EDIT_H
 
 #include "light/light.h"
+
+const char *light_kind_name(enum light_kind kind);
+enum light_property {
+    LIGHT_HAS_POSITION = 1,  /* that of its own */
+    LIGHT_HAS_DIRECTION = 2, /* the direction of emission, or the normal of a disc */
+    LIGHT_HAS_EDGES = 4,
+    LIGHT_HAS_RADIUS = 8,     /* about its direction, where it has one */
+    LIGHT_HAS_CONE = 16,      /* about its direction */
+    LIGHT_HAS_RANGE = 32,     /* its range grows with it */
+    LIGHT_IS_ENVIRONMENT = 64 /* it comes from all sides, mirrors show it, and it rotates only about the y axis */
+};
+unsigned light_properties(const struct light *light);
+/* The centre of a light with a position, and of a mesh once the world is built. False: there is none. */
+bool light_centre(const struct light *light, struct vec3 *out);
+/* Whether a ray towards it finds its light, from the light or from its mesh or sky, so that a mirror shows it. */
+bool light_is_seen(const struct light *light);
 
 /* A rotation and a scale for a light: 3 rows of 3, the linear part of a map about its position. */
 enum { TURN_NUMBERS = 9 };

@@ -13,30 +13,8 @@
 #include "base/list.h"
 #include "base/pool.h"
 #include "light/light.h"
+#include "light/light_bounds.h"
 #include "settings/settings.h"
-
-/* Bounds of a light, or of several together. */
-struct light_bounds {
-    struct box box; /* of the emitting points */
-    /* The light leaves from normals within theta_o of the axis (unit), in directions within theta_e of these. */
-    struct vec3 axis;
-    double cos_theta_o, cos_theta_e;
-    bool two_sided; /* ... and likewise about the opposite of the axis */
-    /* The radiance of a white surface that faces it at distance d, averaged over colours and visible sides:
-     * steady + fading / (falloff[0] + falloff[1] d + falloff[2] d^2), nothing beyond `range`. */
-    double steady, attenuation, falloff[3], range;
-    struct vec3 centre; /* the rest is computed from the fields above: a ball around the box */
-    double radius, sin_theta_o;
-};
-/* How many parts of a light are chosen separately: the triangles of a mesh; 1 of others. */
-uint32_t light_part_count(const struct light *light);
-/* Of a part. NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
-enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
-enum light_extent light_bounds_of(const struct light *light, uint32_t part, struct light_bounds *out);
-struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b);
-/* An estimate of its contribution at a surface with that normal (both sides; {0,0,0}: at a point without a surface). 0:
- * none. */
-double light_bounds_importance(const struct light_bounds *bounds, struct vec3 point, struct vec3 normal);
 
 /* A light, and of a mesh the triangle; 0 of others. */
 struct light_part {

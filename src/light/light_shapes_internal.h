@@ -27,12 +27,6 @@ static inline void light_context_square(struct light_context *out, struct vec3 c
     out->corner = vec3_add_scaled(vec3_add_scaled(centre, out->right, -half), out->up, -half);
 }
 
-/* light_bounds.c: the attenuation of a delta light at a distance. */
-double light_attenuation(const struct light *light, double distance);
-/* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
- * them the cubic 3 s^2 - 2 s^3 of the cosine. */
-double light_cone(const struct light *light, struct vec3 from_light);
-
 /* A lamp without a body may lie exactly in a ceiling or wall: both have the same t, but for rounding. So rays meet such
  * a lamp a little before its plane, and shadow rays end there. Relative to the coordinates: size is the largest one of
  * the lamp, distance that of the point from which the lamp is seen. */
@@ -72,8 +66,6 @@ static inline double light_strength(const struct light *light) {
 static inline struct box light_box_centred(struct vec3 centre, struct vec3 half) {
     return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
 }
-/* A delta light: from its attenuation (light_bounds.c). */
-void light_bounds_fade(const struct light *light, struct light_bounds *out);
 /* A light of that classic intensity at distance 1, which falls with the square of the distance. */
 static inline void light_bounds_emit(double intensity, struct light_bounds *out) {
     out->attenuation = intensity;
@@ -81,9 +73,6 @@ static inline void light_bounds_emit(double intensity, struct light_bounds *out)
 }
 /* A planar light with area / pi, by the cosine (light_shapes.c). */
 void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out);
-/* Computes the other fields of the bounds; false: no emission (light_bounds.c). */
-bool light_bounds_finish(struct light_bounds *bounds);
-
 /* The mathematics of LIGHT_SPHERE, for light.c. */
 
 /* False: the point is on the sphere, or so near that the cone is a half-space, or inside a delta light. */

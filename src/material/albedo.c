@@ -6,7 +6,6 @@
 
 #include "material/albedo_tables_internal.h"
 #include "material/microfacet_internal.h"
-#include "math/elementary.h"
 
 #include <math.h>
 

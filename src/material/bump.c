@@ -13,7 +13,7 @@
 #include "material/bump.h"
 
 #include "material/texture_function_internal.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 #include "math/frame.h"
 
 struct bump bump_make(enum material_kind kind, const struct texture *texture) {

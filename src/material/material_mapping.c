@@ -4,7 +4,7 @@
 #include "material/material_mapping.h"
 
 #include "base/random.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 
 struct material_mapping_entry {
     const void *of; /* a texture, a relief or a material; NULL: free */

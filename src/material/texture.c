@@ -3,7 +3,7 @@
 #include "material/texture.h"
 
 #include "material/texture_function_internal.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 #include "math/noise.h"
 
 /* --- values --- */

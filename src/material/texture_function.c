@@ -7,7 +7,7 @@
 #include "material/texture_function_internal.h"
 
 #include "expr/expr_derivative.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 #include "math/frame.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The mappings of the language (docs/language.md 6.2) and those by the coordinates that a shape supplies. Lookups are
  * as wide as the ray's cone: the footprint divided by the derivative of the position with respect to u and v. */
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 
 #include "math/elementary.h"
 

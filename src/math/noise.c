@@ -8,7 +8,6 @@
 #include "math/noise.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/random.h"

@@ -4,9 +4,8 @@
 
 #include "base/mem.h"
 #include "image/png_write.h"
-#include "output/encoder_internal.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown_internal.h"
+#include "output/tool_internal.h"
 #include "settings/frame.h"
 
 #include <stdio.h>

@@ -4,13 +4,13 @@
 
 #include "base/fault.h"
 #include "base/mem.h"
+#include "session/options_check.h"
 
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>

@@ -3,28 +3,25 @@
  * usage, and then no file may have been touched. */
 #include "output/output_session.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
-#include "film/aov.h"
 #include "image/exr.h"
 #include "image/picture_file.h"
-#include "output/layers_internal.h"
-#include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"
 #include "session/text.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 /* A viewer that is gone is a warning; the picture does not depend on it. */
 static void report_display(struct output_session *output, bool ok, const struct error *error) {
-    char line[sizeof error->text + 32];
     if (ok)
         return;
-    (void)snprintf(line, sizeof line, "gray: warning: %s", error->text);
-    output_report(output, LINE_WARNING, line);
+    output_say(output, LINE_WARNING, "gray: warning: %s", error->text);
 }
 
 /* False: standard error takes nothing, and the run is to end; nothing more is shown. */
@@ -252,22 +249,28 @@ static bool count_picture(struct output_session *output, const struct picture_re
     return true;
 }
 
+/* Of an earlier run. True. */
+static bool remove_partial(struct output_session *output, const struct picture *picture) {
+    picture_files_remove_partial(&output->files, picture->name);
+    return true;
+}
+
 static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
     if (animation_streams(&output->animation, &picture->request))
         return animation_put(&output->animation, picture, error);
     return picture_files_written(&output->files, picture->name, name, error) &&
-           picture_write_files(&output->files, picture, name, error) &&
+           picture_write_files(&output->files, picture, name, error) && remove_partial(output, picture) &&
            (output->options->shards || animation_add(&output->animation, name, error)) &&
            checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
 static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
-    double begun = progress_clock(), worked = progress_processor_clock();
+    double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     bool ok = output->interrupted ? error_set(error, ERROR_CANCELLED, "%.600s: interrupted", picture->name)
                                   : write_picture(output, picture, error);
-    picture->write_seconds = progress_clock() - begun;
-    picture->write_processor_seconds = progress_processor_clock() - worked;
+    picture->write_seconds = clock_now() - begun;
+    picture->write_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - worked;
     return ok;
 }
 
@@ -276,12 +279,10 @@ static bool write_timed(struct output_session *output, struct picture *picture, 
 static bool write_again(struct output_session *output, bool *already, struct error *error) {
     const struct picture *picture = &output->current;
     struct picture *again = &output->previous;
-    char line[NAME_LIMIT + 96];
     if (!picture->request.repeats || !again->open || (output->farm && !farm_is_first(output->farm)))
         return true;
-    (void)snprintf(line, sizeof line, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
-                   frame_number(picture), frame_number(again));
-    output_report(output, LINE_DETAIL, line);
+    output_say(output, LINE_DETAIL, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
+               frame_number(picture), frame_number(again));
     memcpy(again->name, picture->name, sizeof again->name);
     memcpy(again->tiles.name, picture->name, sizeof again->tiles.name);
     again->tiles.number = picture->tiles.number;
@@ -339,7 +340,6 @@ static bool check_own(struct output_session *output, const struct picture_reques
                       struct error *error) {
     /* With --watch, and after a crash in a farm, scripts render their pictures again. */
     bool again = request->in_window || output->options->watch || output->farm;
-    char notice[NAME_LIMIT + 128];
     if (again || !picture_files_is_own(&output->files, written))
         return true;
     if (request->frame.number > 0 && output->options->output)
@@ -347,9 +347,8 @@ static bool check_own(struct output_session *output, const struct picture_reques
                          "-o %.600s: %.600s, the only name for frame %u, is already another picture of this run; "
                          "without -o, pictures have the names of the script",
                          output->options->output, written, request->frame.number);
-    (void)snprintf(notice, sizeof notice,
-                   "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
-    output_report(output, LINE_NOTICE, notice);
+    output_say(output, LINE_NOTICE,
+               "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
     return true;
 }
 
@@ -392,7 +391,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
 /* The picture whose tiles a checkpoint would hold, or NULL. */
 static const struct picture *kept_picture(const struct output_session *output) {
     const struct picture *current = &output->current;
-    if (current->open && !current->request.check)
+    if (current->open && !current->request.check && !current->written)
         return current;
     return output->held.open ? &output->held : NULL;
 }
@@ -404,11 +403,8 @@ static bool update_checkpoint(struct output_session *output, bool now, struct ch
     const uint32_t nothing = UINT32_MAX;
     tiles->done = nothing;
     if (!checkpoint_update(&output->checkpoint, picture ? &picture->tiles : NULL, picture ? &picture->film : NULL, now,
-                           tiles, &error)) {
-        char line[sizeof error.text + 64];
-        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", error.text);
-        output_report(output, LINE_WARNING, line);
-    }
+                           tiles, &error))
+        output_say(output, LINE_WARNING, "gray: warning: the checkpoint: %s", error.text);
     return tiles->done != nothing;
 }
 
@@ -420,17 +416,15 @@ static void describe_begun(uint32_t begun, char out[48]) {
 }
 
 static void report_checkpoint(struct output_session *output, struct checkpoint_tiles tiles) {
-    char line[2 * NAME_LIMIT], begun[48];
+    char begun[48];
     const struct picture *picture = kept_picture(output);
     describe_begun(tiles.begun, begun);
     if (picture)
-        (void)snprintf(line, sizeof line,
-                       "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
-                       output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
+        output_say(output, LINE_NOTICE, "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
+                   output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
     else
-        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
-                       output->checkpoint.done_count);
-    output_report(output, LINE_NOTICE, line);
+        output_say(output, LINE_NOTICE, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
+                   output->checkpoint.done_count);
 }
 
 void output_write_checkpoint(struct output_session *output) {
@@ -441,18 +435,18 @@ void output_write_checkpoint(struct output_session *output) {
         report_checkpoint(output, tiles);
 }
 
-/* --partial: writes the finished part of an interrupted picture under a separate name. */
-static void write_partial(struct output_session *output, struct picture *picture) {
+/* Writes the finished part of an interrupted picture under a separate name. */
+static void write_partial(struct output_session *output, struct picture *picture, bool keeps_tiles) {
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE), begun = film_tiles_begun(&picture->film);
     struct error error;
-    char name[NAME_LIMIT], line[NAME_LIMIT + 120], of_begun[48];
-    const struct file_target target = {.path = name, .rules = &output->files.beside};
-    if (done + begun == 0)
+    char name[NAME_LIMIT], of_begun[48];
+    const struct file_target target = {.path = name, .rules = &output->files.partial};
+    if (done + begun == 0 || !picture_files_partial(&output->files, picture->name, name))
         return;
     film_clear_unfinished(&picture->film);
     struct picture_shown *shown = NULL;
-    bool ok = layers_name(picture->name, "partial", name, &error) &&
-              (shown = picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error)) &&
+    picture->unfinished = true;
+    bool ok = (shown = picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error)) &&
               picture_write_view(&shown->picture, &target, FILM_FINAL, NULL, &error);
     picture_shown_destroy(shown);
     if (!ok) {
@@ -460,35 +454,36 @@ static void write_partial(struct output_session *output, struct picture *picture
         return;
     }
     describe_begun(begun, of_begun);
-    (void)snprintf(line, sizeof line, "gray: notice: %s holds %u of %u tiles%s", name, done,
-                   film_tile_count(&picture->film), of_begun);
-    output_report(output, LINE_NOTICE, line);
+    output_say(output, LINE_NOTICE, "gray: notice: %s holds %u of %u tiles%s%s", name, done,
+               film_tile_count(&picture->film), of_begun,
+               output->options->keeps_tiles && !keeps_tiles ? " (--checkpoint auto keeps them for --resume)" : "");
+}
+
+/* A picture that is not written: its tiles go into the checkpoint and the partial picture. */
+static void keep_tiles(struct output_session *output, struct picture *picture) {
+    struct checkpoint_tiles tiles;
+    bool kept = update_checkpoint(output, true, &tiles);
+    if (kept)
+        report_checkpoint(output, tiles);
+    write_partial(output, picture, kept);
 }
 
 void output_abandon(struct output_session *output) {
-    struct checkpoint_tiles tiles;
-    const struct film *film = &output->current.film;
+    const struct picture *current = &output->current;
     display_forget(&output->display);
     progress_end(&output->progress, PROGRESS_GIVEN_UP);
     if (output->farm)
         farm_end(output->farm, true);
-    if (output->current.open && !output->current.request.check &&
-        film_tiles_in(film, FILM_TILE_DONE) + film_tiles_begun(film) > 0 && update_checkpoint(output, true, &tiles))
-        report_checkpoint(output, tiles);
-    if (output->options->partial && output->current.open && !output->current.request.check)
-        write_partial(output, &output->current);
+    if (current->open && !current->request.check && !current->written &&
+        film_tiles_in(&current->film, FILM_TILE_DONE) + film_tiles_begun(&current->film) > 0)
+        keep_tiles(output, &output->current);
     close_picture(&output->current);
 }
 
 /* A picture is complete, but was not written. After an interrupt its tiles are kept, as those of an unfinished one. */
 static void keep_unwritten(struct output_session *output, struct picture *picture, const struct error *error) {
-    struct checkpoint_tiles tiles;
-    if (error->kind != ERROR_CANCELLED)
-        return;
-    if (update_checkpoint(output, true, &tiles))
-        report_checkpoint(output, tiles);
-    if (output->options->partial)
-        write_partial(output, picture);
+    if (error->kind == ERROR_CANCELLED)
+        keep_tiles(output, picture);
 }
 
 static void report_statistics(struct output_session *output, const struct picture *picture,
@@ -513,7 +508,7 @@ static void report_statistics(struct output_session *output, const struct pictur
 
 /* True: this process only helps, and the picture is written by another one. */
 static bool leave_to_first_rank(struct output_session *output) {
-    char shares[512], line[NAME_LIMIT + 600];
+    char shares[512];
     if (!output->farm)
         return false;
     farm_end(output->farm, false);
@@ -522,9 +517,8 @@ static bool leave_to_first_rank(struct output_session *output) {
         return true;
     }
     farm_shares(output->farm, shares, sizeof shares);
-    (void)snprintf(line, sizeof line, "%s%s: tiles made by each rank: %s", scene_mark(output->current.name),
-                   output->current.name, shares);
-    output_report(output, LINE_DETAIL, line);
+    output_say(output, LINE_DETAIL, "%s%s: tiles made by each rank: %s", scene_mark(output->current.name),
+               output->current.name, shares);
     return false;
 }
 
@@ -536,13 +530,11 @@ bool output_write(struct output_session *output, struct error *error) {
 
 /* Tiles of a farm come from other ranks as well, those of a checkpoint from an earlier run. */
 static void warn_of_clamped(struct output_session *output, const struct picture_report *report) {
-    char line[NAME_LIMIT + 128];
     if (!report->rays.clamped && !film_holds_largest(&output->current.film))
         return;
-    (void)snprintf(line, sizeof line,
-                   "gray: warning: %s: light beyond the largest float is clamped to it, undefined values are 0",
-                   output->current.name);
-    output_report(output, LINE_WARNING, line);
+    output_say(output, LINE_WARNING,
+               "gray: warning: %s: light beyond the largest float is clamped to it, undefined values are 0",
+               output->current.name);
 }
 
 /* The progress has pointers into the picture, so it must have ended. */
@@ -595,9 +587,9 @@ void output_show_progress(struct output_session *output) {
         if (output->current.open && count > 0)
             done = film_tiles_in(&output->current.film, FILM_TILE_DONE);
     }
-    if (display_draws(&output->display, progress_clock()))
+    if (display_draws(&output->display, clock_now()))
         progress_hide(&output->progress);
-    report_display(output, display_step(&output->display, progress_clock(), &error), &error);
+    report_display(output, display_step(&output->display, clock_now(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
 }
 
@@ -626,11 +618,24 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
     if (!shown || !begin_report(output))
         return;
     progress_hide(&output->progress);
-    if (kind == LINE_ERROR)
-        text_print_lines(stderr, text);
-    else
+    if (kind == LINE_DETAIL)
         text_print_line(stderr, text);
+    else
+        text_print_message(stderr,
+                           kind == LINE_ERROR     ? TEXT_ERROR
+                           : kind == LINE_WARNING ? TEXT_WARNING
+                                                  : TEXT_NOTICE,
+                           text);
     end_report(output);
+}
+
+void output_say(struct output_session *output, enum line_kind kind, const char *format, ...) {
+    char text[2 * NAME_LIMIT];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    output_report(output, kind, text);
 }
 
 bool output_flush_streams(struct output_session *output, struct error *error) {
@@ -677,25 +682,22 @@ bool output_assemble(struct output_session *output, struct error *error) {
 
 /* Frames of an animation that was not written remain, for --resume or gray merge. */
 static void close_animation(struct output_session *output) {
-    char line[NAME_LIMIT + 128];
     uint32_t left;
     bool kept = output->options->keep_frames && output->animation.count == 0;
     animation_destroy(&output->animation, &left);
     if (left == 0 || kept || output->options->action != ACTION_RENDER)
         return;
-    (void)snprintf(line, sizeof line, "gray: notice: %.3800s.frames holds %u frame%s", output->options->output, left,
-                   left > 1 ? "s" : "");
-    output_report(output, LINE_NOTICE, line);
+    output_say(output, LINE_NOTICE, "gray: notice: %.3800s.frames holds %u frame%s%s", output->options->output, left,
+               left > 1 ? "s" : "", output->options->checkpoint ? " (--resume continues)" : "");
 }
 
 bool output_finish(struct output_session *output, bool all_well, struct error *error) {
     struct error kept;
     bool ok = output_write_held(output, error) && (!all_well || output_assemble(output, error));
-    if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept)) {
-        char line[sizeof kept.text + 64];
-        (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);
-        output_report(output, LINE_WARNING, line);
-    }
+    if (output->checkpoint.late && !output->interrupted) /* a changed scene could not go on with it */
+        output->checkpoint.pending = false;
+    if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept))
+        output_say(output, LINE_WARNING, "gray: warning: the checkpoint: %s", kept.text);
     close_animation(output);
     picture_files_destroy(&output->files);
     display_close(&output->display);

@@ -59,6 +59,9 @@ void output_show_progress(struct output_session *output);
 /* One line (or several: an error with its traceback) on standard error, as -q and --verbose allow; LINE_OUTPUT on
  * standard output. */
 void output_report(struct output_session *output, enum line_kind kind, const char *text);
+/* The same with a format, cut after 2 * NAME_LIMIT bytes. */
+void output_say(struct output_session *output, enum line_kind kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* The wait for a pipe ends when `stopped` returns true; see struct file_interrupt. */
 void output_set_interrupt(struct output_session *output, const struct file_interrupt *interrupt);
 /* --watch: the end of one run, and the beginning of the next, whose pictures count from 1 again. */

@@ -1,19 +1,17 @@
 /* Writes a film as files. Rows are tone-mapped while they are packed, so that there is no second picture in memory. */
 #include "output/picture_write.h"
 
-#include "base/clock.h"
 #include "base/mem.h"
 #include "denoise/denoise.h"
+#include "denoise/film_denoise.h"
+#include "film/aov.h"
 #include "film/path_film.h"
 #include "image/picture_file.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown_internal.h"
+#include "output/tool_internal.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 struct rows {
@@ -63,8 +61,9 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither};
-    struct picture_source source = {request->width, request->height,        row,      row_16, row_linear,
-                                    &rows,          request->settings.deep, tone.srgb};
+    struct picture_source source = {
+        request->width, request->height,    row, row_16, row_linear, &rows, request->settings.deep,
+        tone.srgb,      picture->unfinished};
     if (view == FILM_FINAL && picture->film.layer_mask && picture_format(target->path) == PICTURE_EXR)
         return layers_write_exr(target, &picture->film, error);
     return picture_file_write(target, &source, pool, error);
@@ -180,4 +179,178 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
     picture_shown_destroy(shown);
     pool_destroy(writing.pool);
     return ok;
+}
+
+/* --- what the files show --- */
+
+/* If a crop is denoised or finished, its film has a rim that its files do not contain (DENOISE_RIM, finish_rim). Both
+ * operations run here, when the picture is written, so that merged parts and resumed pictures are denoised and finished
+ * as a whole. The film is shared with the render process, whose numbers are not trusted: both operations are safe for
+ * all numbers. */
+
+static bool denoise_film(const struct film *film, const struct denoising *by, float (*out)[3], struct error *error) {
+    struct film copy = *film;
+    const struct denoise_source source = film_denoise_source(&copy);
+    switch (by->denoiser) {
+    case DENOISER_AUTO:
+    case DENOISER_NONE:
+        return true;
+    case DENOISER_GRAY:
+        return denoise(&source, by->pool, out, error);
+    case DENOISER_OIDN:
+        return oidn_run(&source, by->interrupt, out, error);
+    }
+    return true;
+}
+
+/* Rows of a rectangle of the film, of elements of that size. */
+static void cut(void *out, const void *in, size_t size, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0;
+    for (uint32_t y = part->y0; y < part->y1; y++) {
+        size_t at = (size_t)(y - film->y0) * film->width + (part->x0 - film->x0);
+        memcpy((char *)out + (y - part->y0) * width * size, (const char *)in + at * size, width * size);
+    }
+}
+
+static bool is_whole(const struct film *film, const struct film_rectangle *part) {
+    return part->x0 == film->x0 && part->y0 == film->y0 && part->x1 - part->x0 == film->width &&
+           part->y1 - part->y0 == film->height;
+}
+
+/* The arrays of the film besides its pixels that the part has: values of marks (film/film.h), and layers. */
+static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
+    size_t floats = film->record.marks ? film->record.floats : 0;
+    out->layers = mem_alloc(width * height * count * sizeof *out->layers);
+    out->floats = mem_alloc(width * height * floats * sizeof *out->floats);
+    out->marked = mem_alloc(width * height * film->record.marks);
+    if (!out->layers || !out->floats || !out->marked)
+        return false;
+    if (film->record.marks) {
+        cut(out->floats, film->floats, floats * sizeof *out->floats, film, part);
+        cut(out->marked, film->marked, sizeof *out->marked, film, part);
+    }
+    for (size_t i = 0; i < count; i++)
+        cut(out->layers + i * width * height, film->layers + i * (size_t)film->width * film->height,
+            sizeof *out->layers, film, part);
+    out->picture.film = (struct film){.width = (uint32_t)width,
+                                      .height = (uint32_t)height,
+                                      .x0 = part->x0,
+                                      .y0 = part->y0,
+                                      .full_width = film->full_width,
+                                      .full_height = film->full_height,
+                                      .record = {(uint32_t)floats, film->record.marks},
+                                      .floats = out->floats,
+                                      .marked = film->record.marks ? out->marked : NULL,
+                                      .layer_mask = film->layer_mask,
+                                      .layers = count > 0 ? out->layers : NULL};
+    return true;
+}
+
+static struct finish_area area_of(const struct film *film) {
+    return (struct finish_area){film->x0, film->y0, film->width, film->height, film->full_width, film->full_height};
+}
+
+/* The colours of the film, denoised and finished as far as finishing changes light. */
+static bool make_light(const struct picture *picture, const struct denoising *by, float (*out)[3],
+                       struct error *error) {
+    const struct film *film = &picture->film;
+    const struct finish finish = picture->request.settings.finish;
+    const struct finish_area area = area_of(film);
+    if (by->denoiser == DENOISER_NONE)
+        memcpy(out, film->pixels, (size_t)film->width * film->height * sizeof *out);
+    else if (!denoise_film(film, by, out, error))
+        return false;
+    else
+        path_film_draw_lines(film, out);
+    return finish_light(&finish, picture->request.settings.tone.exposure, &area, out, error);
+}
+
+/* Finishes the numbers of a PNG file. */
+static bool make_display(const struct picture *picture, const float (*light)[3], float (*out)[3], struct error *error) {
+    const struct finish finish = picture->request.settings.finish;
+    const struct finish_area area = area_of(&picture->film);
+    const struct tone tone = picture_tone(&picture->request);
+    for (size_t i = 0; i < (size_t)area.width * area.height; i++) {
+        for (int c = 0; c < 3; c++) {
+            double value = tone_apply(&tone, (double)light[i][c]);
+            out[i][c] = value >= 1 ? 1 : value > 0 ? (float)value : 0; /* NaN: 0 */
+        }
+    }
+    return finish_display(&finish, &area, out, error);
+}
+
+/* The part of an array of the film, which is freed. NULL: no memory. */
+static void *cut_away(void *whole, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0, height = part->y1 - part->y0;
+    if (is_whole(film, part))
+        return whole;
+    void *out = mem_alloc(width * height * sizeof(struct film_pixel));
+    if (out)
+        cut(out, whole, sizeof(struct film_pixel), film, part);
+    mem_free(whole);
+    return out;
+}
+
+static bool fill_shown(struct picture_shown *out, const struct picture *picture, const struct film_rectangle *part,
+                       const struct denoising *by, struct error *error) {
+    const struct film *film = &picture->film;
+    const struct finish finish = picture->request.settings.finish;
+    size_t size = (size_t)film->width * film->height * sizeof(struct film_pixel);
+    bool displays = finish_changes_display(&finish), whole = is_whole(film, part);
+    out->pixels = mem_alloc(size);
+    out->display = displays ? mem_alloc(size) : NULL;
+    if (!out->pixels || (displays && !out->display))
+        return error_no_memory(error, "a picture that is finished");
+    float(*light)[3] = (float(*)[3])(void *)out->pixels;
+    if (!make_light(picture, by, light, error) ||
+        (displays && !make_display(picture, (const float(*)[3])light, out->display, error)))
+        return false;
+    out->pixels = cut_away(out->pixels, film, part);
+    out->display = displays ? cut_away(out->display, film, part) : NULL;
+    if (!out->pixels || (displays && !out->display) || (!whole && !cut_film(out, film, part)))
+        return error_no_memory(error, "a picture that is finished");
+    out->picture.film.pixels = out->pixels;
+    out->picture.display = (const float(*)[3])out->display;
+    return true;
+}
+
+struct picture_shown *picture_shown_make(const struct picture *picture, struct denoising by, struct error *error) {
+    const struct film *film = &picture->film;
+    const struct finish finish = picture->request.settings.finish;
+    struct film_rectangle part = picture->request.shown;
+    if (part.x1 == 0)
+        part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
+    if (!(path_film_parts(film->record) & PATH_PART_FEATURES))
+        by.denoiser = DENOISER_NONE;
+    struct picture_shown *out = mem_alloc_zero(1, sizeof *out);
+    if (!out) {
+        (void)error_no_memory(error, "a picture that is written");
+        return NULL;
+    }
+    out->picture = *picture;
+    bool changes = by.denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
+    if (!changes && is_whole(film, &part))
+        return out;
+    if (!fill_shown(out, picture, &part, &by, error)) {
+        picture_shown_destroy(out);
+        return NULL;
+    }
+    struct picture_request *request = &out->picture.request;
+    request->x0 = part.x0;
+    request->y0 = part.y0;
+    request->width = part.x1 - part.x0;
+    request->height = part.y1 - part.y0;
+    return out;
+}
+
+void picture_shown_destroy(struct picture_shown *shown) {
+    if (!shown)
+        return;
+    mem_free(shown->pixels);
+    mem_free(shown->display);
+    mem_free(shown->floats);
+    mem_free(shown->marked);
+    mem_free(shown->layers);
+    mem_free(shown);
 }

@@ -8,6 +8,7 @@
 #include "film/tile_file.h"
 #include "output/picture_files.h"
 #include "session/messages.h"
+#include "session/options.h"
 
 #include <stdbool.h>
 
@@ -17,6 +18,7 @@ struct picture {
     char name[NAME_LIMIT];
     struct picture_request request;
     bool written;                                  /* an incomplete picture, for a window */
+    bool unfinished;                               /* what is written is an unfinished picture */
     double write_seconds, write_processor_seconds; /* of its files; 0: not written yet */
     struct tile_picture tiles;                     /* the key of its tiles in a tile file */
     struct share memory;
@@ -38,5 +40,29 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
                          struct error *error);
 /* How many pixels gray denoises for each pixel of the file: 0, or 1 and more with the rim of a part. */
 double picture_denoised_pixels(const struct options *options, const struct picture *picture);
+
+/* A picture whose film borrows from the film of another one. It owns the arrays; each may be NULL. */
+struct picture_shown {
+    struct picture picture;
+    struct film_pixel *pixels;
+    float (*display)[3];
+    float *floats;
+    uint8_t *marked;
+    float (*layers)[3];
+};
+
+/* How a picture is denoised. DENOISER_NONE shows the film as it is, and so does a film without features. */
+struct denoising {
+    enum denoiser denoiser;
+    struct pool *pool;                      /* of DENOISER_GRAY */
+    const struct file_interrupt *interrupt; /* of DENOISER_OIDN; or NULL */
+};
+
+/* NULL: an error, no memory, interrupted; with DENOISER_OIDN that the program is missing or has failed. It is not on
+ * the stack, which may be small. */
+struct picture_shown *picture_shown_make(const struct picture *picture, struct denoising denoising,
+                                         struct error *error);
+/* shown: or NULL. */
+void picture_shown_destroy(struct picture_shown *shown);
 
 #endif

@@ -18,24 +18,10 @@ enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 /* Seconds of one core for a pixel: of a PNG file, which is written after the last tile; of a film that is denoised. */
 static const double usual_writing = 5e-8, usual_denoising = 8e-6;
 
-double progress_clock(void) {
-    return clock_seconds(CLOCK_MONOTONIC);
-}
-
-double progress_processor_clock(void) {
-    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-}
-
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads) {
-    *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
     if (mode == PROGRESS_AUTO)
-        progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
-}
-
-/* Output of scenes to the same stream starts on a new line. */
-static void begin_line(const struct progress *progress) {
-    if (progress->stream)
-        error_stream_begin_line(progress->stream);
+        mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
+    *progress = (struct progress){.mode = mode, .threads = threads > 0 ? threads : (int)sysconf(_SC_NPROCESSORS_ONLN)};
 }
 
 void progress_hide(struct progress *progress) {
@@ -59,36 +45,32 @@ struct state {
     bool counts; /* tiles */
 };
 
-static struct state state_of(struct progress *progress, double now, uint32_t done, uint32_t count,
-                             const struct progress_estimate *progress_estimate) {
-    struct state state = {now - progress->begun, -1, -1, done, count, !progress_estimate->wanted};
-    if (count == 0 || state.counts)
-        return state;
-    state.share = progress_estimate_share(progress_estimate);
-    state.left = progress_estimate_left(progress_estimate, now);
-    if (state.share > 0 && state.left >= 0) {
-        double whole = state.elapsed + state.left, last = progress->writing;
-        state.share = progress->share = fmax(progress->share, state.share * whole / (whole + last));
-        state.left += last;
-    }
-    return state;
+static void add_estimate(struct progress *progress, struct state *state, const struct progress_estimate *estimate,
+                         double now) {
+    state->share = progress_estimate_share(estimate);
+    state->left = progress_estimate_left(estimate, now);
+    if (!(state->share > 0) || state->left < 0)
+        return;
+    double whole = state->elapsed + state->left, last = progress->writing;
+    state->share = progress->share = fmax(progress->share, state->share * whole / (whole + last));
+    state->left += last;
 }
 
 /* "43 %  2 min 8 s, about 2 min 46 s left", of a farm "12 of 300 tiles  2 min 8 s"; on a line "43 % after 2 min 8 s".
  */
 static void describe(const struct state *state, bool line, char out[160]) {
-    char elapsed[48], left[48];
+    char elapsed[48], left[48], rest[64] = "";
+    const char *after = line ? " after " : "  ";
     text_duration(state->elapsed, elapsed, sizeof elapsed);
     text_duration(fmax(state->left, 0), left, sizeof left);
-    bool shown = state->left >= 0 && (line || state->elapsed > 1);
-    const char *after = line ? " after " : "  ";
+    if (state->left >= 0 && (line || state->elapsed > 1))
+        (void)snprintf(rest, sizeof rest, ", about %s left", left);
     if (state->count == 0)
         (void)snprintf(out, 160, "building the scene%s%s", line ? ", " : "  ", elapsed);
     else if (state->counts)
         (void)snprintf(out, 160, "%u of %u tiles%s%s", state->done, state->count, after, elapsed);
     else
-        (void)snprintf(out, 160, "%*.0f %%%s%s%s%s%s", line ? 0 : 3, 100 * fmax(state->share, 0), after, elapsed,
-                       shown ? ", about " : "", shown ? left : "", shown ? " left" : "");
+        (void)snprintf(out, 160, "%*.0f %%%s%s%s", line ? 0 : 3, 100 * fmax(state->share, 0), after, elapsed, rest);
 }
 
 /* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
@@ -104,8 +86,8 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
     (void)snprintf(out, size, "%s%s", scene_mark(clean), clean);
 }
 
-static void draw_bar(struct progress *progress, const struct state *state) {
-    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], name[64], text[160];
+static void draw_bar(struct progress *progress, const struct state *state, const char *text) {
+    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], name[64];
     double share = state->counts ? fmin((double)state->done / fmax(state->count, 1), 1) : fmax(state->share, 0);
     /* In a narrow terminal the remaining time is more useful than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
@@ -113,30 +95,26 @@ static void draw_bar(struct progress *progress, const struct state *state) {
     memset(cells, '#', (size_t)(share * bar));
     cells[bar] = '\0';
     short_name(progress->name, limit < 78 ? 14 : 30, name, sizeof name);
-    describe(state, false, text);
     if (state->count > 0)
         (void)snprintf(line, sizeof line, "%s [%s] %s", name, cells, text);
     else
         (void)snprintf(line, sizeof line, "%s: %s", name, text);
     int columns = (int)strlen(line) < limit ? (int)strlen(line) : limit;
-    begin_line(progress);
-    int blanks = progress->columns > columns ? progress->columns - columns : 0;
-    (void)fprintf(stderr, "\r%.*s%*s", columns, line, blanks, "");
+    error_stream_begin_line(progress->stream);
+    (void)fprintf(stderr, "\r%-*.*s", columns > progress->columns ? columns : progress->columns, columns, line);
     (void)fflush(stderr);
     progress->columns = columns;
 }
 
-static void print_line(struct progress *progress, const struct state *state) {
-    char line[4096 + 160], text[160];
-    describe(state, true, text);
-    (void)snprintf(line, sizeof line, "%s: %s", progress->name, text);
-    begin_line(progress);
+static void print_line(const struct progress *progress, const char *after_name, const char *text) {
+    char line[4096 + 160];
+    (void)snprintf(line, sizeof line, "%s%s%s", progress->name, after_name, text);
+    error_stream_begin_line(progress->stream);
     text_print_scene_line(stderr, line);
-    progress->printed = true;
 }
 
 static void print_json(const struct progress *progress, const char *event, const struct state *state) {
-    begin_line(progress);
+    error_stream_begin_line(progress->stream);
     (void)fputs("{\"picture\":", stderr);
     text_print_json(stderr, progress->name);
     (void)fprintf(stderr,
@@ -146,70 +124,63 @@ static void print_json(const struct progress *progress, const char *event, const
         (void)fprintf(stderr, ",\"share\":%.4f", state->share);
     if (state->left >= 0)
         (void)fprintf(stderr, ",\"left\":%.3f", state->left);
-    (void)fprintf(stderr, ",\"processor\":%.4f}\n", progress_processor_clock());
+    (void)fprintf(stderr, ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
     (void)fflush(stderr);
 }
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised) {
     progress->name = name;
-    progress->printed = progress->elsewhere = false;
+    progress->printed = progress->known = progress->elsewhere = false;
     progress->share = 0;
     progress->writing = (usual_writing + usual_denoising * denoised) * width * height / progress->threads;
-    progress->known = false;
     progress->width = width;
     progress->height = height;
-    progress->begun = progress->shown = progress_clock();
+    progress->begun = progress->shown = clock_now();
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, "begin", &(struct state){.share = -1, .left = -1});
 }
 
-/* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one whenever the time has grown
- * by a tenth. */
+/* Seconds between two reports. Ten times a second is smooth; lines are for logs: the first after ten seconds, then one
+ * whenever the time has grown by a tenth. */
+static const double pauses[] = {
+    [PROGRESS_NONE] = HUGE_VAL, [PROGRESS_BAR] = 0.1, [PROGRESS_LINES] = 10, [PROGRESS_JSON] = 0.2};
+
 static double pause_of(const struct progress *progress, double now) {
-    switch (progress->mode) {
-    case PROGRESS_BAR:
-        return 0.1;
-    case PROGRESS_JSON:
-        return 0.2;
-    case PROGRESS_LINES:
-        return fmax(10, 0.1 * (now - progress->begun));
-    case PROGRESS_AUTO:
-    case PROGRESS_NONE:
-        break;
-    }
-    return HUGE_VAL;
+    return fmax(pauses[progress->mode], progress->mode == PROGRESS_LINES ? 0.1 * (now - progress->begun) : 0);
 }
 
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
-                     const struct progress_estimate *progress_estimate) {
-    double now = progress_clock();
-    bool first = progress->mode == PROGRESS_JSON && !progress->known && progress_estimate_share(progress_estimate) >= 0;
+                     const struct progress_estimate *estimate) {
+    double now = clock_now();
+    bool first = progress->mode == PROGRESS_JSON && !progress->known && progress_estimate_share(estimate) >= 0;
     if (!progress->name || progress->elsewhere || (now - progress->shown < pause_of(progress, now) && !first) ||
         !text_stderr_is_ready())
         return;
-    progress->known = progress->known || first;
-    struct state state = state_of(progress, now, done, count, progress_estimate);
-    progress->shown = now;
+    char text[160];
+    struct state state = {now - progress->begun, -1, -1, done, count, !estimate->wanted};
+    if (count > 0 && estimate->wanted)
+        add_estimate(progress, &state, estimate, now);
+    describe(&state, progress->mode == PROGRESS_LINES, text);
     if (progress->mode == PROGRESS_BAR)
-        draw_bar(progress, &state);
+        draw_bar(progress, &state, text);
     else if (progress->mode == PROGRESS_LINES)
-        print_line(progress, &state);
+        print_line(progress, ": ", text);
     else
         print_json(progress, count > 0 ? "render" : "build", &state);
+    progress->known = progress->known || first;
+    progress->printed = true;
+    progress->shown = now;
 }
 
 bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size) {
-    double now = progress_clock();
+    double now = clock_now();
     char elapsed[48];
-    if (!runs || progress->mode != PROGRESS_BAR) {
-        progress->script_since = 0;
-        return false;
-    }
-    if (progress->script_since == 0) {
-        progress->script_since = now;
+    runs = runs && progress->mode == PROGRESS_BAR;
+    if (!runs || progress->script_since == 0) {
+        progress->script_since = runs ? now : 0;
         progress->script_next = 2;
     }
-    if (now - progress->script_since < progress->script_next)
+    if (!runs || now - progress->script_since < progress->script_next)
         return false;
     text_duration(progress->script_next, elapsed, sizeof elapsed);
     (void)snprintf(line, size, "gray: notice: %s is still running after %s (Ctrl-C ends it)", script, elapsed);
@@ -220,19 +191,16 @@ bool progress_script_line(struct progress *progress, const char *script, bool ru
 void progress_end(struct progress *progress, enum progress_end how) {
     if (!progress->name)
         return;
-    double elapsed = progress_clock() - progress->begun;
+    double elapsed = clock_now() - progress->begun;
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up",
                    &(struct state){elapsed, .share = -1, .left = -1});
-    bool reported = (progress->mode == PROGRESS_BAR && !progress->elsewhere) ||
-                    (progress->mode == PROGRESS_LINES && progress->printed);
-    if (reported && how == PROGRESS_WRITTEN) {
-        char line[4096 + 64];
-        (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,
-                       elapsed);
-        begin_line(progress);
-        text_print_scene_line(stderr, line);
+    if (how == PROGRESS_WRITTEN && ((progress->mode == PROGRESS_BAR && !progress->elsewhere) ||
+                                    (progress->mode == PROGRESS_LINES && progress->printed))) {
+        char text[64];
+        (void)snprintf(text, sizeof text, "%u x %u  %.1f s", progress->width, progress->height, elapsed);
+        print_line(progress, "  ", text);
     }
     progress->name = NULL;
 }

@@ -17,34 +17,29 @@ struct progress {
     uint32_t width, height;
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last reported */
-    bool printed;        /* a line was printed */
+    bool printed, known; /* something, and the start of tiles, was reported */
     double writing;      /* seconds for denoising and writing the file */
-    bool known;          /* the start of tiles was reported */
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
     bool elsewhere;      /* a window shows it; standard error has only the beginning and the end as JSON */
     double script_since; /* when the script began to run between pictures; 0: no script runs */
-    double script_next;  /* the time in seconds at which its next line is due */
+    double script_next;  /* seconds after which its next line is due */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 
-double progress_clock(void);           /* seconds of a monotonic clock */
-double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
-/* `name` must be valid until progress_end. denoised: number of pixels that are denoised for each pixel of the file; 0:
- * none. */
+/* `name` must be valid until progress_end. denoised: pixels that are denoised for each pixel of the file. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised);
 /* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
-                     const struct progress_estimate *progress_estimate);
+                     const struct progress_estimate *estimate);
 /* Erases the bar, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);
 /* `runs`: the script computes, and no picture is rendered. On a terminal its line is due after 2 seconds, and each time
- * the duration has doubled. It is a line, not a bar, because the script may print at any time. False: no line is due.
- * */
+ * the duration has doubled. It is a line, not a bar, because the script may print at any time. False: not yet. */
 bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size);
 
 #endif

@@ -17,7 +17,6 @@
 #include "photon/photon_target_internal.h"
 
 #include "base/random.h"
-#include "base/sort.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 

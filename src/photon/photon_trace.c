@@ -11,7 +11,6 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
-#include "material/medium.h"
 #include "photon/photon_target_internal.h"
 
 enum { BATCH = 1024 };
@@ -204,7 +203,7 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
                   struct photon_statistics *statistics, struct error *error) {
     struct arena arena = {0};
     struct photon_targets targets = {0};
-    double begin = clock_seconds(CLOCK_MONOTONIC);
+    double begin = clock_now();
     const struct settings *settings = scene->settings;
     struct photon_job s = {.world = scene->world,
                            .fog = scene->fog,
@@ -221,14 +220,14 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
             ok = error_no_memory(error, "the photons of the caustics");
         else
             ok = trace_photons(&s, statistics, error);
-        double sent = clock_seconds(CLOCK_MONOTONIC);
+        double sent = clock_now();
         ok = ok && photon_map_build(map, scene->world, &(struct photon_list){s.photons, s.count},
                                     settings->caustics.radius, pool, error);
-        statistics->map_seconds += clock_seconds(CLOCK_MONOTONIC) - sent;
+        statistics->map_seconds += clock_now() - sent;
     }
     statistics->sent += s.count;
     statistics->landed += map->count;
-    statistics->seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
+    statistics->seconds += clock_now() - begin;
     mem_free(s.photons);
     mem_free(s.scratches);
     arena_destroy(&arena);

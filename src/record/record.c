@@ -13,7 +13,6 @@
 #include "record/symbol.h"
 #include "sandbox/hints.h"
 
-#include <assert.h>
 #include <float.h>
 #include <lauxlib.h>
 #include <math.h>

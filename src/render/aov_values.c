@@ -4,9 +4,10 @@
 #include "film/path_film.h"
 #include "light/light.h"
 #include "material/material_eval.h"
-#include "material/texture_mapping.h"
 #include "math/range.h"
 #include "render/integrator_internal.h"
+#include "render/sample_internal.h"
+#include "world/world_describe.h"
 
 #include <string.h>
 

@@ -2,7 +2,8 @@
  * sampled again at CELLS x CELLS positions, and the edges between neighbouring positions give points of the edge. The
  * distance of a pixel from the nearest point determines how much of it the line covers. The result is a function of the
  * pixel and its surroundings, so parts, tiles and crops agree. */
-#include "render/style_internal.h"
+#include "render/contour_internal.h"
+#include "render/sample_internal.h"
 
 #include "base/mem.h"
 
@@ -70,7 +71,7 @@ static bool has_edge(const struct contour_sample *a, const struct contour_sample
 
 /* Updates the pixels of a part that are near an edge that crosses (x, y). */
 static void add_edge(struct contour *contour, double x, double y) {
-    const struct rectangle *tile = &contour->tile;
+    const struct film_rectangle *tile = &contour->tile;
     int margin = margin_of(contour->width);
     int64_t px = (int64_t)floor(x), py = (int64_t)floor(y);
     for (int64_t ny = py - margin; ny <= py + margin; ny++) {
@@ -108,17 +109,8 @@ static struct contour_sample *coarse_at(const struct contour *contour, int64_t x
     return &contour->samples[(y - contour->tile.y0 + contour->rim) * side + x - contour->tile.x0 + contour->rim];
 }
 
-static struct rectangle grown(const struct rectangle *tile, int rim, const struct render_job *job) {
-    struct rectangle area = {tile->x0 - rim, tile->y0 - rim, tile->x1 + rim, tile->y1 + rim};
-    area.x0 = area.x0 < 0 ? 0 : area.x0;
-    area.y0 = area.y0 < 0 ? 0 : area.y0;
-    area.x1 = area.x1 > job->width ? job->width : area.x1;
-    area.y1 = area.y1 > job->height ? job->height : area.y1;
-    return area;
-}
-
 /* Whether the pixel differs from a pixel around it. */
-static bool is_crossed(const struct contour *contour, const struct rectangle *area, int64_t x, int64_t y) {
+static bool is_crossed(const struct contour *contour, const struct film_rectangle *area, int64_t x, int64_t y) {
     const struct contour_sample *own = coarse_at(contour, x, y);
     for (int64_t ny = y - 1; ny <= y + 1; ny++)
         for (int64_t nx = x - 1; nx <= x + 1; nx++)
@@ -129,11 +121,13 @@ static bool is_crossed(const struct contour *contour, const struct rectangle *ar
 }
 
 bool contour_find(struct contour *contour, const struct renderer *renderer, struct worker *worker,
-                  const struct rectangle *tile) {
+                  const struct film_rectangle *tile) {
     if (!(contour->width > 0))
         return true;
-    struct rectangle area = grown(tile, contour->rim, renderer->job);
-    struct rectangle near = grown(tile, contour->rim - 1, renderer->job);
+    const struct render_job *job = renderer->job;
+    uint32_t rim = (uint32_t)contour->rim;
+    struct film_rectangle area = film_rectangle_grown(tile, rim, job->width, job->height);
+    struct film_rectangle near = film_rectangle_grown(tile, rim - 1, job->width, job->height);
     contour->tile = *tile;
     for (int i = 0; i < FILM_TILE * FILM_TILE; i++)
         contour->squared[i] = INFINITY;

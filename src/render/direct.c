@@ -3,6 +3,7 @@
  * light are in cells of the unit square, which are divided once more among the samples of a pixel. */
 #include "render/direct_internal.h"
 
+#include "light/light_edit.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are traced together */

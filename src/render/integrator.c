@@ -3,8 +3,11 @@
 
 #include "base/mem.h"
 #include "base/unreachable.h"
+#include "render/integrator.h"
 #include "render/path_internal.h"
+#include "render/path_trace_internal.h"
 #include "render/whitted_internal.h"
+#include "render/whitted_trace_internal.h"
 
 struct integrator {
     enum integrator_kind kind;
@@ -65,7 +68,7 @@ void integrator_destroy(struct integrator *integrator) {
     mem_free(integrator);
 }
 
-bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part) {
+bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_render(&renderer->integrator->whitted, renderer, worker, part);

@@ -22,7 +22,7 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
 void integrator_destroy(struct integrator *integrator); /* NULL is fine */
 
 /* Renders the pixels of a rectangle within a tile and stores them in the film. False: stopped before the end. */
-bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part);
+bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part);
 /* The radiance along a camera ray, clamped to the range of float. worker->state has the sampler of the sample and
  * the media around the eye. key: the random key of the ray. */
 struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key);

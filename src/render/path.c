@@ -2,9 +2,9 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
-#include "film/aov.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
+#include "render/sample_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -152,7 +152,7 @@ static struct path_pixel begin_pixel(const struct film *film, const struct conto
 /* What a part of a tile gets: before: samples of a checkpoint; expected: all samples, 0 if that is not known. */
 struct sample_plan {
     struct film *film;
-    const struct rectangle *part;
+    const struct film_rectangle *part;
     uint32_t before, expected;
 };
 
@@ -161,7 +161,7 @@ struct sample_plan {
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                        const struct sample_plan *plan, int64_t y, struct sample_range range) {
     struct film *film = plan->film;
-    const struct rectangle *part = plan->part;
+    const struct film_rectangle *part = plan->part;
     uint32_t begin = range.begin, end = range.end;
     struct batch *batch = &worker->batch;
     uint32_t each = end - begin;
@@ -192,7 +192,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
 
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct sample_plan *plan, struct sample_range range) {
-    const struct rectangle *part = plan->part;
+    const struct film_rectangle *part = plan->part;
     for (int64_t y = part->y0; y < part->y1; y++) {
         if (!sample_row(tracer, renderer, worker, plan, y, range))
             return false;
@@ -206,7 +206,7 @@ static bool sample_part(const struct path_tracer *tracer, struct renderer *rende
 
 /* --- noise --- */
 
-static void copy_pixels(struct film *to, const struct film *from, const struct rectangle *part) {
+static void copy_pixels(struct film *to, const struct film *from, const struct film_rectangle *part) {
     size_t width = (size_t)(part->x1 - part->x0), floats = from->record.floats;
     for (int64_t y = part->y0; y < part->y1; y++) {
         size_t in = pixel_index(to, part->x0, y), out = pixel_index(from, part->x0, y);
@@ -218,11 +218,11 @@ static void copy_pixels(struct film *to, const struct film *from, const struct r
 /* A tile that gets its samples in one go gets them in a film of the worker. After each check they are copied into the
  * film of the picture, so that a checkpoint finds the samples of the last check there at any time. */
 static struct film *begin_tile(const struct path_tracer *tracer, const struct film *film, const struct worker *worker,
-                               const struct rectangle *part) {
+                               const struct film_rectangle *part) {
     struct film *own = &tracer->tiles[worker->index];
-    own->x0 = (uint32_t)part->x0;
-    own->y0 = (uint32_t)part->y0;
-    own->width = (uint32_t)(part->x1 - part->x0);
+    own->x0 = part->x0;
+    own->y0 = part->y0;
+    own->width = part->x1 - part->x0;
     if (film_tile_is_begun(atomic_load(worker->tile_state)))
         copy_pixels(own, film, part);
     return own;
@@ -230,7 +230,7 @@ static struct film *begin_tile(const struct path_tracer *tracer, const struct fi
 
 /* Unless the tile is to have no more samples, its state is the check that it has passed. */
 static void end_check(struct film *film, const struct film *own, const struct worker *worker,
-                      const struct rectangle *part, struct sample_range range) {
+                      const struct film_rectangle *part, struct sample_range range) {
     uint32_t checks = 0;
     for (uint32_t n = 0; n < range.begin; n = path_next_check(n))
         checks++;
@@ -243,10 +243,9 @@ static void end_check(struct film *film, const struct film *own, const struct wo
 }
 
 /* Whether the tile is at a check and its noise is small enough. Computes its expected number of samples. */
-static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct rectangle *part,
+static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct film_rectangle *part,
                      uint32_t samples, uint32_t *expected) {
-    struct film_rectangle tile = {(uint32_t)part->x0, (uint32_t)part->y0, (uint32_t)part->x1, (uint32_t)part->y1};
-    double wanted = tracer->noise, noise = path_tile_noise(film, tile);
+    double wanted = tracer->noise, noise = path_tile_noise(film, *part);
     bool quiet = path_is_check(samples) && samples >= path_minimum_samples(wanted) && noise <= wanted;
     *expected = quiet ? samples : path_samples_expected(samples, noise, wanted, tracer->samples);
     return quiet;
@@ -255,7 +254,7 @@ static bool is_quiet(const struct path_tracer *tracer, const struct film *film, 
 /* Takes the samples of the pass until the noise of the tile is small enough. A tile that an earlier pass has finished
  * gets no more samples. */
 static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                               const struct rectangle *part) {
+                               const struct film_rectangle *part) {
     struct film *film = renderer->job->film;
     bool whole = worker->tile_state != NULL;
     struct sample_plan plan = {whole ? begin_tile(tracer, film, worker, part) : film, part, 0, 0};
@@ -286,7 +285,7 @@ static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer
 }
 
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                        const struct rectangle *part) {
+                        const struct film_rectangle *part) {
     const struct sample_pass *pass = &renderer->pass;
     bool kept = worker->tile_state && film_tile_is_begun(atomic_load(worker->tile_state));
     if (tracer->contours && pass->begin == 0 && !kept &&

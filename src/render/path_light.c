@@ -5,9 +5,10 @@
  *
  * Area lights do not block shadow rays. So a scattered ray adds the light of every area light that it crosses, and
  * continues: both ways give the same light. */
-#include "render/path_internal.h"
+#include "light/light_edit.h"
 
 #include "material/medium.h"
+#include "render/path_light_internal.h"
 
 /* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
 static double weight_of(const struct path_tracer *tracer, enum path_strategy strategy, double pdf, double other) {

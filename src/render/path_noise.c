@@ -17,8 +17,6 @@
  * needs more samples for less noise in any case. */
 #include "render/path_noise_internal.h"
 
-#include "math/elementary.h"
-
 #include <math.h>
 
 static const double dark = 0.01; /* the square of a value that counts as black */

@@ -4,10 +4,12 @@
  * A *line of sight* is a camera ray, with its continuations by smooth surfaces and through holes. Lines of sight
  * show the background, visible area lights and fog. All other rays are scattered: they add the light that a surface
  * receives, weighted against the samples of path_direct. */
-#include "render/path_internal.h"
 
 #include "material/medium.h"
 #include "math/range.h"
+#include "render/path_light_internal.h"
+#include "render/path_trace_internal.h"
+#include "world/world_describe.h"
 
 #include <string.h>
 

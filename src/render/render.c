@@ -1,22 +1,25 @@
 /* Tiles, handed out to the workers; the integrator renders the pixels of a tile. A tile is self-contained and final
  * when it is done. There is no barrier, and only the film is shared: every tile writes its own pixels. */
 #include "base/clock.h"
+#include "render/aov_values_internal.h"
+#include "render/integrator.h"
 #include "render/integrator_internal.h"
 
 #include "base/mem.h"
 #include "denoise/film_denoise.h"
+#include "expr/expr_field.h"
 #include "film/aov.h"
 #include "film/film.h"
 #include "film/path_film.h"
+#include "material/fog_field.h"
 #include "render/path_noise_internal.h"
 #include "render/pixel_trace.h"
+#include "render/sample_internal.h"
 #include "settings/settings.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 
 /* The cost of a tile, from few rays: the number of hits and of secondary rays, which does not depend on the accelerator
  * or the instruction set. */
@@ -63,7 +66,7 @@ bool renderer_is_done(const struct renderer *renderer) {
 
 /* Makes a tile or a part of it. False: stopped. A cancelled ray leaves a wrong colour, so a tile that ends after a
  * request to stop counts as not done. */
-static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
+static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct film_rectangle part,
                       double share) {
     renderer_tile_begins(renderer, worker, tile, share);
     bool whole = integrator_render(renderer, worker, &part) && !renderer_stopped(renderer, worker);
@@ -71,7 +74,7 @@ static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t
         atomic_store(&renderer->failed, true);
         pool_cancel(renderer->pool);
     }
-    worker->tile_ended = clock_seconds(CLOCK_MONOTONIC);
+    worker->tile_ended = clock_now();
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
@@ -124,8 +127,7 @@ static enum work_result make_item(struct renderer *renderer, struct worker *work
     if (!claim(renderer, item, &before))
         return WORK_SKIPPED;
     worker->tile_state = item->quarter == WORK_WHOLE && !renderer->pass.open ? &film->tiles[item->tile] : NULL;
-    bool whole = !(pixels > 0) ||
-                 make_part(renderer, worker, item->tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, pixels / all);
+    bool whole = !(pixels > 0) || make_part(renderer, worker, item->tile, r, pixels / all);
     if (!renderer->pass.open)
         return whole ? WORK_DONE : WORK_FAILED;
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
@@ -171,13 +173,13 @@ static enum work_answer find_handed_out(void *context, struct work_queue *queue)
 static bool do_work(struct renderer *renderer, struct render_statistics *statistics) {
     struct work_queue *queue = &renderer->queue;
     int workers = pool_workers(renderer->pool);
-    double begun = clock_seconds(CLOCK_MONOTONIC);
+    double begun = clock_now();
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
     work_queue_begin(queue);
     bool whole = pool_run(renderer->pool, (uint32_t)workers, work, renderer);
     work_queue_destroy(queue);
-    double ended = clock_seconds(CLOCK_MONOTONIC);
+    double ended = clock_now();
     for (uint32_t i = 0; i < queue->tail && !whole; i++) { /* those of which quarters are missing */
         uint8_t taken = FILM_TILE_TAKEN;
         (void)atomic_compare_exchange_strong(&renderer->job->film->tiles[queue->tiles[queue->whole + i]], &taken,
@@ -283,10 +285,24 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
     return !renderer->workers[0].scratch.failed;
 }
 
+/* Whether a function of a script does. */
+static bool reads_time(const struct render_job *job) {
+    const struct fog_field *field = job->fog ? job->fog->field : NULL;
+    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
+    const struct world *world = job->world;
+    bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
+                           (colour && expr_field_reads(colour, EXPR_TIME)));
+    for (uint32_t i = 0; !reads && i < world->texture_count; i++)
+        reads = world->textures[i].kind == TEXTURE_FUNCTION &&
+                expr_field_reads(world->textures[i].recorded.program, EXPR_TIME);
+    return reads;
+}
+
 static bool prepare_rendering(struct renderer *renderer, const struct camera_frame *at_close) {
     const struct render_job *job = renderer->job;
     const struct shutter *shutter = &job->settings.shutter;
-    renderer->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
+    renderer->timed =
+        shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves || reads_time(job));
     struct box origins = box_join(camera_origins(&renderer->camera), camera_origins(at_close));
     return find_eye_medium_stack(renderer, &origins, renderer->timed || camera_spreads(&renderer->camera));
 }
@@ -318,7 +334,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
 static bool record_pixel(struct renderer *renderer, struct film *film, struct pixel_trace *pixel_trace,
                          struct error *error) {
     struct worker *worker = &renderer->workers[0];
-    struct rectangle tile = {pixel_trace->x, pixel_trace->y, (int64_t)pixel_trace->x + 1, (int64_t)pixel_trace->y + 1};
+    struct film_rectangle tile = {pixel_trace->x, pixel_trace->y, pixel_trace->x + 1, pixel_trace->y + 1};
     film->x0 = pixel_trace->x;
     film->y0 = pixel_trace->y;
     worker->state.observer = &pixel_trace->observer;
@@ -445,7 +461,7 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
 static enum work_answer next_pass(void *context, struct work_queue *queue) {
     struct renderer *renderer = context;
     struct sample_pass *pass = &renderer->pass;
-    double now = clock_seconds(CLOCK_MONOTONIC), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
+    double now = clock_now(), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
     if (queue->out > 0)
         return WORK_LATER;
     if (renderer_is_done(renderer) || pass->end == pass->limit || !atomic_load(&renderer->unsatisfied) ||
@@ -461,7 +477,7 @@ static enum work_answer next_pass(void *context, struct work_queue *queue) {
 }
 
 static void begin_passes(struct renderer *renderer) {
-    renderer->passes_begun = clock_seconds(CLOCK_MONOTONIC);
+    renderer->passes_begun = clock_now();
     renderer->pass = (struct sample_pass){.limit = renderer->pass.end, .begin = 0, .end = 1, .open = true};
     renderer->queue.more = next_pass;
     renderer->queue.context = renderer;
@@ -503,7 +519,7 @@ static bool make_tiles(struct renderer *renderer, struct render_statistics *stat
 
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
-    double begin = clock_seconds(CLOCK_MONOTONIC);
+    double begin = clock_now();
     struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
     int workers = pool_workers(pool);
     bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
@@ -513,10 +529,10 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (ok && job->progress_estimate)
-        progress_estimate_report(job->progress_estimate, 1, 0, clock_seconds(CLOCK_MONOTONIC));
+        progress_estimate_report(job->progress_estimate, 1, 0, clock_now());
     for (int i = 0; renderer.workers && i < workers; i++)
         statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
     end_rendering(&renderer, workers);
-    statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
+    statistics->render_seconds += clock_now() - begin;
     return ok;
 }

@@ -34,10 +34,6 @@ struct render_job {
         *drain; /* or NULL; while it is not 0, no further tile is begun, and the render counts as stopped */
 };
 
-/* What films for pictures of an integrator record at least, and with the layers and the denoiser of the settings. */
-struct film_record render_record(const struct settings *settings);
-/* Warnings about parts of the scene that the integrator interprets differently; the world is built. */
-void integrator_warn(const struct render_job *job, world_warning *warn, void *context);
 /* False: cancelled or out of memory, see `error`. The film then contains the finished tiles. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);

@@ -64,7 +64,7 @@ struct renderer {
     struct pool *pool;
     struct camera_frame camera;
     struct medium_stack eye_medium_stack;
-    bool timed;               /* something moves while the shutter is open */
+    bool timed;               /* while the shutter is open, something moves or a function reads the time */
     bool roams;               /* the film is one pixel that moves over the picture (render_pixels) */
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
@@ -88,31 +88,9 @@ struct renderer {
     _Atomic bool failed;
 };
 
-/* A rectangle of pixels of the whole picture: x0 <= x < x1. */
-struct rectangle {
-    int64_t x0, y0, x1, y1;
-};
-
-/* The camera at a ray's time. */
-bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
-                         struct error *error);
-/* The camera ray through (x, y) and the centre of the lens, when the shutter opens. False: nothing is visible there. */
-bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out);
-/* The first sample has number 0, at the centre or the corner of the pixel. */
-struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
-struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
-/* The samples of a batch, equal to those of renderer_sample. The hits of the camera rays are found together. */
-void renderer_sample_batch(struct renderer *renderer, struct worker *worker);
 static inline bool renderer_stopped(const struct renderer *renderer, const struct worker *worker) {
     return pool_cancelled(renderer->pool) || worker->scratch.failed;
 }
-
-/* The time estimate, if it is requested. Before the first tile; false: no memory. */
-bool renderer_begin_estimate(struct renderer *renderer);
-/* The worker begins a tile, or that share of it; so much of its work is done; it ends. */
-void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share);
-void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, double part);
-void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
 
 /* Whether the tiles are made pass by pass (render.c), until they have all samples, little enough noise, or the time is
  * over. */
@@ -120,10 +98,5 @@ bool renderer_makes_passes(const struct renderer *renderer);
 
 /* No further tile is to be begun. */
 bool renderer_is_done(const struct renderer *renderer);
-
-/* The layers of a pixel whose tile is done. */
-void renderer_layer_pixel(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
-/* A pool_function: the layers of a tile that is done. */
-void renderer_layer_item(void *context, uint32_t tile, int worker);
 
 #endif

@@ -1,9 +1,8 @@
 /* One sample of a pixel, from its position to its colour; single, or many with camera rays in packets. The
  * random key of a sample is a function of the pixel and of the sample's number. */
 #include "render/integrator_internal.h"
+#include "render/sample_internal.h"
 #include "render/sampler.h"
-
-#include <math.h>
 
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],

@@ -5,10 +5,9 @@
 #include "material/material.h"
 #include "material/openpbr.h"
 #include "render/camera.h"
-#include "render/render_internal.h"
+#include "render/sample_internal.h"
 #include "scene/node.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 

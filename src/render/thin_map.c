@@ -8,9 +8,7 @@
 #include "base/mem.h"
 #include "shape/shape_part.h"
 
-#include <float.h>
 #include <math.h>
-#include <string.h>
 
 /* Pixels. A line of width 1 or more is hit by a first sample in every column or row that it passes, a ball of width
  * sqrt(2) or more by one sample. Hulls are wider than their contents: for a cylinder by up to sqrt(2), for a ball by

@@ -10,28 +10,6 @@
 #include "base/mem.h"
 #include "render/render_internal.h"
 
-#include <math.h>
-
-void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted) {
-    progress_estimate->wanted = wanted;
-    progress_estimate->begun = progress_estimate->share = progress_estimate->ends = 0;
-}
-
-void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, double now) {
-    if (!(done > 0))
-        return;
-    progress_estimate->share = fmax(progress_estimate->share, done / (done + left));
-    progress_estimate->ends = now + (now - progress_estimate->begun) * left / done;
-}
-
-double progress_estimate_share(const struct progress_estimate *progress_estimate) {
-    return progress_estimate->begun > 0 ? fmin(fmax(progress_estimate->share, 0), 1) : -1;
-}
-
-double progress_estimate_left(const struct progress_estimate *progress_estimate, double now) {
-    return progress_estimate->ends > 0 ? fmin(fmax(progress_estimate->ends - now, 0), 1e9) : -1;
-}
-
 /* --- the work of the tiles --- */
 
 static double part_of(const struct tile_cost *tile) {
@@ -98,7 +76,7 @@ bool renderer_begin_estimate(struct renderer *renderer) {
         if (state == FILM_TILE_WANTED || film_tile_is_begun(state))
             estimate->tiles[tile].pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0);
     }
-    renderer->job->progress_estimate->begun = clock_seconds(CLOCK_MONOTONIC);
+    renderer->job->progress_estimate->begun = clock_now();
     return estimate->tiles != NULL;
 }
 
@@ -122,8 +100,7 @@ void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint
         return;
     uint32_t part = share < 1 ? 0 : atomic_load_explicit(&cost->part, memory_order_relaxed);
     worker->part = (double)part / TILE_COST_WHOLE;
-    worker->cost = (struct worker_cost){cost, share, part, clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID),
-                                        clock_seconds(CLOCK_MONOTONIC)};
+    worker->cost = (struct worker_cost){cost, share, part, clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID), clock_now()};
 }
 
 /* Adds what has changed since the last time; the part may decrease. */
@@ -143,12 +120,12 @@ void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, dou
     worker->part = part;
     if (!renderer->time_estimate.tiles)
         return;
-    double now = clock_seconds(CLOCK_MONOTONIC);
+    double now = clock_now();
     if (now - worker->cost.added >= report_pause)
         add_cost(renderer, worker, now);
 }
 
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
     if (renderer->time_estimate.tiles)
-        add_cost(renderer, worker, clock_seconds(CLOCK_MONOTONIC));
+        add_cost(renderer, worker, clock_now());
 }

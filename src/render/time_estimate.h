@@ -3,6 +3,7 @@
 #ifndef GRAY_RENDER_TIME_ESTIMATE_H
 #define GRAY_RENDER_TIME_ESTIMATE_H
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -15,13 +16,25 @@ struct progress_estimate {
     _Atomic double ends;  /* 0: not known yet */
 };
 /* Before a render. */
-void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted);
+static inline void progress_estimate_reset(struct progress_estimate *estimate, bool wanted) {
+    estimate->wanted = wanted;
+    estimate->begun = estimate->share = estimate->ends = 0;
+}
 /* The work done and the work left, in the same unit. */
-void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, double now);
+static inline void progress_estimate_report(struct progress_estimate *estimate, double done, double left, double now) {
+    if (!(done > 0))
+        return;
+    estimate->share = fmax(estimate->share, done / (done + left));
+    estimate->ends = now + (now - estimate->begun) * left / done;
+}
 /* 0..1; negative while nothing is known. */
-double progress_estimate_share(const struct progress_estimate *progress_estimate);
+static inline double progress_estimate_share(const struct progress_estimate *estimate) {
+    return estimate->begun > 0 ? fmin(fmax(estimate->share, 0), 1) : -1;
+}
 /* Seconds left; negative: not known yet. */
-double progress_estimate_left(const struct progress_estimate *progress_estimate, double now);
+static inline double progress_estimate_left(const struct progress_estimate *estimate, double now) {
+    return estimate->ends > 0 ? fmin(fmax(estimate->ends - now, 0), 1e9) : -1;
+}
 
 /* What the tiles of a picture have cost so far; from it follows what the rest will cost. */
 struct tile_cost {
@@ -40,5 +53,14 @@ struct time_estimate_work {
     double done, left;
 };
 struct time_estimate_work time_estimate_work(const struct time_estimate *estimate);
+
+/* In a render (render_internal.h): the estimate, if it is requested, before the first tile; false: no memory. */
+struct renderer;
+struct worker;
+bool renderer_begin_estimate(struct renderer *renderer);
+/* The worker begins a tile, or that share of it; so much of its work is done; it ends. */
+void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share);
+void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, double part);
+void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
 
 #endif

@@ -1,282 +1,516 @@
-/* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
- * and the position in the tree of rays. */
+/* Adaptive anti-aliasing. A part of a tile samples its pixels and the rim of one pixel around them once (a pixel's
+ * first sample depends only on the pixel, so two parts that share a rim agree). It marks pixels by the differences of
+ * neighbours, samples the marked ones N x N times, and is final. */
 #include "render/whitted_internal.h"
 
-#include "material/medium.h"
-#include "render/style_internal.h"
+#include "base/clock.h"
+#include "base/mem.h"
+#include "math/elementary.h"
+#include "photon/photon_trace.h"
+#include "render/sample_internal.h"
 
-/* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
-static const double light_limit = 1e200;
+#include <math.h>
 
-struct path {
-    uint64_t key;
-    int reflections, refractions; /* so far, from the camera */
-    bool rough;                   /* after a rough surface: the next ones get one ray each */
-    double weight;                /* the fraction of this ray's radiance that can arrive in the pixel */
-    double cutoff;                /* a ray of less weight is not followed */
-    int holes;                    /* went through so far */
-};
+/* --- the cut-off of rays --- */
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
+static double largest(struct vec3 c) {
+    double max = c.x > c.y ? c.x : c.y;
+    return c.z > max ? c.z : max;
+}
 
-/* The nearest visible light before t_max, or NULL. */
-static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
-                                         struct light_hit *hit) {
-    const struct light *best = NULL;
-    struct ray limited = *ray;
-    struct light_hit met;
-    limited.t_max = t_max;
+/* The squared distance of two colours is never larger: with these tolerances no pixel is marked. */
+static const double tolerance_of_all = 3;
+
+/* The largest radiance that a ray can find: the sky, a visible light, an emissive surface, the fog, or a white surface
+ * in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with falloff it
+ * may be brighter, so the bound holds for usual scenes only. */
+static double brightest_of_scene(const struct render_job *job) {
+    const struct world *world = job->world;
+    double max = sky_brightest(&world->sky), lit = largest(job->ambient);
     for (uint32_t i = 0; i < world->light_count; i++) {
-        if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
-            best = &world->lights[i];
-            limited.t_max = met.t;
-            *hit = met;
-        }
+        const struct light *light = &world->lights[i];
+        double own = light_brightest(light);
+        lit += own;
+        if (light->visible && own > max)
+            max = own;
     }
-    return best;
+    max = fmax(max, lit + world->emission_bound);
+    return job->fog ? fmax(max, largest(job->fog->colour)) : max;
 }
 
-/* --- secondary rays --- */
-
-/* Field by field: a copy of the whole struct would wait for recent stores. */
-static struct path path_on(const struct path *path, double share) {
-    return (struct path){.key = path->key,
-                         .reflections = path->reflections,
-                         .refractions = path->refractions,
-                         .rough = path->rough,
-                         .weight = path->weight * share,
-                         .cutoff = path->cutoff,
-                         .holes = path->holes};
+/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: this
+ * limit, divided by the largest radiance in this scene and by the factor by which the tone of the picture file raises
+ * small differences. 0: every ray counts. */
+static double cutoff_weight(const struct render_job *job) {
+    const struct tone *tone = &job->settings.tone;
+    double brightest = brightest_of_scene(job), cutoff = job->settings.cutoff;
+    if (cutoff <= 0)
+        return 0;
+    if (tone->exposure > 0)
+        cutoff /= el_exp2(tone->exposure);
+    if (tone->curve == TONE_FUNCTION)
+        cutoff /= fmax(tone_table_slope(tone->table), 1);
+    if (tone->srgb)
+        cutoff /= 12.92; /* the slope of the transfer function in the dark */
+    return brightest > 1 ? cutoff / brightest : cutoff;
 }
 
-/* Whether the result of a ray is negligible. */
-static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
-                        const struct path *path) {
-    enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
-    observe_ray_sent(state->observer, kind, filter, cut);
-    return cut != RAY_FOLLOWED;
+/* Before the first tile; without photons there is no map. */
+static bool send_photons(struct whitted *whitted, struct renderer *renderer, int workers, struct render_statistics *out,
+                         struct error *error) {
+    if (renderer->job->settings.caustics.photons == 0)
+        return true;
+    const struct render_job *job = renderer->job;
+    const struct photon_scene scene = {job->world, job->fog, &job->settings};
+    bool ok = photons_send(&whitted->caustics, &scene, renderer->pool, out, error);
+    for (int i = 0; i < workers; i++)
+        renderer->workers[i].state.caustics = &whitted->caustics;
+    return ok;
 }
 
-/* A hit with its surface and its ray. */
-struct surface_point {
-    const struct ray *ray;
-    const struct hit *hit;
-    const struct bsdf *bsdf;
+/* Pixels are sampled again. */
+static bool samples_again(const struct settings *settings) {
+    return settings->full || settings->side_tolerance < tolerance_of_all ||
+           settings->corner_tolerance < tolerance_of_all;
+}
+
+/* With blur, nothing is narrow. */
+static bool draw_thin(struct whitted *whitted, const struct renderer *renderer, struct error *error) {
+    const struct settings *settings = &renderer->job->settings;
+    if (settings->aa_pattern == AA_GRID || settings->samples == 1 || whitted->blurred || !samples_again(settings))
+        return true;
+    return thin_map_build(&whitted->thin, renderer, whitted->filter.radius - 0.5, error);
+}
+
+bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
+                    struct render_statistics *statistics, struct error *error) {
+    whitted->cutoff = cutoff_weight(renderer->job);
+    filter_init(&whitted->filter, renderer->job->settings.filter);
+    whitted->blurred = renderer->timed || renderer->camera.lens.aperture > 0;
+    whitted->full = renderer->job->settings.full || whitted->blurred;
+    whitted->fine = renderer->job->settings.aa_pattern != AA_GRID && samples_again(&renderer->job->settings);
+    whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
+    if (!whitted->workers)
+        return error_no_memory(error, "the workers of a render");
+    whitted->worker_count = workers;
+    double line_width = settings_line_width(&renderer->job->settings);
+    for (int i = 0; i < workers && line_width > 0; i++) {
+        if (!contour_init(&whitted->workers[i].contour, line_width))
+            return error_no_memory(error, "the workers of a render");
+    }
+    return draw_thin(whitted, renderer, error) && send_photons(whitted, renderer, workers, statistics, error);
+}
+
+void whitted_destroy(struct whitted *whitted) {
+    photon_map_destroy(&whitted->caustics);
+    thin_map_destroy(&whitted->thin);
+    for (int i = 0; i < whitted->worker_count; i++)
+        contour_destroy(&whitted->workers[i].contour);
+    mem_free(whitted->workers);
+}
+
+void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
+                            struct render_statistics *out) {
+    for (int i = 0; whitted->workers && i < pool_workers(renderer->pool); i++)
+        out->marked_pixels += whitted->workers[i].marked, out->late_pixels += whitted->workers[i].late;
+}
+
+/* The first pass is kept: a viewer may show it, and the resampled pixels. */
+struct film_record whitted_record(void) {
+    return (struct film_record){.floats = 3, .marks = 1};
+}
+
+/* --- marks --- */
+
+static double clamp01(double c) {
+    return c >= 1 ? 1 : c > 0 ? c : 0;
+}
+
+/* The difference in the picture file counts. */
+static struct vec3 toned(const struct tone *tone, struct vec3 c) {
+    if (tone_is_plain(tone))
+        return c;
+    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
+}
+
+static struct vec3 clamped(struct vec3 c) {
+    return vec3_make(clamp01(c.x), clamp01(c.y), clamp01(c.z));
+}
+
+static double squared_distance(struct vec3 a, struct vec3 b) {
+    struct vec3 d = vec3_sub(clamped(a), clamped(b));
+    return vec3_dot(d, d);
+}
+
+/* The fraction of the tolerances for colours on different surfaces, and for a colour compared with the mean of two
+ * opposite neighbours. */
+static const double fine_share = 1.0 / 16;
+/* The cosine of the angle between two normals at an edge. */
+static const double edge_cosine = 0.8;
+
+/* A part of a tile at work. */
+struct part {
+    const struct whitted *whitted;
+    struct renderer *renderer;
+    struct worker *worker;
+    struct whitted_worker *own;
+    struct film_rectangle area; /* with the rim, as far as that is in the picture */
+    bool has_first;             /* the first pass is made */
 };
 
-/* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
- * followed. */
-static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
-                                 const struct path *from) {
-    const struct settings *settings = &state->job->settings;
-    struct bsdf_branch_direction sampled;
-    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
-        return vec3_all(0);
-    struct vec3 filter = sampled.weight;
-    bool transmits = sampled.transmits;
-    struct path path = path_on(from, vec3_max_abs(filter));
-    bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
-    if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
-        return vec3_all(0);
-    struct ray onward = hit_ray(at->hit, at->ray, sampled.direction, at->ray->media);
-    struct medium_stack behind;
-    if (transmits) {
-        medium_stack_copy(&behind, at->ray->media);
-        medium_stack_cross(&behind, &at->bsdf->boundary);
-        onward.media = &behind;
-        state->refracted_rays++;
-        path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
-        path.refractions++;
-    } else {
-        state->reflected_rays++;
-        path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
-        path.reflections++;
-    }
-    return vec3_mul(filter, trace(state, &onward, &path));
+static size_t index_of(const struct part *part, int64_t x, int64_t y) {
+    return (size_t)(y - part->area.y0) * (FILM_TILE + 2) + (size_t)(x - part->area.x0);
 }
 
-/* The light through the holes of a surface (an opacity texture of leaves): the ray continues
- * unchanged. Bounded, since every hole is a deeper call. */
-static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
-                               double share, const struct path *from) {
-    enum { HOLE_LIMIT = 200 };
-    struct path path = path_on(from, share);
-    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
-        return vec3_all(0);
-    struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
-    state->refracted_rays++;
-    path.key = sampler_branch(path.key, SAMPLER_HOLE);
-    path.holes++;
-    return vec3_scale(trace(state, &onward, &path), share);
+static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
+    return &part->own->first[index_of(part, x, y)];
 }
 
-enum { GLOSSY_SAMPLES = 4 };
+/* Whether two first samples are on different surfaces, on different sides of an edge, or on different sides of the
+ * border of a shadow. */
+static bool surfaces_differ(const struct camera_hit *a, const struct camera_hit *b) {
+    if (a->primitive != b->primitive || a->material != b->material || a->lights != b->lights)
+        return true;
+    return a->primitive != WORLD_NOTHING && vec3_dot(a->normal, b->normal) < edge_cosine;
+}
 
-/* A rough surface: the mean over facets of what each reflects and refracts. */
-static struct vec3 follow_rough(struct integrator_state *state, const struct surface_point *at,
-                                const struct bsdf_branch *branches, int count, const struct path *path) {
-    bool coarse = path->rough || state->job->settings.coarse;
-    uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
-    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
-    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
-    struct vec3 sum = {0, 0, 0};
-    observe_split(state->observer, 1 / ((double)n * (double)n));
-    for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
-        struct path branch = path_on(path, 1);
-        branch.key = sampler_facet(key, cell);
-        branch.rough = true;
-        for (int i = 0; i < count; i++) {
-            if (branches[i].rough)
-                sum = vec3_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
+/* Whether the pixel may contain a thin primitive in front of the hit of one of the first samples in it or around it. */
+static bool has_thin(const struct part *part, int64_t x, int64_t y) {
+    const struct film_rectangle *area = &part->area;
+    double nearness = part->whitted->fine ? (double)thin_map_at(&part->whitted->thin, x, y) : 0;
+    if (!(nearness > 0))
+        return false;
+    bool pair = part->renderer->camera.lens.stereo == STEREO_ANAGLYPH; /* a sample has two rays */
+    for (int64_t ny = y - 1; ny <= y + 1; ny++) {
+        for (int64_t nx = x - 1; nx <= x + 1; nx++) {
+            bool inside = nx >= area->x0 && nx < area->x1 && ny >= area->y0 && ny < area->y1;
+            if (pair || (inside && part->own->hits[index_of(part, nx, ny)].t * nearness >= 1))
+                return true;
         }
     }
-    return vec3_scale(sum, 1 / ((double)n * (double)n));
+    return false;
 }
 
-/* --- one hit --- */
+/* The reasons to mark a pixel, all from first samples. If the result is true, `mark` is set. */
 
-static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
-    observe_surface(state->observer, at->bsdf);
-    struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
-    colour = vec3_add(colour, at->bsdf->emission);
-    struct bsdf_branch branches[BSDF_LOBES];
-    const struct bsdf_draw smooth = {.facet = at->bsdf->side};
-    int count = bsdf_branches(at->bsdf, branches);
-    bool rough = false;
-    for (int i = 0; i < count; i++) {
-        if (branches[i].rough)
-            rough = true;
-        else
-            colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
+static double tolerance_towards(const struct part *part, int dx, int dy) {
+    const struct settings *settings = &part->renderer->job->settings;
+    return dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
+}
+
+/* With these tolerances, fine differences count. */
+static bool is_fine(const struct part *part, double tolerance) {
+    return part->whitted->fine && tolerance < tolerance_of_all;
+}
+
+static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
+    const struct tone *tone = &part->renderer->job->settings.tone;
+    const struct film_rectangle *area = &part->area;
+    const struct camera_hit *hits = part->own->hits;
+    struct vec3 own = toned(tone, *first_at(part, x, y));
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            int64_t nx = x + dx, ny = y + dy;
+            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+                continue;
+            double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
+            double distance = squared_distance(own, toned(tone, *first_at(part, nx, ny)));
+            *mark = (struct observed_mark){MARK_COLOUR, dx, dy, distance, tolerance};
+            if (distance > tolerance)
+                return true;
+            *mark = (struct observed_mark){MARK_SURFACE, dx, dy, distance, fine};
+            if (distance > fine && is_fine(part, tolerance) &&
+                surfaces_differ(&hits[index_of(part, x, y)], &hits[index_of(part, nx, ny)]))
+                return true;
+        }
     }
-    return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
+    return false;
 }
 
-static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                             const struct path *path) {
-    const struct settings *settings = &state->job->settings;
-    const struct world *world = state->job->world;
-    const struct material_context context = {.specular = settings->specular,
-                                             .ambient_plain = settings->ambient_plain,
-                                             .total_reflection = settings->use_tir,
-                                             .observer = state->observer ? observe_material : NULL,
-                                             .observer_context = state->observer,
-                                             .authored = world->authored.materials[hit->material]};
-    struct bsdf bsdf;
-    struct surface_point at = {ray, hit, &bsdf};
-    state->hits++;
-    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
-    double hole = 1 - bsdf.opacity;
-    if (!(hole > 0))
-        return shade(state, &at, path);
-    struct vec3 behind = follow_hole(state, hit, ray, hole, path);
-    if (hole >= 1)
-        return behind;
-    struct path covered = path_on(path, bsdf.opacity);
-    return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
-}
-
-/* The radiance of a ray with its hit, or NULL. */
-static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                                     const struct path *path) {
-    const struct world *world = state->job->world;
-    bool met = hit != NULL;
-    struct light_hit area_light_hit;
-    const struct light *area_light = visible_light(world, ray, met ? hit->t : ray->t_max, &area_light_hit);
-    double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
-
-    /* The medium along the ray. */
-    double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
-    struct medium_effect air;
-    struct path dimmed;
-    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
-    struct vec3 left = air.transmittance;
-    observe_ray_begin(state->observer, ray, hit, area_light, distance, path->weight);
-    if (affected) {
-        dimmed = path_on(path, vec3_max_abs(left));
-        path = &dimmed;
+/* Whether the colour is not between those of two opposite neighbours. This finds details of textures, noise of shadows
+ * and edges in mirrors, but not gradients. */
+static bool has_detail(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
+    static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    const struct tone *tone = &part->renderer->job->settings.tone;
+    const struct film_rectangle *area = &part->area;
+    struct vec3 own = toned(tone, *first_at(part, x, y));
+    for (int i = 0; i < 4; i++) {
+        int dx = steps[i][0], dy = steps[i][1];
+        double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
+        if (!is_fine(part, tolerance) || (dx != 0 && (x == area->x0 || x == area->x1 - 1)) ||
+            (dy != 0 && (y == area->y0 || y == area->y1 - 1)))
+            continue;
+        struct vec3 a = clamped(toned(tone, *first_at(part, x - dx, y - dy))),
+                    b = clamped(toned(tone, *first_at(part, x + dx, y + dy)));
+        double distance = squared_distance(own, vec3_scale(vec3_add(a, b), 0.5));
+        *mark = (struct observed_mark){MARK_DETAIL, dx, dy, distance, fine};
+        if (distance > fine)
+            return true;
     }
+    return false;
+}
 
-    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
-    bool looked = !(path->weight < path->cutoff);
-    if (!looked)
-        left = vec3_all(0);
-    else if (area_light)
-        colour = light_emitted(area_light, ray, &area_light_hit);
-    else if (met)
-        colour = shade_hit(state, ray, hit, path);
-    else
-        colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
-    seen = colour;
-    if (affected) {
-        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
-        colour = vec3_add(vec3_mul(colour, left), in_scattered);
+static bool is_marked(const struct part *part, int64_t x, int64_t y) {
+    struct observed_mark mark;
+    bool marked = differs_from_neighbour(part, x, y, &mark) || (part->whitted->fine && has_detail(part, x, y, &mark));
+    if (!marked && has_thin(part, x, y)) {
+        mark = (struct observed_mark){.reason = MARK_THIN};
+        marked = true;
     }
-    colour = integrator_clamp_light(state, colour, light_limit);
-    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
-    return colour;
+    if (marked)
+        observe_mark(part->worker->state.observer, &mark);
+    return marked;
 }
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
-    struct hit hit;
-    if (integrator_cancelled(state))
-        return vec3_all(0); /* deep paths through glass grow exponentially */
-    bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
-    return incident_radiance(state, ray, met ? &hit : NULL, path);
+/* --- samples of a pixel --- */
+
+/* The N x N samples of a pixel. Most are on a rotated grid. Near thin lines, and with a lens or motion, they are
+ * jittered, so that the mean is unbiased. Near small primitives they are on the grid without rotation, which has the
+ * smallest maximum gap. */
+enum pixel_positions { POSITIONS_GRID, POSITIONS_ROTATED, POSITIONS_JITTERED };
+struct pixel_pattern {
+    const struct whitted *whitted;
+    const struct settings *settings;
+    int64_t x, y;
+    uint64_t pixel; /* its number */
+    enum pixel_positions positions;
+    bool first_counts; /* the first sample is the one in the middle */
+};
+
+static enum pixel_positions positions_of(const struct whitted *whitted, const struct settings *settings, int64_t x,
+                                         int64_t y) {
+    if (settings->aa_pattern == AA_GRID || settings->samples == 1)
+        return POSITIONS_GRID;
+    uint32_t thin = thin_map_flags(&whitted->thin, x, y);
+    if (whitted->blurred || thin & THIN_LINE)
+        return POSITIONS_JITTERED;
+    return thin & THIN_SMALL ? POSITIONS_GRID : POSITIONS_ROTATED;
 }
 
-/* A drawing of lines alone. */
-static bool is_blank(const struct integrator_state *state) {
-    return state->job->settings.style == STYLE_INK;
+static struct pixel_pattern pattern_of(const struct whitted *whitted, const struct renderer *renderer, int64_t x,
+                                       int64_t y) {
+    const struct settings *settings = &renderer->job->settings;
+    enum pixel_positions positions = positions_of(whitted, settings, x, y);
+    bool centred = (settings->samples & 1) && !settings->pixel_corner && !whitted->blurred;
+    return (struct pixel_pattern){.whitted = whitted,
+                                  .settings = settings,
+                                  .x = x,
+                                  .y = y,
+                                  .pixel = (uint64_t)y * renderer->job->width + (uint64_t)x,
+                                  .positions = positions,
+                                  .first_counts = centred && positions != POSITIONS_JITTERED};
 }
 
-static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
-    bool through =
-        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
-    out->t = through ? INFINITY : hit->t;
-    out->primitive = hit->primitive;
-    out->material = hit->material;
-    out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
+static struct sample2 position_of(const struct pixel_pattern *pattern, int k) {
+    int n = pattern->settings->samples;
+    struct sampler sampler = sampler_make(pattern->settings->seed, pattern->pixel, (uint64_t)k + 1, (uint32_t)n);
+    switch (pattern->positions) {
+    case POSITIONS_GRID:
+        break;
+    case POSITIONS_ROTATED:
+        return sampler_pixel_rotated(&sampler);
+    case POSITIONS_JITTERED:
+        return sampler_pixel_jittered(&sampler);
+    }
+    return (struct sample2){(k % n + 0.5) / n, (k / n + 0.5) / n};
 }
 
-/* Whether a camera ray needs no hit: its light is *light. */
-static bool needs_no_hit(struct integrator_state *state, struct vec3 *light) {
-    *light = vec3_all(is_blank(state) ? 1 : 0);
-    return is_blank(state) || integrator_cancelled(state);
+/* Sample k of N x N. */
+static struct pixel_sample sample_of_pattern(const struct pixel_pattern *pattern, int k) {
+    struct filter_sample at = filter_sample(&pattern->whitted->filter, position_of(pattern, k));
+    return (struct pixel_sample){pattern->x, pattern->y, at.x, at.y, (uint64_t)k + 1, at.weight};
 }
 
-/* The light of a camera ray that starts in the media of the eye. hit: or NULL. */
-static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state,
-                                const struct ray *from_eye, const struct hit *hit, uint64_t key) {
-    if (hit && state->camera_hit)
-        record_hit(state->job->world, hit, state->camera_hit);
-    const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return integrator_clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
+/* Mean of the N x N samples, weighted by the filter; where one of them is the first sample again it is not traced
+ * twice. */
+static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
+    struct renderer *renderer = part->renderer;
+    int n = renderer->job->settings.samples;
+    struct pixel_pattern pattern = pattern_of(part->whitted, renderer, x, y);
+    bool reuse = pattern.first_counts;
+    struct batch *batch = &part->worker->batch;
+    struct vec3 sum = {0, 0, 0};
+    double weights = 0;
+    int centre = reuse ? n / 2 * n + n / 2 : -1;
+    for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
+        int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
+        batch->count = 0;
+        for (int k = begin; k < end; k++) {
+            if (k == centre && !first)
+                batch->positions[batch->count++] = renderer_first_sample(renderer, x, y);
+            else if (k != centre)
+                batch->positions[batch->count++] = sample_of_pattern(&pattern, k);
+        }
+        renderer_sample_batch(renderer, part->worker);
+        uint32_t next = 0;
+        for (int k = begin; k < end; k++) {
+            bool is_first = k == centre && first;
+            double weight = is_first ? 1 : batch->positions[next].weight;
+            sum = vec3_add(sum, vec3_scale(is_first ? *first : batch->colours[next++], weight));
+            weights += weight;
+        }
+    }
+    return vec3_scale(sum, 1 / weights);
 }
 
-struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                          uint64_t key) {
-    struct ray from_eye = *ray;
-    struct hit hit;
-    struct vec3 light;
-    from_eye.media = state->eye_medium_stack;
-    if (needs_no_hit(state, &light))
-        return light;
-    bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
-    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
+                    int64_t y) {
+    const struct film *film = renderer->job->film;
+    int n = renderer->job->settings.samples;
+    bool marked = film->marked[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)];
+    struct pixel_pattern pattern = pattern_of(whitted, renderer, x, y);
+    bool has_first = !whitted->full || renderer->job->settings.keep_first, reuse = pattern.first_counts;
+    struct pixel_sample position = renderer_first_sample(renderer, x, y);
+    if (has_first || reuse)
+        (void)renderer_sample(renderer, worker, &position);
+    for (int k = 0; marked && k < n * n && !renderer_stopped(renderer, worker); k++) {
+        if (reuse && k == n / 2 * n + n / 2)
+            continue;
+        position = sample_of_pattern(&pattern, k);
+        (void)renderer_sample(renderer, worker, &position);
+    }
 }
 
-struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                              const struct packet_answer *met, uint64_t key) {
-    struct ray from_eye = *ray;
-    struct hit hit;
-    struct vec3 light;
-    from_eye.media = state->eye_medium_stack;
-    if (needs_no_hit(state, &light))
-        return light;
-    if (met)
-        world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
-    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+/* --- the two passes --- */
+
+static void store(float out[3], struct vec3 colour) {
+    out[0] = (float)colour.x;
+    out[1] = (float)colour.y;
+    out[2] = (float)colour.z;
+}
+
+static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
+    struct film *film = part->renderer->job->film;
+    size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+    const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
+    bool full = part->whitted->full, marked = full || is_marked(part, x, y);
+    struct vec3 colour = marked ? all_samples(part, x, y, first) : *first;
+    double line = contour_coverage(&part->own->contour, x, y);
+    struct vec3 first_colour = first ? *first : colour;
+    if (line > 0) {
+        colour = vec3_scale(colour, 1 - line);
+        first_colour = vec3_scale(first_colour, 1 - line);
+    }
+    store(film->pixels[at].rgb, colour);
+    store(&film->floats[at * film->record.floats], first_colour);
+    film->marked[at] = marked;
+    part->own->marked += marked;
+    struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
+    observe_pixel(part->worker->state.observer,
+                  &(struct observed_pixel){.colour = colour,
+                                           .samples = marked ? part->renderer->job->settings.samples : 0,
+                                           .full = full,
+                                           .first_counts = !marked || pattern.first_counts});
+}
+
+/* The first samples of a small square go together. */
+enum { PATCH = 8 };
+_Static_assert((int)(PATCH *PATCH) == (int)PACKET_RAYS, "a patch is a packet");
+
+static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
+    struct batch *batch = &part->worker->batch;
+    batch->count = 0;
+    for (int64_t y = y0; y < y0 + PATCH && y < part->area.y1; y++) {
+        for (int64_t x = x0; x < x0 + PATCH && x < part->area.x1; x++)
+            batch->positions[batch->count++] = renderer_first_sample(part->renderer, x, y);
+    }
+    batch->camera_hits = part->whitted->fine ? part->own->patch : NULL;
+    renderer_sample_batch(part->renderer, part->worker);
+    batch->camera_hits = NULL;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        size_t at = index_of(part, batch->positions[i].x, batch->positions[i].y);
+        part->own->first[at] = batch->colours[i];
+        if (part->whitted->fine)
+            part->own->hits[at] = part->own->patch[i];
+    }
+}
+
+/* --- when --time-limit is over --- */
+
+static bool is_late(const struct renderer *renderer) {
+    double limit = renderer->job->settings.time_limit;
+    return limit > 0 && clock_now() - renderer->begun >= limit;
+}
+
+/* Rows that the time did not suffice for: first samples without resampling if all of the tile has them, else one sample
+ * for each patch. */
+static void finish_late(struct part *part, const struct film_rectangle *rows, bool has_first) {
+    struct film *film = part->renderer->job->film;
+    struct batch *batch = &part->worker->batch;
+    for (int64_t y0 = rows->y0; y0 < rows->y1; y0 += PATCH) {
+        for (int64_t x0 = rows->x0; x0 < rows->x1; x0 += PATCH) {
+            int64_t x1 = x0 + PATCH < rows->x1 ? x0 + PATCH : rows->x1;
+            int64_t y1 = y0 + PATCH < rows->y1 ? y0 + PATCH : rows->y1;
+            batch->count = !has_first;
+            batch->positions[0] = renderer_first_sample(part->renderer, (x0 + x1) / 2, (y0 + y1) / 2);
+            if (!has_first)
+                renderer_sample_batch(part->renderer, part->worker);
+            for (int64_t i = 0; i < (x1 - x0) * (y1 - y0); i++) {
+                int64_t x = x0 + i % (x1 - x0), y = y0 + i / (x1 - x0);
+                size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+                struct vec3 colour = has_first ? *first_at(part, x, y) : batch->colours[0];
+                store(film->pixels[at].rgb, colour);
+                store(&film->floats[at * film->record.floats], colour);
+                film->marked[at] = 0;
+            }
+            part->own->late += (uint64_t)((x1 - x0) * (y1 - y0));
+        }
+    }
+}
+
+/* For a viewer: the current first pass, and the pixels to be resampled. */
+static void show_refined(const struct part *part, const struct film_rectangle *tile) {
+    struct film *film = part->renderer->job->film;
+    for (int64_t y = tile->y0; y < tile->y1; y++) {
+        for (int64_t x = tile->x0; x < tile->x1; x++) {
+            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+            store(film->pixels[at].rgb, *first_at(part, x, y));
+            film->marked[at] = part->whitted->full || is_marked(part, x, y) ? FILM_MARK_WAITS : 0;
+        }
+    }
+}
+
+bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
+                    const struct film_rectangle *tile) {
+    const struct settings *settings = &renderer->job->settings;
+    struct part part = {.whitted = whitted,
+                        .renderer = renderer,
+                        .worker = worker,
+                        .own = &whitted->workers[worker->index],
+                        .has_first = !whitted->full || settings->keep_first};
+    const struct film_rectangle area =
+        film_rectangle_grown(tile, whitted->full ? 0 : 1, renderer->job->width, renderer->job->height);
+    part.area = area;
+    for (int64_t y = area.y0; y < area.y1 && part.has_first; y += PATCH) {
+        for (int64_t x = area.x0; x < area.x1; x += PATCH) {
+            if (renderer_stopped(renderer, worker))
+                return false;
+            if (is_late(renderer)) {
+                finish_late(&part, tile, false);
+                return !renderer_stopped(renderer, worker);
+            }
+            sample_patch(&part, x, y);
+        }
+        renderer_tile_goes_on(renderer, worker,
+                              fmin(0.5, (double)(y + PATCH - area.y0) / (double)(2 * (area.y1 - area.y0))));
+    }
+    if (settings->show_refined && part.has_first)
+        show_refined(&part, tile);
+    if (!contour_find(&part.own->contour, renderer, worker, tile))
+        return false;
+    double before = part.has_first ? 0.5 : 0; /* the part of the work that the first pass is */
+    for (int64_t y = tile->y0; y < tile->y1; y++) {
+        if (is_late(renderer)) {
+            finish_late(&part, &(struct film_rectangle){tile->x0, (uint32_t)y, tile->x1, tile->y1}, part.has_first);
+            return !renderer_stopped(renderer, worker);
+        }
+        for (int64_t x = tile->x0; x < tile->x1; x++) {
+            if (renderer_stopped(renderer, worker))
+                return false;
+            finish_pixel(&part, x, y);
+        }
+        renderer_tile_goes_on(renderer, worker,
+                              before + (1 - before) * (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
+    }
+    return true;
 }

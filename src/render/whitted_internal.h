@@ -1,9 +1,10 @@
 /* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules
  * of docs/language.md 5.2 and 5.3: own light, reflected and refracted rays with independent counters, media stack,
- * Fresnel (whitted.c); and its adaptive anti-aliasing (whitted_pixels.c). */
+ * Fresnel (whitted_trace.c); and its adaptive anti-aliasing (whitted.c). */
 #ifndef GRAY_RENDER_WHITTED_INTERNAL_H
 #define GRAY_RENDER_WHITTED_INTERNAL_H
 
+#include "render/contour_internal.h"
 #include "render/filter_internal.h"
 #include "render/render.h"
 #include "render/render_internal.h"
@@ -40,17 +41,10 @@ bool whitted_create(struct whitted *whitted, struct renderer *renderer, int work
                     struct render_statistics *statistics, struct error *error);
 void whitted_destroy(struct whitted *whitted);
 bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
-                    const struct rectangle *part);
+                    const struct film_rectangle *part);
 void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
                     int64_t y);
 void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
                             struct render_statistics *out);
-
-/* The radiance along a camera ray, clamped to the range of float; key: the random key of this pixel and sample. */
-struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                          uint64_t key);
-/* The same for a ray of a packet: its hit, or NULL. */
-struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                              const struct packet_answer *met, uint64_t key);
 
 #endif

@@ -1,6 +1,7 @@
 /* The store of assets: equal assets are stored once, however often scripts request them. Keys are content (tables) or
  * canonical path (files). Scenes make meshes by the hundred thousand, so a hash table finds them; files are few, and a
  * look-up in their lists costs far less than reading one. */
+#include "scene/assets.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "image/image.h"

@@ -1,7 +1,6 @@
 /* Displacement by recorded functions: node:displace of meshes and height fields. */
 #include "script/gr_displace_internal.h"
 
-#include "call/context.h"
 #include "expr/expr_field.h"
 #include "mesh/mesh_displace.h"
 #include "record/record_bounds.h"

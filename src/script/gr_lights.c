@@ -3,7 +3,6 @@
 
 #include "call/context.h"
 #include "math/elementary.h"
-#include "script/rows_internal.h"
 #include "script/table_internal.h"
 
 enum { POINT_POSITION = LIGHT_INTENSITY + 1 };

@@ -3,7 +3,6 @@
 #include "compat/lenient_picture.h"
 #include "image/picture_file.h"
 #include "image/transfer.h"
-#include "math/elementary.h"
 #include "record/record_bounds.h"
 #include "scene/node_bounds.h"
 #include "script/gr_materials_internal.h"

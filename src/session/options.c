@@ -7,12 +7,13 @@
 #include "base/isa.h"
 #include "base/suggestion.h"
 #include "film/aov.h"
+#include "session/options_check.h"
+#include "session/options_table.h"
 #include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -64,6 +65,10 @@ static const struct setting *find_option(struct piece name) {
         }
     }
     return NULL;
+}
+
+const struct setting *option_named(const char *word) {
+    return find_option(without_dashes((struct piece){word, strcspn(word, "=")}));
 }
 
 /* The spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
@@ -259,74 +264,71 @@ static bool read_choice(const struct setting *option, void *base, const char *te
     return false;
 }
 
-/* name: of the option, or of --default and its field. */
-static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
-    int shown = (int)name.length;
-    char unit[32] = ""; /* SECONDS, STOPS, PIXELS; other names of values have one letter */
-    if (option->value && strlen(option->value) > 1)
-        (void)snprintf(unit, sizeof unit, "%s, ", option->value);
+/* What the value of an option is to be; NULL: it takes none. room: for a text with numbers. */
+static const char *needed_value(const struct setting *option, char room[128]) {
+    bool has_unit = option->value && strlen(option->value) > 1; /* SECONDS, STOPS, PIXELS; others have one letter */
+    const char *unit = has_unit ? option->value : "", *comma = has_unit ? ", " : "";
     switch (option->kind) {
     case SETTING_CAUSTICS:
     case SETTING_WHOLE:
-        return error_set(error, ERROR_USAGE, "%.*s needs %sa whole number from %.0f to %.0f, not '%s'", shown,
-                         name.text, unit, option->low, option->high, text);
+        (void)snprintf(room, 128, "%s%sa whole number from %.0f to %.0f", unit, comma, option->low, option->high);
+        return room;
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs %sa number from %g to %g, not '%s'", shown, name.text,
-                             unit, option->low, option->high, text);
-        return error_set(error, ERROR_USAGE, "%.*s needs %sa number of at least %g, not '%s'", shown, name.text, unit,
-                         option->low, text);
+            (void)snprintf(room, 128, "%s%sa number from %g to %g", unit, comma, option->low, option->high);
+        else
+            (void)snprintf(room, 128, "%s%sa number of at least %g", unit, comma, option->low);
+        return room;
     case SETTING_BYTES:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
-                         shown, name.text, text);
+        return "a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB)";
     case SETTING_SEED:
-        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
-                         shown, name.text, text);
+        return "a whole number from 0 to 18446744073709551615";
     case SETTING_CHOICE:
     case SETTING_TONE:
     case SETTING_STATS:
     case SETTING_DENOISE:
-        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, name.text, option->words, text);
+        (void)snprintf(room, 128, "one of %s", option->words);
+        return room;
     case SETTING_LAYERS:
-        return error_set(
-            error, ERROR_USAGE,
-            "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
-            "lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
-            "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not '%s'",
-            shown, name.text, text);
+        return "names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, lights, and with "
+               "--integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, specular_direct, "
+               "specular_indirect, transmission_direct, transmission_indirect) or all";
     case SETTING_TEXT:
-        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, name.text);
+        return "a text";
     case SETTING_SIZE:
-        return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
-                         name.text, text);
+        return "WxH, two whole numbers from 1 to 1048576";
     case SETTING_CROP:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
-                         shown, name.text, text);
+        return "X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1";
     case SETTING_PIXEL:
-        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, name.text,
-                         text);
+        return "X,Y, two whole numbers from 0";
     case SETTING_SHARD:
-        return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
-                         name.text, text);
+        return "I/N, whole numbers with I from 1 to N";
     case SETTING_FRAMES:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B, not '%s'",
-                         shown, name.text, FRAMES_MAX, text);
+        (void)snprintf(room, 128, "N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B", FRAMES_MAX);
+        return room;
     case SETTING_FOLDER:
-        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, name.text);
+        return "the name of a folder";
     case SETTING_DEFINE:
-        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, name.text, text);
+        return "name=value with a Lua name";
     case SETTING_DEFAULT:
-        return error_set(error, ERROR_USAGE, "%.*s needs FIELD=VALUE, a field of gr.render and its value, not '%s'",
-                         shown, name.text, text);
+        return "FIELD=VALUE, a field of gr.render and its value";
     case SETTING_FLAG:
-        return error_set(error, ERROR_USAGE, "%.*s needs yes or no, not '%s'", shown, name.text, text);
+        return "yes or no";
     case SETTING_ACTION:
         break;
     }
-    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, name.text);
+    return NULL;
+}
+
+/* name: of the option, or of --default and its field. */
+static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
+    char room[128];
+    const char *need = needed_value(option, room);
+    bool empty = option->kind == SETTING_TEXT || option->kind == SETTING_FOLDER;
+    if (!need)
+        return error_set(error, ERROR_USAGE, "%.*s takes no value", (int)name.length, name.text);
+    return error_set(error, ERROR_USAGE, empty ? "%.*s needs %s" : "%.*s needs %s, not '%s'", (int)name.length,
+                     name.text, need, text);
 }
 
 /* Room for lists that grow with the words of the command line. */
@@ -488,21 +490,31 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
                      near.text[0] == '-' ? "" : "--", (int)near.length, near.text);
 }
 
-/* What gray merge uses: the parts contain the results of all other options. */
-static bool serves_merge(const struct setting *option) {
-    static const char names[] = "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
-                                "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress";
+/* Actions whose first argument is their name, and what they use. Parts contain the results of all other options. */
+static const struct {
+    const char *word, *options, *why;
+} actions[] = {
+    [ACTION_RENDER] = {NULL},
+    [ACTION_MERGE] = {"merge",
+                      "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
+                      "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
+                      "it only joins parts that are rendered"},
+    [ACTION_COMPARE] = {"compare", "o|force|threshold|q", "it only compares two pictures"},
+};
+enum { ACTIONS_WITH_WORDS = sizeof actions / sizeof *actions };
+
+static bool serves(const struct setting *option, int action) {
     struct piece first = without_dashes(shown_name(option));
-    for (const char *rest = names; *rest;) {
+    for (const char *rest = actions[action].options; *rest;) {
         if (same_name(first, option_next_piece(&rest)))
             return true;
     }
     return false;
 }
 
-static bool refuse_for_merge(const struct setting *option, struct error *error) {
-    return error_set(error, ERROR_USAGE, "merge cannot be combined with %.*s: it only joins parts that are rendered",
-                     (int)shown_name(option).length, option->option);
+static bool refuse_for_action(const struct setting *option, int action, struct error *error) {
+    return error_set(error, ERROR_USAGE, "%s cannot be combined with %.*s: %s", actions[action].word,
+                     (int)shown_name(option).length, option->option, actions[action].why);
 }
 
 /* Options that change a picture without being settings. A dialect counts as a file that is read. */
@@ -559,8 +571,8 @@ uint64_t options_picture_bytes(const struct options *options) {
 }
 
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
-    *options =
-        (struct options){.settings = settings_default(), .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
+    *options = (struct options){
+        .settings = settings_default(), .partial = true, .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
@@ -577,15 +589,17 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
-    const struct setting *not_of_merge = NULL; /* the first option that gray merge does not use */
+    const struct setting *unused[ACTIONS_WITH_WORDS] = {NULL}; /* the first option that an action does not use */
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
         /* The first word that is no option; `gray -- merge` is a scene of that name. */
-        if (!only_scripts && options->action == ACTION_RENDER && options->script_count == 0 &&
-            strcmp(word, "merge") == 0) {
-            options->action = ACTION_MERGE;
-            continue;
+        bool is_first = !only_scripts && options->action == ACTION_RENDER && options->script_count == 0;
+        for (int action = ACTION_MERGE; is_first && action < ACTIONS_WITH_WORDS; action++) {
+            if (strcmp(word, actions[action].word) == 0)
+                options->action = (enum options_action)action;
         }
+        if (is_first && options->action != ACTION_RENDER)
+            continue;
         if (only_scripts || word[0] != '-' || word[1] == '\0') {
             scripts[options->script_count++] = word;
             continue;
@@ -603,9 +617,11 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             option = find_attached(word, &text);
         if (!option)
             return unknown_option(word, name, error);
-        if (!not_of_merge && !serves_merge(option))
-            not_of_merge = option;
-        bool has_value = option_value(option) != NULL;
+        for (int action = ACTION_MERGE; action < ACTIONS_WITH_WORDS; action++) {
+            if (!unused[action] && !serves(option, action))
+                unused[action] = option;
+        }
+        bool has_value = option_value(option) != NULL && option->kind != SETTING_ACTION;
         if (!has_value && text && option->kind != SETTING_FLAG)
             return value_error(option, shown_name(option), text, error);
         if (!text && option_may_lack_value(option))
@@ -617,14 +633,15 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        only_scripts = options->action >= ACTION_MANUAL;
         /* --denoise=auto leaves the field to the scene. */
         bool leaves = option->kind == SETTING_DENOISE && options->settings.denoise == DENOISER_AUTO;
         if (option_is_setting(option))
             lists.given[option - setting_table] = leaves ? NULL : text ? text : "";
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
-    if (options->action == ACTION_MERGE && not_of_merge)
-        return refuse_for_merge(not_of_merge, error);
+    if ((int)options->action < (int)ACTIONS_WITH_WORDS && unused[options->action])
+        return refuse_for_action(unused[options->action], options->action, error);
     return options_check(options, error);
 }
 

@@ -110,6 +110,8 @@ void error_stream_give(struct error_stream *stream, enum error_stream_owner owne
 }
 
 void error_stream_begin_line(struct error_stream *stream) {
+    if (!stream)
+        return;
     if (atomic_exchange(&stream->open, 0))
         (void)fputc('\n', stderr);
     atomic_fetch_add(&stream->lines, 1);

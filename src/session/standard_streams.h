@@ -52,7 +52,7 @@ struct error_stream {
  * must not block it. Releasing a lock that was not obtained is allowed. */
 void error_stream_take(struct error_stream *stream, enum error_stream_owner owner);
 void error_stream_give(struct error_stream *stream, enum error_stream_owner owner);
-/* The next text is the program's: an unfinished line is ended. */
+/* The next text is the program's: an unfinished line is ended. NULL is fine. */
 void error_stream_begin_line(struct error_stream *stream);
 /* The process that wrote for scenes has ended. */
 void error_stream_free(struct error_stream *stream);

@@ -16,8 +16,10 @@ void text_print_line(FILE *stream, const char *text);
 /* The same for a line whose beginning a scene or a file has chosen, such as the name of a picture: it is not shown as a
  * line of the program (base/terminal_text.h). */
 void text_print_scene_line(FILE *stream, const char *text);
-/* The same for an error with its traceback: line ends remain if the next line is indented by two blanks. */
-void text_print_lines(FILE *stream, const char *text);
+/* A message. On a terminal it has the word of its kind, in colour unless the environment forbids it. In an error, which
+ * may have a traceback, line ends remain if the next line is indented by two blanks. */
+enum text_kind { TEXT_ERROR, TEXT_WARNING, TEXT_NOTICE };
+void text_print_message(FILE *stream, enum text_kind kind, const char *text);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD, the characters above escapes. */
 void text_print_json(FILE *stream, const char *text);
 
@@ -41,15 +43,15 @@ struct text_writer {
 };
 enum { TEXT_WRITER_PIECE = sizeof(((struct text_writer *)0)->text) };
 
-/* A formatted text is cut at 1,000 bytes; use text_writer_name or text_writer_json for texts of scripts. */
+/* A formatted text is cut at 1,000 bytes. */
 void text_writer_print(struct text_writer *writer, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Control characters become '?'. */
-void text_writer_name(struct text_writer *writer, const char *text);
-/* As a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
-void text_writer_json(struct text_writer *writer, const char *text);
-/* 17 digits, so that the number is exact; null for infinities and NaN. */
-void text_writer_json_number(struct text_writer *writer, double number);
-void text_writer_json_vector(struct text_writer *writer, struct vec3 v); /* [x,y,z] */
+/* The same with conversions for words and JSON:
+ *   %s  text of the program              %u %d  numbers of these types
+ *   %n  text of a script: control        %g %v  a double, a struct vec3: (x, y, z), with 6 digits
+ *       characters become '?'            %j %a  the same in JSON with 17 digits: exact; null for infinities and NaN
+ *   %q  a JSON string with its quotes    %b     true or false
+ *                                        %i     an int: so many blanks */
+void text_writer_put(struct text_writer *writer, const char *format, ...);
 void text_writer_flush(struct text_writer *writer);
 
 #endif

@@ -1,7 +1,6 @@
 /* The rows of the settings, made from the list, and the operations on any row. */
 #include "settings/setting.h"
 
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 

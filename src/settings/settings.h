@@ -106,7 +106,7 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
     X(FILTER_MITCHELL, "mitchell")
 enum filter_kind { FILTERS(LIST_MEMBER) };
 /* Adaptive anti-aliasing of Whitted's integrator: which pixels get N x N samples, and where these samples are
- * (whitted_pixels.c). GRID: marks by colours only, samples at the centres of N x N cells. ROTATED: also marks by
+ * (whitted.c). GRID: marks by colours only, samples at the centres of N x N cells. ROTATED: also marks by
  * surfaces and thin primitives; samples on a rotated grid, jittered near thin primitives. */
 #define AA_PATTERNS(X)                                                                                                 \
     X(AA_GRID, "grid")                                                                                                 \

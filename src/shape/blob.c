@@ -9,7 +9,6 @@
 #include "shape/blob.h"
 
 #include "geometry/bernstein.h"
-#include "geometry/crossing.h"
 #include "shape/part_tree_internal.h"
 
 enum { CELL_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };

@@ -12,8 +12,6 @@
 #include "shape/curve.h"
 
 #include "geometry/bernstein.h"
-#include "geometry/crossing.h"
-#include "geometry/spline.h"
 #include "shape/part_tree_internal.h"
 
 #include <string.h>

@@ -7,7 +7,6 @@
  * four; the line meets at most three of them, one after the other. */
 #include "shape/height_field.h"
 
-#include "geometry/crossing.h"
 #include "shape/span_internal.h"
 
 enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18, MAX_SIDE = 32768 };

@@ -1,600 +1,366 @@
-/* Crossings of a line and an implicit solid. The line passes the regions (implicit_regions.c) in order. In a region
- * where the sign may change, the values of the function at both ends of the stretch and bounds of its slope along the
- * line decide:
- * - A stretch whose ends have one sign has no crossing if the slope is too small for one.
- * - A stretch whose ends have different signs has one crossing if the slope has one sign. It is found by the method of
- *   Chandrupatla.
- * - Every other stretch is divided into eight parts, whose bounds are computed at once.
- * Thin walls are found down to the resolution. With a Lipschitz bound, the line is marched in steps without a crossing.
- *
- * The search keeps track of the side of the surface, so entries and exits alternate. It searches every region from end
- * to end, also for rays that begin or end in it. So the nearest hit has the bits of the first crossing of the list.
- *
- * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
- * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997;
- * J. Hart, "Sphere Tracing", The Visual Computer 12, 1996; B. Keinert et al., "Enhanced Sphere Tracing", STAG 2014. */
+/* An implicit solid: its making, the points in it, its surface at a crossing (implicit_search.c finds the crossings),
+ * and what is reported of it. */
+#include "base/random.h"
+#include "math/frame.h"
 #include "shape/implicit_internal.h"
+#include "shape/implicit_regions_internal.h"
+#include "shape/implicit_search_internal.h"
 
 #include <math.h>
 
-/* Fractions of the size. Two crossings that are closer than the resolution may be missed together. A crossing is
- * located to the accuracy. */
-static const double resolution = 0x1p-25;
-/* The smallest step of a march; twice as long after as many steps of that length in a region. */
-static const double march_resolution = 0x1p-20;
-enum { MARCH_SMALLEST = 64 };
-/* WORK: the limit of operations of the function for one line; an interval operation counts as ten. Beyond the limit,
- * segments are not divided further. */
-enum { WORK = 4000000 };
+/* Room for crossings in the scratch memory. */
+enum { GUESS = 64 };
 
-struct search {
-    const struct implicit *solid;
-    struct line line;
-    double origin[3], inverse[3];  /* of the line; 1 / direction, 0 along an axis plane */
-    double begin, end;             /* within the bounds, in units of length along the line */
-    uint32_t begin_part, end_part; /* where it meets them */
-    bool inside;                   /* before the current place */
-    double at, value;              /* of the function, where it was evaluated last */
-    uint64_t work, limit;
-    struct crossing waiting; /* not returned yet; the next one may cancel it */
-    bool has_waiting, has_found, is_done, is_full;
-    bool is_any;           /* any crossing does */
-    bool is_unknown;       /* `inside` is not valid, because the segments before were skipped */
-    const struct ray *ray; /* of a nearest hit: its interval; then `found` */
-    struct crossing *found;
-    struct geom_scratch *scratch;
-    bool is_list;
-};
-
-/* Slopes along the line. */
-struct slope {
-    double low, high;
-};
-
-/* --- the ends --- */
-
-static bool clip_box(struct search *search, const struct box *box) {
-    search->begin = -INFINITY;
-    search->end = INFINITY;
-    for (int axis = 0; axis < 3; axis++) {
-        double o = vec3_get(search->line.origin, axis), d = vec3_get(search->line.direction, axis);
-        double lo = vec3_get(box->min, axis) - o, hi = vec3_get(box->max, axis) - o;
-        if (d == 0) {
-            if (!(lo < 0 && hi > 0))
-                return false;
-            continue;
-        }
-        double near = (d > 0 ? lo : hi) / d, far = (d > 0 ? hi : lo) / d;
-        if (near > search->begin) {
-            search->begin = near;
-            search->begin_part = IMPLICIT_PART_BOX + (uint32_t)axis;
-        }
-        if (far < search->end) {
-            search->end = far;
-            search->end_part = IMPLICIT_PART_BOX + (uint32_t)axis;
-        }
-    }
-    return search->begin < search->end;
+struct vec3 implicit_middle(const struct implicit *solid) {
+    const struct box *box = &solid->in.bounds;
+    return solid->in.is_ball ? solid->in.centre : vec3_add(vec3_scale(box->min, 0.5), vec3_scale(box->max, 0.5));
 }
 
-static bool clip_ball(struct search *search, struct vec3 centre, double radius) {
-    struct vec3 o = vec3_sub(search->line.origin, centre);
-    double foot = -vec3_dot(o, search->line.direction);
-    struct vec3 nearest = vec3_add_scaled(o, search->line.direction, foot);
-    double room = radius * radius - vec3_dot(nearest, nearest);
-    if (!(room > 0))
-        return false;
-    search->begin = foot - sqrt(room);
-    search->end = foot + sqrt(room);
-    search->begin_part = search->end_part = IMPLICIT_PART_BALL;
-    return search->begin < search->end;
-}
+/* --- points --- */
 
-/* --- crossings, in order --- */
-
-static void give_out(struct search *search) {
-    if (!search->has_waiting)
-        return;
-    search->has_waiting = false;
-    const struct crossing *crossing = &search->waiting;
-    if (search->solid->in.open && crossing->part >= IMPLICIT_PART_BOX)
-        return;
-    if (search->is_list) {
-        search->is_full = !geom_scratch_push(search->scratch, *crossing);
-        search->is_done = search->is_full;
-        return;
-    }
-    if (crossing->t > search->ray->t_min && crossing->t < search->ray->t_max) {
-        *search->found = *crossing;
-        search->has_found = search->is_done = true;
-    }
-}
-
-/* The line changes sides at s. Two changes at one t cancel each other. */
-static void cross(struct search *search, double s, uint32_t part) {
-    double t = line_t(&search->line, s);
-    search->inside = !search->inside;
-    if (search->has_waiting && !(search->waiting.t < t)) {
-        search->has_waiting = false;
-        return;
-    }
-    give_out(search);
-    search->waiting = (struct crossing){.t = t, .part = part, .enter = search->inside};
-    search->has_waiting = true;
-}
-
-/* --- the function --- */
-
-static double evaluate(struct search *search, const struct expr_program *program, double s) {
+static bool is_below_zero(const struct expr_program *program, struct vec3 point) {
     double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
-    struct vec3 p = line_at(&search->line, s);
-    inputs[EXPR_POINT_X] = p.x;
-    inputs[EXPR_POINT_Y] = p.y;
-    inputs[EXPR_POINT_Z] = p.z;
+    inputs[EXPR_POINT_X] = point.x;
+    inputs[EXPR_POINT_Y] = point.y;
+    inputs[EXPR_POINT_Z] = point.z;
     expr_evaluate(program, inputs, outputs);
-    search->work += expr_work(program);
+    return outputs[0] < 0;
+}
+
+bool implicit_contains(const struct implicit *solid, struct vec3 point) {
+    const struct box *box = &solid->in.bounds;
+    for (int k = 0; k < 3; k++) {
+        double x = vec3_get(point, k);
+        if (!(x > vec3_get(box->min, k) && x < vec3_get(box->max, k)))
+            return false;
+    }
+    struct vec3 from_centre = vec3_sub(point, solid->in.centre);
+    if (solid->in.is_ball && !(vec3_dot(from_centre, from_centre) < solid->in.radius * solid->in.radius))
+        return false;
+    return is_below_zero(solid->in.program, point);
+}
+
+/* The function at a point, and its gradient. program: one of the solid's. */
+static double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
+    unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
+    inputs[EXPR_POINT_X] = point.x;
+    inputs[EXPR_POINT_Y] = point.y;
+    inputs[EXPR_POINT_Z] = point.z;
+    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, implicit_aligned(memory));
+    *gradient = vec3_make(gradients[0][0], gradients[0][1], gradients[0][2]);
     return outputs[0];
 }
 
-/* Memory on top of the scratch, which the next crossing overwrites. NULL: it is too small. */
-static void *borrow_memory(struct search *search, size_t size) {
-    struct geom_scratch *scratch = search->scratch;
-    if ((size_t)(scratch->capacity - scratch->used) * sizeof *scratch->items >= size + IMPLICIT_ALIGNMENT)
-        return implicit_aligned(scratch->items + scratch->used);
-    scratch->overflow = search->is_full = search->is_done = true;
-    return NULL;
+/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side.
+ * Without a normal, it is the direction of the ray. */
+static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
+    struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
+    double length = vec3_length(normal);
+    if (!(length > 0) || !isfinite(length))
+        return out;
+    struct vec3 unit = vec3_scale(normal, 1 / length);
+    double cosine = vec3_dot(unit, out);
+    if (cosine >= 0)
+        return unit;
+    return cosine > -0.1 ? vec3_normalize(vec3_add_scaled(unit, out, -cosine)) : out;
 }
 
-/* Bounds of the function and of its slope over each of the eight parts, or over all of them in each case of its
- * discontinuities. False: the scratch is too small. */
-static bool bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
-                          bool are_cases, struct expr_lane_range *out) {
-    const size_t size = expr_lanes_size(program);
-    unsigned char memory[size <= IMPLICIT_STACK ? size + IMPLICIT_ALIGNMENT : 1];
-    void *rows = size <= IMPLICIT_STACK ? implicit_aligned(memory) : borrow_memory(search, size);
-    struct expr_lane_inputs inputs;
-    struct expr_lane_range outputs[EXPR_OUTPUTS];
-    struct expr_directions directions;
-    if (!rows)
-        return false;
-    double margin = search->solid->size * 0x1p-50;
-    directions.count = 1;
-    inputs.are_cases = are_cases;
-    for (int k = 0; k < 3; k++) {
-        double d = vec3_get(search->line.direction, k);
-        double *low = inputs.low[EXPR_POINT_X + k], *high = inputs.high[EXPR_POINT_X + k];
-        for (int i = 0; i < EXPR_LANES; i++) {
-            double p = search->origin[k] + d * ends[are_cases ? 0 : i];
-            double q = search->origin[k] + d * ends[are_cases ? EXPR_LANES : i + 1];
-            low[i] = (p < q ? p : q) - margin;
-            high[i] = (p < q ? q : p) + margin;
-        }
-        directions.seeds[EXPR_POINT_X + k][0] = d;
-    }
-    search->work += 10 * expr_work(program);
-    expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, rows);
-    *out = outputs[0];
-    return true;
-}
+/* --- jumps --- */
 
-static struct slope slope_in(const struct search *search, const struct implicit_region *region) {
-    struct slope out = {0, 0};
-    for (int k = 0; k < 3; k++) {
-        double d = vec3_get(search->line.direction, k);
-        if (d == 0)
-            continue;
-        out.low += d * (double)(d > 0 ? region->low[k] : region->high[k]);
-        out.high += d * (double)(d > 0 ? region->high[k] : region->low[k]);
-    }
-    double rounding = (fabs(out.low) + fabs(out.high)) * 0x1p-50;
-    return (struct slope){out.low - rounding, out.high + rounding};
-}
-
-/* --- one crossing --- */
-
-/* Where the sign changes between a and b, which have different signs. */
-static double find_change(struct search *search, const struct expr_program *program, double a, double fa, double b,
-                          double fb) {
-    double tolerance = search->solid->size * implicit_accuracy(search->solid), c = a, fc = fa, t = fa / (fa - fb);
-    for (int step = 0; step < 200; step++) {
-        double limit = tolerance / fabs(b - a);
-        if (!(limit < 0.5))
-            break;
-        t = t > limit ? (t < 1 - limit ? t : 1 - limit) : t <= limit ? limit : 0.5;
-        double x = a + t * (b - a), fx = evaluate(search, program, x);
-        if ((fx < 0) == (fa < 0)) {
-            c = a;
-            fc = fa;
-        } else {
-            c = b;
-            fc = fb;
-            b = a;
-            fb = fa;
-        }
-        a = x;
-        fa = fx;
-        if (fa == 0)
-            break;
-        double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
-        bool is_smooth = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
-        t = is_smooth ? fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
-                      : 0.5;
-    }
-    return fabs(fb) < fabs(fa) ? b : a;
-}
-
-/* --- stretches --- */
-
-/* A part of a region: where it ends, and the function there. */
-struct part {
-    double a, fa, b, fb;
+/* Near a crossing of a line, where the sign jumps: two directions across the line, and the room for steps along it. */
+struct jump {
+    const struct expr_program *program;
+    struct vec3 point, along, across[2];
+    double room;
+    bool enter;
 };
 
-/* Whether the slope excludes that the function has reached 0 between two values of one sign. */
-static bool stays(const struct search *search, const struct part *part, struct slope slope) {
-    double w = part->b - part->a, fa = part->fa, fb = part->fb;
-    if (!(slope.low > -INFINITY && slope.high < INFINITY) || fa != fa || fb != fb)
+/* How far along the line the sign changes, `off` beside the line. False: not within the room. */
+static bool find_beside(const struct jump *jump, int axis, double off, double *out) {
+    const struct vec3 start = vec3_add_scaled(jump->point, jump->across[axis], off);
+    double low = -jump->room, high = jump->room;
+    if (is_below_zero(jump->program, vec3_add_scaled(start, jump->along, low)) == jump->enter ||
+        is_below_zero(jump->program, vec3_add_scaled(start, jump->along, high)) != jump->enter)
         return false;
-    if (slope.low >= 0 || slope.high <= 0)
-        return true;
-    bool below = fa < 0;
-    /* Lines of the largest slopes from both ends meet in the farthest value. */
-    double from_a = below ? slope.high : slope.low, from_b = below ? slope.low : slope.high;
-    double x = (fb - fa - from_b * w) / (from_a - from_b), farthest = fa + from_a * x;
-    double rounding = search->solid->size * 0x1p-50 * (slope.high - slope.low);
-    return below ? farthest < rounding : farthest > -rounding;
-}
-
-/* The side of the surface at a point, if bounds decide it. */
-enum side { SIDE_OUTSIDE, SIDE_INSIDE, SIDE_UNKNOWN };
-
-static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
-    if (range->low[lane] >= 0 || range->is_nan >> lane & 1) /* NaN is outside */
-        return SIDE_OUTSIDE;
-    return range->high[lane] < 0 && !(range->may_be_nan >> lane & 1) ? SIDE_INSIDE : SIDE_UNKNOWN;
-}
-
-/* On both sides of a discontinuity the sign may be the same. */
-static enum side side_of_cases(struct search *search, const struct expr_program *program, double a, double b) {
-    const double ends[EXPR_LANES + 1] = {[0] = a, [EXPR_LANES] = b};
-    struct expr_lane_range range;
-    if (!bound_eighths(search, program, ends, true, &range))
-        return SIDE_UNKNOWN;
-    enum side side = side_of_lane(&range, 0);
-    for (int i = 1; i < EXPR_LANES; i++)
-        side = side_of_lane(&range, i) == side ? side : SIDE_UNKNOWN;
-    return side;
-}
-
-/* From s on, the line is on a known side. */
-static void settle(struct search *search, bool inside, double s, uint32_t number, uint32_t first_number) {
-    if (search->is_unknown)
-        search->inside = inside;
-    search->is_unknown = false;
-    if (search->inside != inside)
-        cross(search, s, s > search->begin ? number : first_number);
-}
-
-/* A part with one crossing, or with an odd number of crossings close to each other. */
-static void pass_change(struct search *search, uint32_t number, const struct part *part) {
-    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
-    double t = line_t(&search->line, part->a);
-    if (search->is_any && t > search->ray->t_min && line_t(&search->line, part->b) < search->ray->t_max &&
-        !(search->has_waiting && search->waiting.t >= t)) {
-        search->has_found = search->is_done = true; /* wherever it is */
-        return;
-    }
-    cross(search, find_change(search, program, part->a, part->fa, part->b, part->fb), number);
-}
-
-static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope);
-
-static void search_part(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
-    bool changes = (part->fa < 0) != (part->fb < 0);
-    bool is_known = changes ? slope.low >= 0 || slope.high <= 0 : stays(search, part, slope);
-    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < search->limit)
-        search_eighths(search, number, part, slope);
-    else if (changes)
-        pass_change(search, number, part);
-}
-
-/* The value at s, which is stored for the next part. */
-static double value_at(struct search *search, const struct expr_program *program, double s) {
-    if (search->at != s)
-        search->value = evaluate(search, program, s);
-    search->at = s;
-    return search->value;
-}
-
-static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
-    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
-    struct expr_lane_range range;
-    double ends[EXPR_LANES + 1];
-    for (int i = 0; i < EXPR_LANES; i++)
-        ends[i] = part->a + (part->b - part->a) * ((double)i / EXPR_LANES);
-    ends[EXPR_LANES] = part->b;
-    if (!bound_eighths(search, program, ends, false, &range))
-        return;
-    for (int i = 0; i < EXPR_LANES && !search->is_done; i++) {
-        enum side side = side_of_lane(&range, i);
-        struct slope here = {range.slopes[0].low[i], range.slopes[0].high[i]};
-        if (side == SIDE_UNKNOWN && !(here.low > -INFINITY && here.high < INFINITY))
-            side = side_of_cases(search, program, ends[i], ends[i + 1]);
-        if (search->is_full)
-            return;
-        if (side != SIDE_UNKNOWN) {
-            settle(search, side == SIDE_INSIDE, ends[i], number, number);
-            continue;
-        }
-        here.low = here.low > slope.low ? here.low : slope.low;
-        here.high = here.high < slope.high ? here.high : slope.high;
-        struct part eighth = {.a = ends[i], .b = ends[i + 1]};
-        eighth.fa = i == 0 ? part->fa : value_at(search, program, ends[i]);
-        eighth.fb = i == EXPR_LANES - 1 ? part->fb : value_at(search, program, ends[i + 1]);
-        settle(search, eighth.fa < 0, ends[i], number, number);
-        if (!search->is_done)
-            search_part(search, number, &eighth, here);
-    }
-}
-
-/* The part from s0 to s1 with a Lipschitz bound. Around a point there is no crossing within |f| / lipschitz. If the
- * function grows along the line, the spheres of the next point reach back, so the step may be longer: it is tried,
- * and repeated if both spheres do not meet. A march begins at the region, so that it does not depend on the ray. */
-static void march(struct search *search, uint32_t number, double s0, double s1) {
-    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
-    const double lipschitz = search->solid->in.lipschitz;
-    double smallest = search->solid->size * march_resolution, trend = -1; /* of |f| / lipschitz along the line */
-    int smallest_steps = 0;
-    const double first = search->is_any ? (search->ray->t_min - search->line.t0) * search->line.speed : s0;
-    if (first > s0 && first < s1) { /* where the crossing is does not matter */
-        s0 = first;
-        search->is_unknown = true;
-        search->has_waiting = false;
-    }
-    struct part part = {.a = s0, .fa = value_at(search, program, s0)};
-    settle(search, part.fa < 0, s0, number, search->begin_part);
-    while (part.a < s1 && !search->is_done) {
-        double clear = fabs(part.fa) / lipschitz;
-        clear = clear < INFINITY ? clear : 0; /* or NaN */
-        double step = clear > smallest ? clear : smallest, longer = 1.9 * clear / (1 - trend);
-        bool is_longer = longer > step;
-        part.b = fmin(part.a + (is_longer ? longer : step), s1);
-        part.fb = value_at(search, program, part.b);
-        bool changes = (part.fa < 0) != (part.fb < 0);
-        if (is_longer && (changes || !(fabs(part.fa) + fabs(part.fb) >= lipschitz * (part.b - part.a)))) {
-            part.b = fmin(part.a + step, s1);
-            part.fb = value_at(search, program, part.b);
-            changes = (part.fa < 0) != (part.fb < 0);
-        }
-        smallest_steps += step <= smallest;
-        if (smallest_steps == MARCH_SMALLEST) {
-            smallest *= 2;
-            smallest_steps = 0;
-        }
-        trend = (fabs(part.fb) - fabs(part.fa)) / (lipschitz * (part.b - part.a));
-        trend = trend > -1 && !changes ? fmin(trend, 0.8) : -1; /* or NaN */
-        if (changes)
-            pass_change(search, number, &part);
-        if (search->has_waiting && search->waiting.t < line_t(&search->line, part.b) && !search->is_done)
-            give_out(search); /* at once: the steps inside are short */
-        part.a = part.b;
-        part.fa = part.fb;
-    }
-}
-
-/* The box of a node. */
-struct node_box {
-    double lo[3], hi[3];
-};
-
-/* Decides the side by the value at the centre of the region and by the slopes. They bound the function by linear
- * functions, whose extremes are at the ends of the segment. */
-static enum side side_by_slopes(const struct search *search, const struct implicit_region *region,
-                                const struct node_box *box, double s0, double s1) {
-    double lows[2], highs[2];
-    for (int end = 0; end < 2; end++) {
-        double s = end == 0 ? s0 : s1, low = (double)region->middle_low, high = (double)region->middle_high, size = 0;
-        for (int k = 0; k < 3; k++) {
-            double off =
-                search->origin[k] + vec3_get(search->line.direction, k) * s - region_middle(box->lo[k], box->hi[k]);
-            double a = off * (double)region->low[k], b = off * (double)region->high[k];
-            low += a < b ? a : b;
-            high += a < b ? b : a;
-            size += fabs(a) + fabs(b);
-        }
-        lows[end] = low - size * 0x1p-44;
-        highs[end] = high + size * 0x1p-44;
-    }
-    if (lows[0] > 0 && lows[1] > 0)
-        return SIDE_OUTSIDE;
-    return highs[0] < 0 && highs[1] < 0 ? SIDE_INSIDE : SIDE_UNKNOWN;
-}
-
-/* Whether the sphere around the centre of the region, in which the function has the sign of the centre, contains
- * both ends and so the segment. */
-static enum side side_by_sphere(const struct search *search, const struct implicit_region *region,
-                                const struct node_box *box, double s0, double s1) {
-    double squares[2] = {0, 0};
-    for (int end = 0; end < 2; end++)
-        for (int k = 0; k < 3; k++) {
-            double off = search->origin[k] + vec3_get(search->line.direction, k) * (end == 0 ? s0 : s1) -
-                         region_middle(box->lo[k], box->hi[k]);
-            squares[end] += off * off;
-        }
-    double change = search->solid->in.lipschitz * sqrt(squares[0] > squares[1] ? squares[0] : squares[1]) * (1 + 1e-9);
-    if ((double)region->middle_low > change)
-        return SIDE_OUTSIDE;
-    return (double)region->middle_high < -change ? SIDE_INSIDE : SIDE_UNKNOWN;
-}
-
-static void pass_surface(struct search *search, uint32_t number, double s0, double s1) {
-    const struct implicit_region *region = &search->solid->regions[number];
-    const struct expr_program *program = &search->solid->programs[region->program];
-    struct part part = {.a = s0, .b = s1};
-    part.fa = value_at(search, program, s0);
-    part.fb = value_at(search, program, s1);
-    double value = part.fb;
-    settle(search, part.fa < 0, s0, number, search->begin_part);
-    if (!search->is_done)
-        search_part(search, number, &part, slope_in(search, region));
-    search->at = s1;
-    search->value = value;
-}
-
-/* Whether the ray begins after s. For such a segment only the side at its end is needed. */
-static bool is_before(const struct search *search, double s) {
-    return search->ray && line_t(&search->line, s) <= search->ray->t_min;
-}
-
-static void pass_region(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
-    const uint32_t value = search->solid->nodes[node], number = value >> 2;
-    if (is_before(search, s1)) {
-        search->is_unknown = true;
-    } else {
-        enum region_kind kind = (enum region_kind)(value & 3);
-        enum side side = kind == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
-        const bool is_marched = search->solid->in.lipschitz > 0;
-        if (kind == REGION_SURFACE)
-            side = (is_marched ? side_by_sphere : side_by_slopes)(search, &search->solid->regions[number], box, s0, s1);
-        if (side == SIDE_UNKNOWN && is_marched)
-            march(search, number, s0, s1);
-        else if (side == SIDE_UNKNOWN)
-            pass_surface(search, number, s0, s1);
+    for (int step = 0; step < 24; step++) {
+        const double middle = 0.5 * (low + high);
+        if (is_below_zero(jump->program, vec3_add_scaled(start, jump->along, middle)) == jump->enter)
+            high = middle;
         else
-            settle(search, side == SIDE_INSIDE, s0, kind == REGION_SURFACE ? number : IMPLICIT_PART_WHOLE,
-                   search->begin_part);
+            low = middle;
     }
-    if (!search->ray || search->is_done)
-        return;
-    double t = line_t(&search->line, s1);
-    if (search->has_waiting && search->waiting.t < t)
-        give_out(search);
-    search->is_done = search->is_done || t >= search->ray->t_max;
-}
-
-/* The stretch from s0 to s1, on which the line is in a node of the octree. */
-static void pass_node(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
-    uint32_t value = search->solid->nodes[node], number = value >> 2, part = 0;
-    enum region_kind kind = (enum region_kind)(value & 3);
-    if (kind != REGION_SPLIT || is_before(search, s1)) {
-        pass_region(search, node, box, s0, s1);
-        return;
-    }
-    /* Visits the parts in order. The line changes to the other half of an axis where it crosses the middle. */
-    double middles[3], meets[3];
-    for (int k = 0; k < 3; k++) {
-        middles[k] = region_middle(box->lo[k], box->hi[k]);
-        bool is_upper = search->origin[k] >= middles[k];
-        meets[k] = INFINITY;
-        if (search->inverse[k] != 0) {
-            meets[k] = (middles[k] - search->origin[k]) * search->inverse[k];
-            is_upper = (meets[k] <= s0) == (search->inverse[k] > 0);
-            if (meets[k] <= s0)
-                meets[k] = INFINITY;
-        }
-        part |= is_upper ? 1U << k : 0;
-    }
-    while (s0 < s1 && !search->is_done) {
-        int axis = meets[0] <= meets[1] ? 0 : 1;
-        axis = meets[axis] <= meets[2] ? axis : 2;
-        double next = meets[axis] < s1 ? meets[axis] : s1;
-        if (next > s0) {
-            struct node_box half;
-            for (int k = 0; k < 3; k++) {
-                half.lo[k] = part >> k & 1 ? middles[k] : box->lo[k];
-                half.hi[k] = part >> k & 1 ? box->hi[k] : middles[k];
-            }
-            pass_node(search, number + part, &half, s0, next);
-        }
-        part ^= 1U << axis;
-        meets[axis] = INFINITY;
-        s0 = next;
-    }
-}
-
-/* --- lines --- */
-
-/* False: the line is off the bounds. */
-static bool search_begin(struct search *search, const struct implicit *solid, const struct ray *ray,
-                         struct geom_scratch *scratch) {
-    search->solid = solid;
-    search->scratch = scratch;
-    if (!line_init(&search->line, ray, implicit_middle(solid)) || !line_meets_box(&search->line, &solid->tight))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        double d = vec3_get(search->line.direction, k);
-        search->origin[k] = vec3_get(search->line.origin, k);
-        search->inverse[k] = fabs(d) > 0x1p-1000 ? 1 / d : 0;
-    }
-    search->inside = search->is_unknown = search->has_waiting = search->has_found = search->is_done = search->is_full =
-        search->is_any = search->is_list = false;
-    search->work = 0;
-    search->limit = WORK;
-    search->at = (double)NAN;
-    search->ray = NULL;
-    search->found = NULL;
-    return solid->in.is_ball ? clip_ball(search, solid->in.centre, solid->in.radius)
-                             : clip_box(search, &solid->in.bounds);
-}
-
-static void search_run(struct search *search) {
-    const struct box *b = &search->solid->in.bounds;
-    struct node_box box = {{b->min.x, b->min.y, b->min.z}, {b->max.x, b->max.y, b->max.z}};
-    pass_node(search, 0, &box, search->begin, search->end);
-    if (search->inside && !search->is_done)
-        cross(search, search->end, search->end_part);
-    if (!search->is_done)
-        give_out(search);
-}
-
-bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                        struct crossing_list *out) {
-    struct search search;
-    *out = (struct crossing_list){scratch->used, 0};
-    if (!search_begin(&search, solid, ray, scratch))
-        return true;
-    search.is_list = true;
-    search_run(&search);
-    if (search.is_full) {
-        scratch->used = out->first;
-        return false;
-    }
-    out->count = scratch->used - out->first;
+    *out = 0.5 * (low + high);
     return true;
 }
 
-uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
-                            struct geom_scratch *scratch) {
-    struct search search;
-    const uint32_t used = scratch->used;
-    if (!search_begin(&search, solid, ray, scratch))
-        return 0;
-    search.is_list = true;
-    search.limit = limit;
-    search_run(&search);
-    scratch->used = used;
-    return search.work;
+/* The slope of the surface along one of the directions across the line, which meets it at `from`. The second side is
+ * for edges of the surface, the smaller step for grazing lines. */
+static bool slope_beside(const struct jump *jump, int axis, double from, double *out) {
+    static const double shares[] = {0x1p-4, -0x1p-4, 0x1p-10, -0x1p-10};
+    for (int k = 0; k < 4; k++)
+        if (find_beside(jump, axis, jump->room * shares[k], out)) {
+            *out = (*out - from) / (jump->room * shares[k]);
+            return true;
+        }
+    return false;
 }
 
-static bool find_first(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch, bool is_any,
-                       struct crossing *out) {
-    struct search search;
-    if (!search_begin(&search, solid, ray, scratch) || line_t(&search.line, search.begin) >= ray->t_max ||
-        line_t(&search.line, search.end) <= ray->t_min)
+/* The normal of the plane through three points where the sign changes. */
+static bool normal_of_jump(const struct jump *jump, struct vec3 *out) {
+    double from, slopes[2];
+    if (!find_beside(jump, 0, 0, &from) || !slope_beside(jump, 0, from, &slopes[0]) ||
+        !slope_beside(jump, 1, from, &slopes[1]))
         return false;
-    search.ray = ray;
-    search.found = out;
-    search.is_any = is_any;
-    search_run(&search);
-    return search.has_found;
+    struct vec3 normal = vec3_add_scaled(jump->along, jump->across[0], -slopes[0]);
+    *out = vec3_scale(vec3_add_scaled(normal, jump->across[1], -slopes[1]), jump->enter ? -1 : 1);
+    return true;
 }
 
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                      struct crossing *out) {
-    return find_first(solid, ray, scratch, false, out);
+/* Where the function jumps over 0, the gradient does not show the normal. If the surface is too rough or too thin, the
+ * normal is not changed. */
+static void describe_jump(const struct implicit *solid, const struct ray *ray, struct vec3 point, bool enter,
+                          struct vec3 *normal) {
+    struct jump jump = {.program = solid->in.program, .point = point, .enter = enter};
+    const double rounding = vec3_max_abs(point) * 0x1p-36;
+    jump.along = vec3_normalize(ray->direction);
+    frame_tangents(jump.along, &jump.across[0], &jump.across[1]);
+    for (double share = 0x1p-20; share >= 0x1p-26; share /= 64) {
+        jump.room = solid->size * share + rounding;
+        if (normal_of_jump(&jump, normal))
+            return;
+    }
 }
 
-bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch) {
-    struct crossing ignored;
-    return find_first(solid, ray, scratch, true, &ignored);
+static void describe_cap(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                         struct surface *out) {
+    struct vec3 point = ray_at(ray, crossing->t), middle = implicit_middle(solid), normal = {0, 0, 0};
+    if (crossing->part == IMPLICIT_PART_BALL) {
+        normal = vec3_normalize(vec3_sub(point, middle));
+        point = vec3_add_scaled(middle, normal, solid->in.radius);
+    } else {
+        const struct box *box = &solid->in.bounds;
+        double *const points[3] = {&point.x, &point.y, &point.z}, *const normals[3] = {&normal.x, &normal.y, &normal.z};
+        int axis = (int)(crossing->part - IMPLICIT_PART_BOX);
+        bool is_upper = (vec3_get(ray->direction, axis) > 0) != crossing->enter;
+        *normals[axis] = is_upper ? 1 : -1;
+        *points[axis] = vec3_get(is_upper ? box->max : box->min, axis);
+    }
+    surface_make(out, point, normal, 0x1p-48 * (solid->size + vec3_max_abs(middle)));
+}
+
+void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                       struct surface *out) {
+    if (crossing->part >= IMPLICIT_PART_BOX) {
+        describe_cap(solid, ray, crossing, out);
+    } else {
+        uint32_t program = crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0;
+        struct vec3 point = ray_at(ray, crossing->t), gradient;
+        double off = implicit_gradient(&solid->programs[program], point, &gradient);
+        double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
+        double error = solid->size * 2 * implicit_accuracy(solid);
+        if (square > 0 && fabs(off) < room * sqrt(square)) {
+            /* One step along the gradient removes the rounding error of the ray. */
+            point = vec3_add_scaled(point, gradient, -off / square);
+        } else {
+            error = room;
+            describe_jump(solid, ray, point, crossing->enter, &gradient);
+        }
+        surface_make(out, point, usable_normal(gradient, ray, crossing->enter), error);
+    }
+    surface_mapping_sphere(implicit_middle(solid), out);
+}
+
+/* --- the solid --- */
+
+const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error) {
+    struct implicit *solid = arena_alloc(arena, sizeof *solid);
+    if (!solid) {
+        (void)error_no_memory(error, "an implicit solid");
+        return NULL;
+    }
+    solid->in = *in;
+    if (in->is_ball) {
+        struct vec3 radius = vec3_all(in->radius);
+        solid->in.bounds = (struct box){vec3_sub(in->centre, radius), vec3_add(in->centre, radius)};
+    }
+    for (int k = 0; k < 3; k++) {
+        double lo = vec3_get(solid->in.bounds.min, k), hi = vec3_get(solid->in.bounds.max, k);
+        if (!(lo < hi && hi - lo < HUGE_VAL)) {
+            (void)error_set(error, ERROR_SCENE, "the bounds must have a length, a width and a height, and end");
+            return NULL;
+        }
+        solid->size = hi - lo > solid->size ? hi - lo : solid->size;
+    }
+    for (int k = 0; k < in->program->input_count; k++)
+        if (in->program->inputs[k].input > EXPR_POINT_Z) {
+            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid may depend only on p",
+                            expr_input_name((enum expr_input)in->program->inputs[k].input));
+            return NULL;
+        }
+    if (in->program->output_count != 1) {
+        (void)error_set(error, ERROR_SCENE, "the function returns a colour; a solid needs one number, negative inside");
+        return NULL;
+    }
+    return implicit_regions_build(arena, solid, error) ? solid : NULL;
+}
+
+const struct expr_program *implicit_program(const struct implicit *solid) {
+    return solid->in.program;
+}
+
+struct box implicit_bounds(const struct implicit *solid) {
+    return box_pad(solid->tight);
+}
+
+bool implicit_is_closed(const struct implicit *solid) {
+    return !solid->in.open;
+}
+
+uint32_t implicit_scratch_need(const struct implicit *solid) {
+    const size_t size = expr_lanes_size(solid->in.program);
+    return GUESS + (size <= IMPLICIT_STACK ? 0 : (uint32_t)((size + IMPLICIT_ALIGNMENT) / sizeof(struct crossing)) + 1);
+}
+
+/* --- whether a Lipschitz bound holds, and whether bounds are too wide ---
+ *
+ * Points and lines are the same for all solids with the same bounds. */
+
+enum { POINTS = 1000, LINES = 64 };
+/* Operations for one line, and for all of them. */
+static const uint64_t line_limit = 1000000, all_limit = 4000000;
+
+/* Of slopes, relative. */
+static const double rounding = 1e-6;
+
+static struct vec3 random_point(const struct box *box, uint64_t index) {
+    double u[3];
+    for (uint64_t k = 0; k < 3; k++)
+        u[k] = random_unit(random_combine(random_combine(18, index), k));
+    return vec3_make(box->min.x + (box->max.x - box->min.x) * u[0], box->min.y + (box->max.y - box->min.y) * u[1],
+                     box->min.z + (box->max.z - box->min.z) * u[2]);
+}
+
+/* |f| by the distance of a point where the sign is another one, if there is one among 16 points that |f| promises to
+ * be of one sign, the first of them along the gradient; else 0. */
+static double ratio_to_distance(const struct implicit *solid, struct vec3 point, double value, struct vec3 gradient,
+                                uint64_t index) {
+    const double radius = fabs(value) / solid->in.lipschitz;
+    const struct box ball = {vec3_all(-1), vec3_all(1)};
+    double ratio = 0;
+    for (uint64_t k = 0; k < 16 && radius < solid->size; k++) {
+        double share = k == 0 ? 1 : sqrt(random_unit(random_combine(random_combine(20, index), k)));
+        struct vec3 direction = k == 0 ? vec3_scale(gradient, value < 0 ? 1 : -1) : random_point(&ball, 16 * index + k);
+        struct vec3 other = vec3_add_scaled(point, vec3_normalize(direction), 0.999 * share * radius);
+        double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+        if (!box_contains(&solid->in.bounds, other))
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            inputs[EXPR_POINT_X + axis] = vec3_get(other, axis);
+        expr_evaluate(solid->in.program, inputs, outputs);
+        if ((outputs[0] < 0) != (value < 0) && 1 / (0.999 * share) > ratio)
+            ratio = 1 / (0.999 * share);
+    }
+    return ratio;
+}
+
+static void examine_point(const struct implicit *solid, struct vec3 point, struct implicit_findings *out) {
+    struct vec3 gradient;
+    double value = implicit_gradient(solid->in.program, point, &gradient), slope = vec3_length(gradient);
+    out->is_empty = out->is_empty && !(value < 0);
+    if (solid->in.is_distance)
+        slope = ratio_to_distance(solid, point, value, gradient, out->points);
+    out->points++;
+    out->steep_points += slope > solid->in.lipschitz * (1 + rounding) && slope < INFINITY;
+    if (slope > out->steepest && slope < INFINITY) {
+        out->steepest = slope;
+        out->steepest_at = point;
+    }
+}
+
+/* Values at the centres of all regions, and slopes at every `stride`-th of them. */
+static void examine_node(const struct implicit *solid, uint32_t node, const struct box *box, uint32_t stride,
+                         struct implicit_findings *out) {
+    const uint32_t value = solid->nodes[node], number = value >> 2;
+    const struct vec3 middle = {region_middle(box->min.x, box->max.x), region_middle(box->min.y, box->max.y),
+                                region_middle(box->min.z, box->max.z)};
+    switch ((enum region_kind)(value & 3)) {
+    case REGION_OUTSIDE:
+        return;
+    case REGION_INSIDE:
+        out->is_empty = false;
+        return;
+    case REGION_SURFACE:
+        out->is_empty = out->is_empty && !(solid->regions[number].middle_low < 0);
+        if (number % stride == 0)
+            examine_point(solid, middle, out);
+        return;
+    case REGION_SPLIT:
+        for (uint32_t k = 0; k < 8; k++) {
+            struct box part = *box;
+            *(k & 1 ? &part.min.x : &part.max.x) = middle.x;
+            *(k & 2 ? &part.min.y : &part.max.y) = middle.y;
+            *(k & 4 ? &part.min.z : &part.max.z) = middle.z;
+            examine_node(solid, number + k, &part, stride, out);
+        }
+        return;
+    }
+}
+
+static bool examine_lines(const struct implicit *solid, double *work) {
+    struct geom_scratch scratch;
+    uint64_t sum = 0, lines = 0;
+    if (!geom_scratch_init(&scratch, implicit_scratch_need(solid)))
+        return false;
+    while (lines < LINES && sum < all_limit) {
+        const struct vec3 a = random_point(&solid->tight, 2 * lines), b = random_point(&solid->tight, 2 * lines + 1);
+        const struct ray line = {.origin = a, .direction = vec3_sub(b, a), .t_min = -INFINITY, .t_max = INFINITY};
+        sum += implicit_line_work(solid, &line, line_limit, &scratch);
+        lines++;
+        if (scratch.overflow && !geom_scratch_grow(&scratch)) {
+            geom_scratch_destroy(&scratch);
+            return false;
+        }
+    }
+    *work = (double)sum / (double)lines;
+    geom_scratch_destroy(&scratch);
+    return true;
+}
+
+static void examine_points(const struct implicit *solid, struct implicit_findings *out) {
+    for (uint64_t k = 0; k < POINTS; k++)
+        examine_point(solid, random_point(&solid->in.bounds, k), out);
+    examine_node(solid, 0, &solid->in.bounds, solid->region_count / POINTS + 1, out);
+}
+
+/* The same solid with the largest slope as its bound, rounded up to two digits. */
+static bool try_marching(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
+    struct arena arena = {0};
+    struct implicit_input in = solid->in;
+    examine_points(solid, out);
+    out->steep_points = 0;
+    out->is_empty = false;
+    if (!(out->steepest > 0))
+        return true;
+    double digit = 1;
+    while (digit * 100 <= out->steepest)
+        digit *= 10;
+    while (digit * 10 > out->steepest)
+        digit /= 10;
+    in.lipschitz = out->lipschitz = ceil(out->steepest / digit) * digit;
+    const struct implicit *marched = implicit_build(&arena, &in, error);
+    bool ok = marched && (examine_lines(marched, &out->marched_work) || error_no_memory(error, "an implicit solid"));
+    arena_destroy(&arena);
+    return ok;
+}
+
+bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
+    *out = (struct implicit_findings){.is_empty = solid->in.lipschitz > 0};
+    if (solid->in.lipschitz > 0) {
+        examine_points(solid, out);
+        return true;
+    }
+    if (!examine_lines(solid, &out->line_work))
+        return error_no_memory(error, "an implicit solid");
+    return out->line_work <= IMPLICIT_SLOW || try_marching(solid, out, error);
 }

@@ -24,6 +24,7 @@ struct implicit_input {
     bool is_distance;
 };
 
+enum { IMPLICIT_SLOW = 3000 };
 struct implicit;
 
 /* NULL and error: no memory, or the program is not of p alone. The work is bounded. */
@@ -37,20 +38,14 @@ struct implicit_findings {
     struct vec3 steepest_at;
     bool is_empty;    /* it is below 0 at none of them, nor at the centre of a region */
     double line_work; /* without a Lipschitz bound: the mean number of operations for a line, if it is below 10^6 */
+    /* Where that is above IMPLICIT_SLOW: a bound that the slopes at all points support, and the mean number with it. */
+    double lipschitz, marched_work;
 };
 /* The same findings for the same solid. False and an error: no memory. */
 bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error);
 const struct expr_program *implicit_program(const struct implicit *solid);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
-/* The same as shape_crossings and shape_nearest. A crossing is at most 1e-9 of the size of the solid from the point
- * where the sign changes. Two crossings that are closer than 1e-7 of the size may be missed together. */
-bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                        struct crossing_list *out);
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
-                      struct crossing *out);
-/* Whether there is a crossing in the ray's interval. Faster than implicit_nearest: it does not locate the crossing. */
-bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);

@@ -1,4 +1,4 @@
-/* The regions of an implicit solid: made by implicit_regions.c, read by implicit.c. */
+/* The regions of an implicit solid: made by implicit_regions.c, read by implicit_search.c. */
 #ifndef GRAY_SHAPE_IMPLICIT_INTERNAL_H
 #define GRAY_SHAPE_IMPLICIT_INTERNAL_H
 
@@ -53,11 +53,5 @@ static inline double implicit_accuracy(const struct implicit *solid) {
 }
 
 struct vec3 implicit_middle(const struct implicit *solid);
-/* The operations that the search for all crossings of a line needs, beyond `limit` about that number. */
-uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
-                            struct geom_scratch *scratch);
-
-/* Fills nodes, regions, programs and tight from the rest. */
-bool implicit_regions_build(struct arena *arena, struct implicit *solid, struct error *error);
 
 #endif

@@ -6,10 +6,10 @@
  *
  * T. Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid geometry",
  * SIGGRAPH 1992; M. Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", SIGGRAPH 2020. */
-#include "shape/implicit_internal.h"
 
 #include "base/mem.h"
 #include "expr/expr_shorten.h"
+#include "shape/implicit_regions_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -15,8 +15,6 @@
 #include "shape/lathe.h"
 
 #include "geometry/bernstein.h"
-#include "geometry/crossing.h"
-#include "geometry/spline.h"
 #include "math/bracket.h"
 #include "math/elementary.h"
 #include "shape/part_tree_internal.h"

@@ -8,7 +8,6 @@
 #include "shape/part_tree_internal.h"
 
 #include "base/mem.h"
-#include "base/sort.h"
 
 #include <assert.h>
 #include <math.h>

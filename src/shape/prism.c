@@ -7,8 +7,6 @@
 #include "shape/prism.h"
 
 #include "geometry/bernstein.h"
-#include "geometry/crossing.h"
-#include "geometry/spline.h"
 #include "shape/part_tree_internal.h"
 
 enum { BOTTOM, TOP, SIDES };

@@ -5,8 +5,6 @@
  * its box follows from the inverse. */
 #include "shape/quadric.h"
 
-#include "geometry/crossing.h"
-#include "math/roots.h"
 #include "shape/box_shape_internal.h"
 #include "shape/planar.h"
 #include "shape/span_internal.h"

@@ -3,7 +3,6 @@
  * Newton steps along the gradient. For the family see any book on analytic geometry. */
 #include "shape/revolved_quadric.h"
 
-#include "geometry/crossing.h"
 #include "math/elementary.h"
 #include "math/roots.h"
 #include "shape/span_internal.h"

@@ -8,10 +8,10 @@
 #include "shape/curve.h"
 #include "shape/height_field.h"
 #include "shape/implicit.h"
+#include "shape/implicit_search_internal.h"
 #include "shape/lathe.h"
 #include "shape/prism.h"
 #include "shape/shape_part.h"
-#include "shape/sphere.h"
 #include "shape/sweep.h"
 
 /* The expected number of crossings of a mesh on the scratch; if there are more, the scratch grows between rays. */

@@ -123,4 +123,9 @@ void shape_describe(const struct shape *shape, const struct ray *ray, const stru
 /* Upper bound of the scratch items one ray can need when it is known (analytic shapes), else a guess. */
 uint32_t shape_scratch_need(const struct shape *shape);
 
+struct shape_part; /* shape_part.h */
+/* Part `number` of a shape, counted from 0, in its object space; together the parts contain the shape. False: it has no
+ * such part, or it is infinite. */
+bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *out);
+
 #endif

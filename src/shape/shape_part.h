@@ -27,9 +27,6 @@ struct shape_part {
     };
 };
 
-/* Part `number` of a shape, counted from 0, in its object space; together the parts contain the shape. False: it has no
- * such part, or it is infinite. */
-bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *out);
 /* The part as a box. */
 struct oriented_box shape_part_box(const struct shape_part *part);
 /* The two halves of a part: divided across the longest edge of a box in the target space of `map`, or at the middle of

@@ -10,8 +10,6 @@
 #include "shape/sweep.h"
 
 #include "geometry/bernstein.h"
-#include "geometry/crossing.h"
-#include "geometry/spline.h"
 #include "math/elementary.h"
 #include "shape/part_tree_internal.h"
 

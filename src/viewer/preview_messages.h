@@ -66,7 +66,7 @@ struct preview_reply {
     struct picture_report report; /* of BUILT (its bounds) and PASS */
     struct picked picked;
     struct view_overlay overlay; /* of PASS, PICKED and OVERLAY: the parts that were requested and made */
-    double built;                /* of BUILT: when, on progress_clock */
+    double built;                /* of BUILT: when, on clock_now */
     uint32_t added;              /* of BUILT: nodes that the script has added by gr.change_add */
     uint32_t owned;              /* of BUILT: materials of gr.change_own */
     uint32_t root;               /* of BUILT: the serial of the root, and the space of its children */

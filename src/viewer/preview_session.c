@@ -2,12 +2,12 @@
  * applied again together, so that their order is that of the list, as in a script. */
 #include "viewer/preview_session.h"
 
+#include "base/clock.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
-#include "output/progress.h"
+#include "light/light_edit.h"
 #include "viewer/view_overlay_internal.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -81,7 +81,7 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     struct preview_session *preview = work->preview;
     struct render_job job;
     struct film film;
-    double begun = progress_clock();
+    double begun = clock_now();
     if (!lay_film(work, large, &film, error))
         return false;
     set_pass(&job, preview->job, &work->view, &film);
@@ -96,7 +96,7 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     if (!ok && !report->stopped)
         return false;
     pool_reset_cancel(preview->pool);
-    report->rays.render_seconds = progress_clock() - begun;
+    report->rays.render_seconds = clock_now() - begun;
     preview->fill(preview->context, &film, report);
     return true;
 }
@@ -138,10 +138,10 @@ static bool build_again(struct preview_state *work, struct error *error) {
     struct preview_session *preview = work->preview;
     const struct render_request *request = preview->request;
     bool over = work->changes.count > 0;
-    double begun = progress_clock();
+    double begun = clock_now();
     bool ok = preview->build(preview->context, over ? work->changed.lights : request->lights,
                              over ? work->changed.light_count : request->light_count, error);
-    work->build_seconds = progress_clock() - begun;
+    work->build_seconds = clock_now() - begun;
     work->stale = !ok;
     pool_reset_cancel(preview->pool);
     return ok;
@@ -229,7 +229,7 @@ static bool send_pixel_trace(struct preview_state *work, const struct preview_co
 static void describe_world(struct preview_state *work, struct preview_reply *reply) {
     const struct node *root = work->preview->request->root;
     reply->kind = REPLY_BUILT;
-    reply->built = progress_clock();
+    reply->built = clock_now();
     reply->added = work->preview->request->added;
     reply->owned = work->preview->request->owned;
     reply->report.bounds = finite_bounds(work->preview->world);
@@ -249,10 +249,10 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
     view_overlay_buffers(preview->picture_request, job.film->pixels, &buffers);
     if (request->lines.limit == 0 || request->lines.cell == 0) /* no lines are requested */
         return true;
-    double begun = progress_clock();
+    double begun = clock_now();
     const struct view_overlay_scene scene = {&job, preview->request->root, preview->pool};
     bool ok = view_overlay_make(&scene, request, &buffers, &reply->overlay, error);
-    reply->report.rays.render_seconds += progress_clock() - begun; /* a frame exists only with its lines */
+    reply->report.rays.render_seconds += clock_now() - begun; /* a frame exists only with its lines */
     reply->overlay.stopped = !ok && preview_was_stopped(preview->services->control, error);
     pool_reset_cancel(preview->pool);
     return ok || reply->overlay.stopped;

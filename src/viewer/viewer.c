@@ -165,6 +165,12 @@ void viewer_detach(struct viewer *viewer) {
     viewer->display.figures_at = 0;
 }
 
+bool viewer_has_tiles(const struct viewer *viewer) {
+    const struct viewer_pass *pass = &viewer->pass;
+    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.width == 0 &&
+           !pass->edited;
+}
+
 void viewer_keep(struct viewer *viewer) {
     viewer->keep = viewer->window.open;
 }
@@ -462,4 +468,10 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         break;
     }
     return viewer->pass.state == PASS_WAITING ? next_command(viewer, now) : step_running(viewer);
+}
+
+uint32_t viewer_next_frame(const struct viewer *viewer) {
+    if (viewer->player.target > 0)
+        return viewer->player.target;
+    return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
 }

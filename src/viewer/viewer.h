@@ -248,6 +248,8 @@ bool viewer_open(struct viewer *viewer, const struct window_driver *driver, cons
                  uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */
 void viewer_detach(struct viewer *viewer);
+/* Whether the film holds tiles of the picture of the script, not of another view or a coarse pass. */
+bool viewer_has_tiles(const struct viewer *viewer);
 /* The scripts will run again for the picture in the window. */
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
@@ -266,15 +268,5 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
 /* Handles events, draws, and returns the next action. To be called every few milliseconds, repeatedly until it returns
  * VIEWER_NOTHING. */
 enum viewer_action viewer_step(struct viewer *viewer, double now);
-
-/* Saving the image as it is shown, the camera, and the edits (viewer_edit.c). */
-/* `picture` has the name of the picture and rules that replace nothing. Both choose a name that is still free:
- * dir/foo.png gives dir/foo-view1.png, dir/foo-view1.lua and so on; it is stored in `name` (4096 bytes). The Lua file
- * returns a table of eye, view, up and fov with every digit. */
-bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
-bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
-                        struct error *error);
-/* dir/foo-changes1.lua: if the scene requires it, the picture has the camera, the exposure and all changes. */
-bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 
 #endif

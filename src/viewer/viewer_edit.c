@@ -1,12 +1,10 @@
 /* Selecting, changing, saving. The selection is stored in its state at the time of picking, with the change of its pose
  * at that time; its current pose follows from the current change, so undoing needs no reply of the render process. All
  * maps are computed in world space and converted to the space of the node's parent. */
-#include "inspect/pick.h"
-#include "math/elementary.h"
 #include "viewer/viewer_internal.h"
 
-#include "base/file_output.h"
-#include "image/png_write.h"
+#include "inspect/pick.h"
+#include "math/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -446,92 +444,4 @@ void viewer_set_exposure(struct viewer *viewer, double stops) {
     viewer->request.settings.tone.exposure = stops < -100 ? -100 : stops > 100 ? 100 : stops;
     viewer_redraw(viewer);
     viewer->display.hud_dirty = true;
-}
-
-/* Saving: existing files are never overwritten. */
-
-enum { NAME = 4096, NUMBERS = 10000 };
-
-static bool free_name(const char *picture, const char *what, const char *extension, char *name, struct error *error) {
-    const char *slash = strrchr(picture, '/'), *dot = strrchr(picture, '.');
-    size_t stem = dot && (!slash || dot > slash + 1) && dot != picture ? (size_t)(dot - picture) : strlen(picture);
-    for (int i = 1; i < NUMBERS; i++) {
-        int length = snprintf(name, NAME, "%.*s%s%d.%s", (int)stem, picture, what, i, extension);
-        if (length < NAME && !file_exists(name))
-            return true;
-    }
-    return error_set(error, ERROR_SCENE, "%.400s: no free file name is left for the view", picture);
-}
-
-static void image_row(void *context, uint32_t y, uint8_t *line) {
-    const struct viewer *viewer = context;
-    size_t bytes = 3 * (size_t)viewer->request.width;
-    memcpy(line, viewer->window.image + y * bytes, bytes);
-}
-
-bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name,
-                       struct error *error) {
-    const struct file_target target = {.path = name, .rules = picture->rules};
-    const struct png_source source = {.width = viewer->request.width,
-                                      .height = viewer->request.height,
-                                      .bytes = image_row,
-                                      .context = (void *)(uintptr_t)viewer,
-                                      .srgb = viewer->request.settings.tone.srgb};
-    return free_name(picture->path, "-view", "png", name, error) && png_write_from(&target, &source, NULL, error);
-}
-
-struct lua_file {
-    struct file_output file;
-    struct error *error;
-};
-
-static bool put_line(void *context, const char *line) {
-    struct lua_file *lua_file = context;
-    return file_output_write(&lua_file->file, line, strlen(line), lua_file->error);
-}
-
-static bool end_file(struct lua_file *lua_file, bool ok) {
-    if (ok)
-        return file_output_commit(&lua_file->file, lua_file->error);
-    file_output_abandon(&lua_file->file);
-    return false;
-}
-
-bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
-                        struct error *error) {
-    static const char head[] =
-        "-- A camera saved from the window. A scene that requires this file (its name without .lua) before gr.render\n"
-        "-- renders the picture with it. The file also returns the camera as a table.\n";
-    static const struct change_list none;
-    struct camera c = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera) : viewer->request.camera;
-    struct lua_file lua_file = {.error = error};
-    const struct file_target target = {.path = name, .rules = picture->rules};
-    char text[1024];
-    (void)snprintf(text, sizeof text,
-                   "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
-                   "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
-                   c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
-        return false;
-    return end_file(&lua_file, put_line(&lua_file, head) &&
-                                   edits_write_lua(&none, viewer->request.file, &c, NULL, put_line, &lua_file) &&
-                                   put_line(&lua_file, text));
-}
-
-bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name,
-                       struct error *error) {
-    static const char head[] =
-        "-- Edits made in the window. A scene that requires this file (its name without .lua) before gr.render has\n"
-        "-- them.\n";
-    struct camera camera = fly_camera_current(&viewer->fly_camera);
-    double exposure = viewer->request.settings.tone.exposure;
-    bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
-    struct lua_file lua_file = {.error = error};
-    const struct file_target target = {.path = name, .rules = picture->rules};
-    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
-        return false;
-    return end_file(&lua_file,
-                    put_line(&lua_file, head) && edits_write_lua(&viewer->edit.steps.now, viewer->request.file,
-                                                                 viewer->camera_moved ? &camera : NULL,
-                                                                 exposed ? &exposure : NULL, put_line, &lua_file));
 }

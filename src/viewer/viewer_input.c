@@ -144,7 +144,7 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
     }
 }
 
-static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
+void viewer_choose_tool(struct viewer *viewer, enum edit_tool tool) {
     viewer->edit.tool = viewer->edit.tool == tool ? TOOL_NONE : tool;
     viewer->edit.joins = false;
     viewer->display.hud_dirty = true;
@@ -169,17 +169,17 @@ static bool handle_edit_key(struct viewer *viewer, const struct window_event *ev
         if (event->control)
             viewer_undo(viewer, event->shift);
         else
-            choose_tool(viewer, TOOL_SIZE);
+            viewer_choose_tool(viewer, TOOL_SIZE);
         return true;
     case 'y':
         if (event->control)
             viewer_undo(viewer, true);
         return event->control;
     case 'm':
-        choose_tool(viewer, TOOL_MOVE);
+        viewer_choose_tool(viewer, TOOL_MOVE);
         return true;
     case 't':
-        choose_tool(viewer, TOOL_TURN);
+        viewer_choose_tool(viewer, TOOL_TURN);
         return true;
     case 'p':
         viewer_request_pixel_trace(viewer, viewer->window.panel.mouse_x, viewer->window.panel.mouse_y);

@@ -7,7 +7,6 @@
 #include "base/mem.h"
 #include "image/png_write.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { LARGE_PIXELS = 1 << 26 };

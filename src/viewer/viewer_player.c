@@ -75,12 +75,6 @@ bool viewer_player_continues(const struct viewer *before, const struct picture_r
            (before->player.seeking || before->keep);
 }
 
-uint32_t viewer_next_frame(const struct viewer *viewer) {
-    if (viewer->player.target > 0)
-        return viewer->player.target;
-    return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
-}
-
 /* Commands of the user. */
 
 static void note_played(struct viewer *viewer) {

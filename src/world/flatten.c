@@ -4,9 +4,15 @@
  * tables beside the nodes, which are only read. */
 #include "world/flatten_internal.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
+#include "scene/traversal.h"
+#include "world/flatten_csg_internal.h"
+#include "world/flatten_material_internal.h"
 #include "world/node_path.h"
+#include "world/world_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -344,6 +350,11 @@ struct instance_frame {
     const struct graphics_state *state_of_operand, *state; /* NULL: no ancestor has a state */
 };
 
+/* A spin goes on over the frames of an animation. */
+static double spin_start(const struct flattening *f, const struct node *node) {
+    return fmod(node->spin->degrees * f->scene->time, 360);
+}
+
 /* A moving node has a link, which is the base of its children. */
 static bool pose_moving(struct flattening *f, const struct node *node, const struct pose *parent, struct pose *out) {
     struct world *world = f->world;
@@ -358,6 +369,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     bool moves_on = node->moves_to && node->moves_to != node;
     if (!moves_on && node->spin) {
         link->motion = motion_of_spin(&parent_from_node, node->velocity, node->spin->axis, node->spin->degrees);
+        link->motion.spin_start = spin_start(f, node);
         out->from_node = transform_identity();
         return flatten_check_transform(f, node, &parent_from_node);
     }
@@ -376,6 +388,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
         link->motion.spins = true;
         link->motion.spin_axis = node->spin->axis;
         link->motion.spin = node->spin->degrees;
+        link->motion.spin_start = spin_start(f, node);
     }
     return true;
 }
@@ -490,5 +503,244 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
     flatten_map_end(f);
     if (f->log && f->log->on)
         f->log->primitives = f->primitives;
+    return ok;
+}
+
+/* --- maps --- */
+
+/* Placements as a translation and the number of a linear map: a million pots in rows share one map, and cost 56 bytes
+ * each instead of 192 for a map with its inverse. A hash over the bits finds equal maps; the newest is tested first. */
+
+struct linear_table {
+    uint32_t *slots; /* number of a map and 1, or 0 */
+    uint64_t mask;
+};
+
+static uint64_t hash_of(const struct linear_map *map) {
+    return hash_bytes(map, sizeof map->forward + sizeof map->inverse, 0);
+}
+
+static bool same_map(const struct linear_map *a, const struct linear_map *b) {
+    return memcmp(a, b, sizeof a->forward + sizeof a->inverse) == 0;
+}
+
+static uint32_t *find_map(const struct flattening *f, const struct linear_map *map) {
+    const struct linear_table *table = f->linear_table;
+    uint64_t at = hash_of(map) & table->mask;
+    while (table->slots[at] && !same_map(&f->world->linear_maps[table->slots[at] - 1], map))
+        at = (at + 1) & table->mask;
+    return &table->slots[at];
+}
+
+/* Room for one more map, in the list and in the table, which is at most half full. */
+static bool grow_maps(struct flattening *f) {
+    struct world *world = f->world;
+    if (world->linear_count < f->linear_capacity)
+        return true;
+    uint32_t capacity = f->linear_capacity ? f->linear_capacity * 2 : 64;
+    struct linear_map *maps = mem_resize_array(world->linear_maps, capacity, sizeof *maps);
+    if (!maps)
+        return false;
+    world->linear_maps = maps;
+    if (!f->linear_table && !(f->linear_table = mem_alloc_zero(1, sizeof *f->linear_table)))
+        return false;
+    uint32_t *slots = mem_alloc_zero((size_t)capacity * 2, sizeof *slots);
+    if (!slots)
+        return false;
+    mem_free(f->linear_table->slots);
+    *f->linear_table = (struct linear_table){slots, (uint64_t)capacity * 2 - 1};
+    f->linear_capacity = capacity;
+    for (uint32_t i = 0; i < world->linear_count; i++)
+        *find_map(f, &maps[i]) = i + 1;
+    return true;
+}
+
+bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct primitive *out) {
+    struct transform nothing = transform_identity();
+    struct world *world = f->world;
+    if (memcmp(&nothing, world_from_object, sizeof nothing) == 0) {
+        out->linear = LINEAR_NONE;
+        return true;
+    }
+    struct linear_map map = {.stretch = transform_stretch(world_from_object)};
+    const double(*forward)[4] = world_from_object->forward.m, (*inverse)[4] = world_from_object->inverse.m;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            map.forward[i][j] = forward[i][j];
+            map.inverse[i][j] = inverse[i][j];
+        }
+    }
+    out->shift = vec3_make(forward[0][3], forward[1][3], forward[2][3]);
+    out->shift_back = vec3_make(inverse[0][3], inverse[1][3], inverse[2][3]);
+    out->linear = world->linear_count - 1;
+    if (world->linear_count > 0 && same_map(&map, &world->linear_maps[out->linear]))
+        return true;
+    if (!grow_maps(f))
+        return error_no_memory(f->error, "the positions of the primitives");
+    uint32_t *slot = find_map(f, &map);
+    if (*slot == 0) {
+        world->linear_maps[world->linear_count++] = map;
+        *slot = world->linear_count;
+    }
+    out->linear = *slot - 1;
+    return true;
+}
+
+void linear_table_destroy(struct linear_table *table) {
+    if (table)
+        mem_free(table->slots);
+    mem_free(table);
+}
+
+void flatten_map_end(struct flattening *f) {
+    struct flatten_log *log = f->log;
+    if (log && log->on) {
+        log->linear_table = f->linear_table;
+        log->linear_capacity = f->linear_capacity;
+        log->linear_count = f->world->linear_count;
+        f->linear_table = NULL;
+        return;
+    }
+    linear_table_destroy(f->linear_table);
+    f->linear_table = NULL;
+    /* Frees the unused part of the list; on failure it is kept. */
+    struct world *world = f->world;
+    struct linear_map *maps = mem_resize_array(world->linear_maps, world->linear_count, sizeof *maps);
+    world->linear_maps = maps ? maps : world->linear_maps;
+}
+
+/* --- changes of transforms --- */
+
+/* The primitives of nodes whose transforms have changed since the world was flattened. The log lists the nodes in the
+ * order in which they were visited, each after the node above it, so one pass finds the nodes whose pose may differ.
+ * Their poses are composed anew from the root, in the order of flattening: the bits are those of a new world. Only the
+ * numbers of linear maps may differ, which nothing depends on. */
+
+enum { NODE_DEPTH_MAX = 64 };
+
+struct update {
+    struct flattening *f;
+    uint8_t *posed;          /* by index of a node: its transforms have changed */
+    uint32_t *number;        /* by record: that of its pose, or RECORD_NONE: it is as before */
+    struct transform *poses; /* of those records */
+    uint32_t count, capacity;
+};
+
+static bool mark_posed(struct update *u, const struct scene_changes *changes, bool *done) {
+    const struct flatten_log *log = u->f->log;
+    for (uint32_t i = 0; i < changes->posed_count; i++) {
+        const struct node *node = changes->posed[i].node;
+        if (node->index >= log->node_total)
+            continue; /* newer than the world, so it is not below the root */
+        if (node->singular || (log->inside && log->inside[node->index]))
+            *done = false;
+        u->posed[node->index] = 1;
+    }
+    return *done;
+}
+
+static const struct transform *known_pose(const struct update *u, uint32_t record) {
+    return u->number[record] == RECORD_NONE ? NULL : &u->poses[u->number[record]];
+}
+
+/* world_from_node, composed from the nearest node above it whose pose is known. False: the path is too long. */
+static bool find_pose(const struct update *u, uint32_t record, struct transform *out) {
+    const struct flatten_record *records = u->f->log->records;
+    uint32_t path[NODE_DEPTH_MAX];
+    int depth = 0;
+    *out = transform_identity();
+    for (uint32_t at = record; at != RECORD_NONE; at = records[at].above) {
+        const struct transform *known = at == record ? NULL : known_pose(u, at);
+        if (known) {
+            *out = *known;
+            break;
+        }
+        if (depth == NODE_DEPTH_MAX)
+            return false;
+        path[depth++] = at;
+    }
+    while (depth > 0) {
+        const struct flatten_record *r = &records[path[--depth]];
+        struct transform parent_from_node = node_parent_from_node(r->node);
+        if (r->above != RECORD_NONE) {
+            const struct scene_step step = {records[r->above].node, r->placement};
+            *out = scene_step_map(&step, out);
+        }
+        *out = transform_compose(out, &parent_from_node);
+    }
+    return true;
+}
+
+static struct transform *room_for_pose(struct update *u) {
+    if (u->count == u->capacity) {
+        uint32_t capacity = 2 * u->capacity + 64;
+        struct transform *poses = mem_resize_array(u->poses, capacity, sizeof *poses);
+        if (!poses)
+            return NULL;
+        u->poses = poses;
+        u->capacity = capacity;
+    }
+    return &u->poses[u->count];
+}
+
+static bool update_record(struct update *u, uint32_t record, bool *done) {
+    struct flattening *f = u->f;
+    struct world *world = f->world;
+    const struct flatten_log *log = f->log;
+    struct transform *pose = room_for_pose(u);
+    if (!pose)
+        return error_no_memory(f->error, "flattening the scene");
+    *done = find_pose(u, record, pose);
+    if (!*done)
+        return true;
+    u->number[record] = u->count++;
+    if (!flatten_check_transform(f, log->records[record].node, pose))
+        return false;
+    uint32_t end = record + 1 < log->count ? log->records[record + 1].first : world->primitive_count;
+    for (uint32_t i = log->records[record].first; *done && i < end; i++) {
+        log->primitives[i] = (struct primitive){.prototype = log->primitives[i].prototype};
+        if (!flatten_map(f, pose, &log->primitives[i]))
+            return false;
+        *done = world_update_box(world, i);
+    }
+    return true;
+}
+
+/* Stops where most linear maps are out of use. */
+static bool update_records(struct update *u, bool *done) {
+    const struct flatten_log *log = u->f->log;
+    const struct world *world = u->f->world;
+    bool ok = true;
+    for (uint32_t i = 0; ok && *done && i < log->count; i++) {
+        const struct flatten_record *r = &log->records[i];
+        u->number[i] = RECORD_NONE;
+        if (!u->posed[r->index] && (r->above == RECORD_NONE || u->number[r->above] == RECORD_NONE))
+            continue;
+        ok = update_record(u, i, done);
+        *done = *done && world->linear_count <= 4096 + 2 * log->linear_count;
+    }
+    return ok;
+}
+
+bool flatten_update(struct flattening *f, const struct scene_changes *changes, bool *done) {
+    struct flatten_log *log = f->log;
+    *done = log->on && !changes->other;
+    if (!*done || changes->posed_count == 0)
+        return true;
+    struct update update = {.f = f,
+                            .posed = mem_alloc_zero(log->node_total, 1),
+                            .number = mem_alloc((size_t)log->count * sizeof *update.number)};
+    f->linear_table = log->linear_table;
+    f->linear_capacity = log->linear_capacity;
+    log->linear_table = NULL;
+    bool ok = (update.posed && update.number) || error_no_memory(f->error, "flattening the scene");
+    ok = ok && (!mark_posed(&update, changes, done) || update_records(&update, done));
+    log->linear_table = f->linear_table;
+    log->linear_capacity = f->linear_capacity;
+    f->linear_table = NULL;
+    f->linear_capacity = 0;
+    mem_free(update.posed);
+    mem_free(update.number);
+    mem_free(update.poses);
     return ok;
 }

@@ -4,11 +4,13 @@
  *
  * A clipped primitive becomes the surface of its own program, followed by the clips. A union of opaque solids, or of
  * one material, becomes one primitive for each disjoint part. */
-#include "world/flatten_internal.h"
+#include "csg/csg_build.h"
+#include "world/flatten_csg_internal.h"
 
 #include "base/mem.h"
 #include "csg/csg_split.h"
 #include "scene/traversal.h"
+#include "world/flatten_material_internal.h"
 
 enum { CSG_NESTING = 10000, CSG_LEAVES = 65535 };
 

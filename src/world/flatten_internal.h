@@ -73,21 +73,6 @@ struct flattening {
  * open operands of CSG, no memory. */
 bool flatten_scene(struct flattening *f, const struct node *root);
 
-/* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none if it is empty, several if
- * it is a union of disjoint solids. around: may be NULL. */
-bool flatten_csg(struct flattening *f, const struct node *node, const struct pose *pose,
-                 const struct graphics_state *state, const struct csg ***parts, uint32_t *count);
-/* Shrinks a box by a bounding solid. */
-bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
-                   struct box *limit);
-/* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
- * of (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
- * *out on; everything else has 1. */
-bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
-                      uint32_t *count);
-/* The tables of textures and bumps that the authored materials read; the world's materials, flat copies of these, refer
- * to them by index from now on. Errors: no memory. */
-bool flatten_textures(struct flattening *f);
 /* False: the map of a node into the world, or into its solid, exceeds the range of doubles. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);

@@ -3,7 +3,7 @@
 #include "world/mesh_group.h"
 
 #include "base/mem.h"
-#include "world/world_internal.h"
+#include "world/world_describe.h"
 
 /* A group costs every ray the start of a search, so it needs several members and most of the scene; its triangles are
  * stored twice. */

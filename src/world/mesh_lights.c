@@ -6,6 +6,7 @@
 #include "light/sky.h"
 #include "material/material_eval.h"
 #include "world/node_path.h"
+#include "world/world_describe.h"
 
 #include <math.h>
 #include <stdio.h>

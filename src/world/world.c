@@ -2,8 +2,14 @@
  * primitives. A primitive in several cells is tested once per ray: a small mailbox remembers it. */
 #include "world/world_internal.h"
 
+#include "base/mem.h"
 #include "material/material_eval.h"
+#include "world/flatten_internal.h"
+#include "world/flatten_material_internal.h"
+#include "world/mesh_lights_internal.h"
 #include "world/world.h"
+#include "world/world_cache.h"
+#include "world/world_describe.h"
 
 #include <string.h>
 
@@ -465,4 +471,313 @@ uint32_t world_containing(const struct world *world, const struct inside_query *
         ends[at] = crossing.t;
     }
     return count;
+}
+
+/* --- poses --- */
+
+/* Poses of primitives: their maps, at a time if they move, and their boxes in the world. */
+
+static struct transform moved(const struct world *world, const struct moving *moving, double ray_time) {
+    double time = shutter_time(world->shutter, ray_time);
+    struct transform out = moving->link_from_object;
+    for (uint32_t number = moving->link; number != LINK_NONE; number = world->links[number].above) {
+        const struct moving_link *link = &world->links[number];
+        struct transform by = motion_at(&link->motion, time);
+        out = transform_compose(&by, &out);
+        out = transform_compose(&link->above_from_node, &out);
+    }
+    return out;
+}
+
+struct transform world_placement(const struct world *world, uint32_t primitive, double ray_time) {
+    const struct primitive *p = &world->primitives[primitive];
+    if (p->linear == LINEAR_NONE)
+        return transform_identity();
+    if (p->linear & LINEAR_MOVING)
+        return moved(world, &world->moving[p->linear & ~LINEAR_MOVING], ray_time);
+    const struct linear_map *map = &world->linear_maps[p->linear];
+    struct transform out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out.forward.m[i][j] = map->forward[i][j];
+            out.inverse.m[i][j] = map->inverse[i][j];
+        }
+        out.forward.m[i][3] = vec3_get(p->shift, i);
+        out.inverse.m[i][3] = vec3_get(p->shift_back, i);
+    }
+    return out;
+}
+
+struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, const struct ray *ray) {
+    struct transform world_from_object = world_placement(world, primitive, ray->time);
+    return ray_transform(&world_from_object.inverse, ray);
+}
+
+/* The box of everything that a moving primitive covers while the shutter is open: link by link, ignoring how the
+ * motions of two links depend on each other, so the box may be too large, never too small. */
+static struct box moving_bounds(const struct world *world, const struct geometry *geometry,
+                                const struct moving *moving) {
+    struct box box = box_pad(geometry_bounds_under(geometry, &moving->link_from_object.forward));
+    for (uint32_t number = moving->link; number != LINK_NONE; number = world->links[number].above) {
+        const struct moving_link *link = &world->links[number];
+        box = box_pad(motion_bounds(&link->motion, &box, world->shutter));
+        box = box_pad(box_transform(&link->above_from_node.forward, &box));
+    }
+    return box;
+}
+
+/* The tightest box of a mesh looks at all its corners: done for the first placements, until so many triangles have been
+ * looked at; the others take the box of the mapped box. Polls for cancellation between two of them. */
+enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
+
+static struct box primitive_bounds(const struct world *world, uint32_t primitive, uint32_t *exact) {
+    const struct geometry *geometry = primitive_geometry(world, primitive);
+    uint32_t linear = world->primitives[primitive].linear;
+    if (linear != LINEAR_NONE && (linear & LINEAR_MOVING))
+        return moving_bounds(world, geometry, &world->moving[linear & ~LINEAR_MOVING]);
+    struct transform world_from_object = world_placement(world, primitive, 0);
+    const struct mesh *mesh = geometry_mesh(geometry);
+    uint32_t triangles = mesh ? mesh_triangle_count(mesh) : UINT32_MAX;
+    if (linear != LINEAR_NONE && triangles <= EXACT_AT_ONCE && triangles <= *exact) {
+        *exact -= triangles;
+        return box_pad(mesh_bounds_under(mesh, &world_from_object.forward));
+    }
+    return box_pad(geometry_bounds_under(geometry, &world_from_object.forward));
+}
+
+bool world_update_box(struct world *world, uint32_t primitive) {
+    bool exact = world->triangles <= EXACT_IN_ALL; /* then those of all meshes are, up to EXACT_AT_ONCE */
+    uint32_t at_once = EXACT_AT_ONCE;
+    if (!exact && geometry_mesh(primitive_geometry(world, primitive)))
+        return false;
+    struct box box = primitive_bounds(world, primitive, &at_once);
+    world->boxes[primitive] = box_is_empty(&box) ? box_empty() : box;
+    return true;
+}
+
+/* What a run over chunks of primitives and prototypes finds. */
+enum { CHUNK = 4096 };
+struct box_chunk {
+    uint32_t scratch_need;
+    bool has_meshes; /* their boxes are still to be made: they share EXACT_IN_ALL, in order */
+};
+struct box_run {
+    struct world *world;
+    const struct box *limits; /* or NULL */
+    uint32_t chunks;          /* of primitives; those of prototypes follow */
+    struct box_chunk *found;
+};
+
+static void set_box(const struct box_run *run, uint32_t primitive, struct box box) {
+    if (run->limits)
+        box = box_meet(box, box_pad(run->limits[primitive]));
+    run->world->boxes[primitive] = box_is_empty(&box) ? box_empty() : box;
+}
+
+static uint32_t chunk_end(uint32_t chunk, uint32_t count) {
+    return count - chunk * CHUNK < CHUNK ? count : (chunk + 1) * CHUNK;
+}
+
+static void measure_primitives(const struct box_run *run, uint32_t chunk) {
+    const struct world *world = run->world;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->primitive_count); i++) {
+        uint32_t no_mesh = 0;
+        if (geometry_mesh(primitive_geometry(world, i)))
+            run->found[chunk].has_meshes = true;
+        else
+            set_box(run, i, primitive_bounds(world, i, &no_mesh));
+    }
+}
+
+static void measure_prototypes(const struct box_run *run, uint32_t chunk) {
+    struct world *world = run->world;
+    uint32_t *need = &run->found[run->chunks + chunk].scratch_need;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->prototype_count); i++) {
+        uint32_t own = geometry_scratch_need(&world->prototypes[i].geometry);
+        *need = own > *need ? own : *need;
+        world->prototypes[i].convexity = geometry_convexity(&world->prototypes[i].geometry);
+    }
+}
+
+static void measure_chunk(void *context, uint32_t item, int worker) {
+    const struct box_run *run = context;
+    (void)worker;
+    if (item < run->chunks)
+        measure_primitives(run, item);
+    else
+        measure_prototypes(run, item - run->chunks);
+}
+
+static bool measure_meshes(const struct box_run *run, uint32_t chunk, uint32_t *exact, const struct pool *pool) {
+    struct world *world = run->world;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->primitive_count); i++) {
+        const struct mesh *mesh = geometry_mesh(primitive_geometry(world, i));
+        uint32_t before = *exact;
+        if (!mesh)
+            continue;
+        set_box(run, i, primitive_bounds(world, i, exact));
+        world->triangles += mesh_triangle_count(mesh);
+        if (before != *exact && pool_cancelled(pool))
+            return false;
+    }
+    return true;
+}
+
+/* Small scenes are measured by this thread. */
+static bool measure_all(const struct box_run *run, uint32_t items, struct pool *pool) {
+    struct box_run own = *run;
+    uint32_t exact = EXACT_IN_ALL;
+    bool ok = true;
+    if (items > 2)
+        ok = pool_run(pool, items, measure_chunk, &own);
+    else
+        for (uint32_t item = 0; item < items; item++)
+            measure_chunk(&own, item, 0);
+    for (uint32_t chunk = 0; ok && chunk < run->chunks; chunk++)
+        ok = !run->found[chunk].has_meshes || measure_meshes(run, chunk, &exact, pool);
+    return ok;
+}
+
+bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
+    uint32_t chunks = (world->primitive_count + CHUNK - 1) / CHUNK;
+    uint32_t items = chunks + (world->prototype_count + CHUNK - 1) / CHUNK;
+    const struct box_run run = {world, limits, chunks, mem_alloc_zero((size_t)items + 1, sizeof *run.found)};
+    world->moves = world->moving_count > 0;
+    if (!run.found)
+        return error_no_memory(error, "the boxes of the scene");
+    bool ok = measure_all(&run, items, pool);
+    for (uint32_t item = 0; item < items; item++)
+        world->scratch_need =
+            run.found[item].scratch_need > world->scratch_need ? run.found[item].scratch_need : world->scratch_need;
+    mem_free(run.found);
+    return ok || error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
+}
+
+/* --- building --- */
+
+/* Builds a world: flattens the scene, works out lights and boxes, builds the accelerator; and destroys it. */
+
+static void add_up_meshes(struct world *world, const struct assets *assets) {
+    for (const struct asset_mesh *entry = assets ? assets->meshes : NULL; entry; entry = entry->next)
+        world->mesh_memory += mesh_memory(entry->mesh);
+}
+
+void world_update_materials(struct world *world) {
+    for (uint32_t i = 0; i < world->material_count; i++)
+        world->materials[i].phong = material_origin(world->authored.materials[i])->phong;
+}
+
+/* The tables of materials and of the media inside. */
+static bool make_materials(struct flattening *f) {
+    struct world *world = f->world;
+    struct arena *arena = f->arena;
+    uint32_t count = world->material_count;
+    world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
+    world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
+    world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
+    world->material_medium = arena_alloc_array(arena, count, sizeof *world->material_medium);
+    world->media = arena_alloc_array(arena, count, sizeof *world->media);
+    if (!world->materials || !world->material_has_image || !world->material_has_tangents || !world->material_medium ||
+        !world->media)
+        return error_no_memory(f->error, "the materials of the scene");
+    for (uint32_t i = 0; i < count; i++)
+        world->materials[i] = material_flatten(world->authored.materials[i]);
+    if (!flatten_textures(f))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct material *material = &world->materials[i];
+        struct medium medium = {.absorption = material_absorption(material)};
+        world->material_has_image[i] = material_has_image(material);
+        world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
+        world->material_medium[i] = MEDIUM_NONE;
+        if (material_is_transparent(material, &medium.ior)) {
+            world->material_medium[i] = world->medium_count;
+            world->media[world->medium_count++] = medium;
+        }
+        struct vec3 emission = material_emission_bound(world->authored.materials[i]);
+        world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
+    }
+    return true;
+}
+
+static bool make_boxes(struct flattening *f) {
+    struct world *world = f->world;
+    world->boxes = arena_alloc_array(f->arena, world->primitive_count, sizeof *world->boxes);
+    return world->boxes ? world_primitive_boxes(world, f->limits, f->pool, f->error)
+                        : error_no_memory(f->error, "the boxes of the scene");
+}
+
+/* On failure the caller destroys partial results. */
+static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
+                  struct error *error) {
+    struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);
+    if (!copied)
+        return error_no_memory(error, "the lights of the scene");
+    for (uint32_t i = 0; i < input->light_count; i++) {
+        copied[i] = input->lights[i].light;
+        if (input->linear_colours)
+            light_decode(&copied[i]);
+    }
+    struct flattening flattening = {.arena = arena,
+                                    .scene = input->scene,
+                                    .world = world,
+                                    .pool = pool,
+                                    .linear_colours = input->linear_colours,
+                                    .encodes = input->encodes,
+                                    .warn = input->warn,
+                                    .warn_context = input->warn_context,
+                                    .error = error};
+    bool reused;
+    if (!kept_tables_reuse(&flattening, input, &reused) || (!reused && !flatten_scene(&flattening, input->root)))
+        return false;
+    struct arena *of_tables = flattening.arena;
+    flattening.arena = arena;
+    world->lights = copied;
+    if (!light_lists_resolve(world, input->lights, copied, arena, input->root, error) ||
+        !mesh_lights_resolve(&flattening, input->lights, copied, input->root) ||
+        (input->linear_colours && !sky_decode(&world->sky, error)))
+        return false;
+    flattening.arena = of_tables;
+    if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening)))
+        return false;
+    add_up_meshes(world, input->scene->assets);
+    reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,
+                                               world->primitive_count, &world->accel);
+    if (!reused &&
+        !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
+        return false;
+    return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
+           mesh_group_build(&world->group, world, arena, pool, error);
+}
+
+bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
+                 struct error *error) {
+    *world = (struct world){
+        .mesh_accel = input->accel, .sky = *input->sky, .light_count = input->light_count, .shutter = input->shutter};
+    bool ok = build(world, input, arena, pool, error);
+    if (!ok)
+        world_destroy(world);
+    return ok;
+}
+
+void world_destroy(struct world *world) {
+    mem_free(world->prototypes);
+    mem_free(world->authored.nodes);
+    mem_free(world->linear_maps);
+    mem_free(world->moving);
+    mem_free(world->links);
+    world->prototypes = NULL;
+    world->authored.nodes = NULL;
+    world->linear_maps = NULL;
+    world->moving = NULL;
+    world->links = NULL;
+    scene_accel_destroy(&world->accel);
+    mesh_group_destroy(&world->group);
+}
+
+size_t world_primitive_memory(const struct world *world) {
+    return world->primitive_count * (sizeof *world->primitives + sizeof *world->boxes) +
+           world->prototype_count * (sizeof *world->prototypes + sizeof *world->authored.nodes) +
+           world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving +
+           world->link_count * sizeof *world->links;
 }

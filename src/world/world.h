@@ -142,11 +142,6 @@ struct world_input {
  * nothing is left to destroy then. Lights and sky are copied. */
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error);
-/* Instead of world_destroy: keeps it for the next frame. The script must not have ended then. */
-void world_keep(struct world *world, struct world_cache *cache);
-/* Frees the tables, but not the accelerator: the next frame is not one of this scene. */
-void world_cache_drop_tables(struct world_cache *cache);
-void world_cache_destroy(struct world_cache *cache);
 /* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
 void world_update_materials(struct world *world);
 void world_destroy(struct world *world); /* memory outside the arena */
@@ -203,11 +198,6 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
     return scratch->shadow_cache[scratch->light];
 }
-/* Describes a result of world_nearest_crossing. */
-void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
-                    const struct crossing *crossing, struct hit *hit);
-/* The u and v that the shape of a hit supplies. False: it has none. */
-bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* The closed primitives whose box meets `region`: all that can contain a point of it, in flattening order. `out` (or
  * NULL) has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);

@@ -2,9 +2,10 @@
  * materials, textures) have their own arena, which outlives the picture. They fit the next frame if it has the same
  * scene, root and settings, if only transforms of nodes have changed, and if these change nothing but the poses of
  * primitives: without moving nodes, clips and bounds. Everything else of a world is made for each frame. */
+#include "world/world_cache.h"
+
 #include "base/mem.h"
 #include "world/flatten_internal.h"
-#include "world/world_internal.h"
 
 struct kept_tables {
     struct arena arena;

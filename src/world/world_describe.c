@@ -1,7 +1,8 @@
 /* The complete description of the crossing that a search has found. */
+#include "world/world_describe.h"
+
 #include "math/frame.h"
 #include "shape/sphere.h"
-#include "world/world_internal.h"
 
 #include <string.h>
 

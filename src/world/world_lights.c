@@ -3,6 +3,7 @@
  * The same holds for moving primitives: the bound contains their whole motion. Unbounded primitives cannot be sampled;
  * rays hit them. */
 #include "world/world_lights.h"
+#include "light/light_edit.h"
 #include "math/elementary.h"
 
 #include "base/mem.h"

@@ -1,6 +1,7 @@
 /* Any bytes as a PNG file: an image whose every level can be looked up anywhere, or one line that names the file. If
  * the last byte is odd, the checksums of the chunks are corrected first; otherwise hardly any input would pass them. */
 #include "image/levels.h"
+#include "image/png_read_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "film/aov.h"
 #include "image/png_write.h"
+#include "render/integrator.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "tests/fuzz/folder.h"

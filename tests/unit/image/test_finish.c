@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "image/blue_noise_internal.h"
 #include "image/finish.h"
+#include "image/fxaa_internal.h"
 #include "image/png_write.h"
 #include "tests/harness.h"
 

@@ -1,6 +1,7 @@
 /* Lamps that are nearby rectangles, meshes and skies: against view factors, solid angles and integrals. */
 #include "base/random.h"
 #include "light/light.h"
+#include "light/light_edit.h"
 #include "light/light_mesh.h"
 #include "light/sky_light_internal.h"
 #include "math/sampling.h"
@@ -669,7 +670,6 @@ TEST(a_mesh_light_that_is_not_in_the_scene_says_that_a_texture_of_emission_is_av
         CHECK_EQ_INT(result.status, 0);
         CHECK((strstr(result.err, "not in the scene: of the texture of its emission only the average counts") !=
                NULL) == (k == 0));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }

@@ -1,6 +1,7 @@
 /* The contract of every kind of light: samples have the density of light_pdf and the radiance that a ray sees, and
  * photons carry the same light. A switch over all kinds makes the examples, so that a new kind is tested, too. */
 #include "base/random.h"
+#include "light/light_bounds.h"
 #include "light/light_edit.h"
 #include "light/light_mesh.h"
 #include "light/light_sampler.h"

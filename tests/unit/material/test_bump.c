@@ -1,6 +1,6 @@
 /* Bump maps and normal maps: normals by closed forms, through the same functions as in pictures. */
 #include "material/material_inputs.h"
-#include "material/texture_mapping.h"
+#include "material/texture_mapping_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

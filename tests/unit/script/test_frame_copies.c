@@ -5,6 +5,7 @@
 #include "script/table_internal.h"
 #include "tests/unit/script_host.h"
 #include "world/world.h"
+#include "world/world_cache.h"
 
 #include <math.h>
 

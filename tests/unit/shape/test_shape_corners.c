@@ -1,5 +1,6 @@
 /* Corner cases of shapes: NaN and infinity in every parameter, solids with any capacity for crossings, nearly equal
  * meshes, quadrics of every axis. */
+#include "csg/csg_build.h"
 #include "shape/quadric.h"
 #include "shape/torus.h"
 #include "tests/unit/swept_makers.h"

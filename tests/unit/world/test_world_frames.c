@@ -3,6 +3,7 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "world/world.h"
+#include "world/world_cache.h"
 
 #include <math.h>
 #include <string.h>

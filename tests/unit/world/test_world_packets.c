@@ -5,6 +5,7 @@
 #include "tests/unit/script_host.h"
 #include "world/node_path.h"
 #include "world/packet.h"
+#include "world/world_describe.h"
 
 #include <string.h>
 

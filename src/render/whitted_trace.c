@@ -1,0 +1,406 @@
+/* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
+ * and the position in the tree of rays. */
+#include "material/medium.h"
+#include "render/style_internal.h"
+#include "render/whitted_trace_internal.h"
+#include "world/world_describe.h"
+
+#include <math.h>
+
+/* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
+static const double light_limit = 1e200;
+
+struct path {
+    uint64_t key;
+    int reflections, refractions; /* so far, from the camera */
+    bool rough;                   /* after a rough surface: the next ones get one ray each */
+    double weight;                /* the fraction of this ray's radiance that can arrive in the pixel */
+    double cutoff;                /* a ray of less weight is not followed */
+    int holes;                    /* went through so far */
+};
+
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
+
+/* The nearest visible light before t_max, or NULL. */
+static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
+                                         struct light_hit *hit) {
+    const struct light *best = NULL;
+    struct ray limited = *ray;
+    struct light_hit met;
+    limited.t_max = t_max;
+    for (uint32_t i = 0; i < world->light_count; i++) {
+        if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
+            best = &world->lights[i];
+            limited.t_max = met.t;
+            *hit = met;
+        }
+    }
+    return best;
+}
+
+/* --- secondary rays --- */
+
+/* Field by field: a copy of the whole struct would wait for recent stores. */
+static struct path path_on(const struct path *path, double share) {
+    return (struct path){.key = path->key,
+                         .reflections = path->reflections,
+                         .refractions = path->refractions,
+                         .rough = path->rough,
+                         .weight = path->weight * share,
+                         .cutoff = path->cutoff,
+                         .holes = path->holes};
+}
+
+/* Whether the result of a ray is negligible. */
+static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
+                        const struct path *path) {
+    enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
+    observe_ray_sent(state->observer, kind, filter, cut);
+    return cut != RAY_FOLLOWED;
+}
+
+/* A hit with its surface and its ray. */
+struct surface_point {
+    const struct ray *ray;
+    const struct hit *hit;
+    const struct bsdf *bsdf;
+};
+
+/* The radiance from a direction, times its weight. What cannot change the pixel by the cut-off is not followed. */
+static struct vec3 follow(struct integrator_state *state, const struct surface_point *at,
+                          const struct bsdf_branch_direction *towards, const struct path *from) {
+    const struct settings *settings = &state->job->settings;
+    struct vec3 filter = towards->weight;
+    bool transmits = towards->transmits;
+    struct path path = path_on(from, vec3_max_abs(filter));
+    bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
+    if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
+        return vec3_all(0);
+    struct ray onward = hit_ray(at->hit, at->ray, towards->direction, at->ray->media);
+    struct medium_stack behind;
+    if (transmits) {
+        medium_stack_copy(&behind, at->ray->media);
+        medium_stack_cross(&behind, &at->bsdf->boundary);
+        onward.media = &behind;
+        state->refracted_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
+        path.refractions++;
+    } else {
+        state->reflected_rays++;
+        path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
+        path.reflections++;
+    }
+    return vec3_mul(filter, trace(state, &onward, &path));
+}
+
+static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
+                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
+                                 const struct path *from) {
+    struct bsdf_branch_direction sampled;
+    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
+        return vec3_all(0);
+    return follow(state, at, &sampled, from);
+}
+
+/* The light through the holes of a surface (an opacity texture of leaves): the ray continues
+ * unchanged. Bounded, since every hole is a deeper call. */
+static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
+                               double share, const struct path *from) {
+    enum { HOLE_LIMIT = 200 };
+    struct path path = path_on(from, share);
+    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
+        return vec3_all(0);
+    struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
+    state->refracted_rays++;
+    path.key = sampler_branch(path.key, SAMPLER_HOLE);
+    path.holes++;
+    return vec3_scale(trace(state, &onward, &path), share);
+}
+
+enum { GLOSSY_SAMPLES = 4 };
+
+/* A rough surface: the mean over facets of what each reflects and refracts. */
+static struct vec3 follow_rough(struct integrator_state *state, const struct surface_point *at,
+                                const struct bsdf_branch *branches, int count, const struct path *path) {
+    bool coarse = path->rough || state->job->settings.coarse;
+    uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
+    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
+    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
+    struct vec3 sum = {0, 0, 0};
+    observe_split(state->observer, 1 / ((double)n * (double)n));
+    for (uint32_t cell = 0; cell < n * n; cell++) {
+        struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
+        struct path branch = path_on(path, 1);
+        branch.key = sampler_facet(key, cell);
+        branch.rough = true;
+        for (int i = 0; i < count; i++) {
+            if (branches[i].rough)
+                sum = vec3_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
+        }
+    }
+    return vec3_scale(sum, 1 / ((double)n * (double)n));
+}
+
+/* --- layered materials --- */
+
+/* A direction that a facet sends light to. */
+struct candidate {
+    struct bsdf_branch_direction towards;
+    double weight; /* its largest component */
+    int branch;
+    uint64_t key;
+};
+
+enum { CANDIDATE_CELLS = 16 };
+struct candidates {
+    uint32_t begin, end; /* of the cells */
+    int count;
+    double weight; /* the sum */
+    struct candidate all[CANDIDATE_CELLS * BSDF_LOBES];
+};
+
+/* The facets in these cells of the square, for all rough branches. The mean share of a branch is known for some: then
+ * its candidates share that in the proportions of their weights, and their mean has no noise. */
+static void find_candidates(const struct surface_point *at, const struct bsdf_branch *branches, int count,
+                            const struct sample_set *facets, struct candidates *out) {
+    const double cells = out->end - out->begin, part = 1 / ((double)facets->side * (double)facets->side);
+    double sums[BSDF_LOBES] = {0};
+    out->count = 0;
+    out->weight = 0;
+    for (uint32_t cell = out->begin; cell < out->end; cell++) {
+        const struct bsdf_draw position = {.u = sample_set_point(facets, cell)};
+        for (int i = 0; i < count; i++) {
+            struct candidate *found = &out->all[out->count];
+            if (!branches[i].rough ||
+                !bsdf_branch_sample(at->bsdf, &branches[i], at->hit->view, &position, &found->towards))
+                continue;
+            found->weight = vec3_max_abs(found->towards.weight);
+            found->branch = i;
+            found->key = sampler_facet(facets->key, cell);
+            sums[i] += found->weight;
+            out->count += found->weight > 0;
+        }
+    }
+    for (int i = 0; i < out->count; i++) {
+        struct candidate *found = &out->all[i];
+        const struct bsdf_branch *branch = &branches[found->branch];
+        double all = branch->is_known ? branch->expected * vec3_max_abs(branch->weight) * cells : sums[found->branch];
+        double scale = part * all / sums[found->branch];
+        found->towards.weight = vec3_scale(found->towards.weight, scale);
+        found->weight *= scale;
+        out->weight += found->weight;
+    }
+}
+
+/* Of `rays` places at equal distances in the sum of all weights, the candidates that are there, by their weight over
+ * their chance. The mean over all first places is the sum of all candidates (J. Talbot, D. Cline and P. Egbert,
+ * "Importance Resampling for Global Illumination", EGSR 2005). */
+static struct vec3 follow_candidates(struct integrator_state *state, const struct surface_point *at,
+                                     const struct candidates *from, uint32_t rays, const struct path *path) {
+    struct vec3 sum = {0, 0, 0};
+    uint32_t sent = 0; /* the step may underflow */
+    double step = from->weight / rays, next = step * random_unit(random_mix(path->key)), passed = 0;
+    for (int i = 0; i < from->count; i++) {
+        struct bsdf_branch_direction towards = from->all[i].towards;
+        towards.weight = vec3_scale(towards.weight, from->weight / from->all[i].weight);
+        passed += from->all[i].weight;
+        for (uint64_t k = 0; next < passed && sent < rays; next += step, k++, sent++) {
+            struct path branch = path_on(path, 1);
+            branch.key = random_combine(from->all[i].key, k);
+            branch.rough = true;
+            sum = vec3_add(sum, follow(state, at, &towards, &branch));
+        }
+    }
+    return vec3_scale(sum, 1.0 / rays);
+}
+
+/* The share of light in the rough branches. */
+static double rough_share(const struct bsdf_branch *branches, int count) {
+    double share = 0;
+    for (int i = 0; i < count; i++)
+        share += branches[i].rough ? branches[i].expected * vec3_max_abs(branches[i].weight) : 0;
+    return share;
+}
+
+/* Whether the rough branches share their rays. After a rough surface, glass sends one ray to each side. */
+static bool is_divided(const struct bsdf *bsdf, const struct path *path) {
+    return bsdf_lobes_with(bsdf, BSDF_ROUGH) && !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
+}
+
+/* All rough branches of a layered material: as many rays as their share of light justifies. The samples of a pixel
+ * divide them among each other. After a rough surface there is one ray, with a chance (Russian roulette: J. Arvo and D.
+ * Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990). */
+static struct vec3 follow_layers(struct integrator_state *state, const struct surface_point *at,
+                                 const struct bsdf_branch *branches, int count, const struct path *path) {
+    const double side = at->bsdf->glossy_samples ? at->bsdf->glossy_samples : GLOSSY_SAMPLES, all = side * side;
+    const double share = rough_share(branches, count);
+    const bool is_coarse = path->rough || state->job->settings.coarse;
+    const double chance = is_coarse ? fmin(4 * share, 1) : 1;
+    const double rays = is_coarse ? 1 : fmin(all, fmax(1, ceil(2 * all * share / state->sampler.side)));
+    const uint32_t n = (uint32_t)fmax(2, ceil(sqrt(rays))), cells = n * n;
+    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
+    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
+    struct vec3 sum = {0, 0, 0};
+    if (chance < 1 && random_unit(random_mix(key)) >= chance)
+        return sum;
+    observe_split(state->observer, 1 / rays);
+    struct candidates candidates;
+    candidates.end = 0;
+    while (candidates.end < cells) {
+        candidates.begin = candidates.end;
+        candidates.end = cells - candidates.begin < CANDIDATE_CELLS ? cells : candidates.begin + CANDIDATE_CELLS;
+        find_candidates(at, branches, count, &facets, &candidates);
+        double here = fmax(1, floor(rays * (candidates.end - candidates.begin) / cells));
+        sum = vec3_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
+    }
+    return vec3_scale(sum, 1 / chance);
+}
+
+/* --- one hit --- */
+
+static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
+    observe_surface(state->observer, at->bsdf);
+    struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
+    colour = vec3_add(colour, at->bsdf->emission);
+    struct bsdf_branch branches[BSDF_LOBES];
+    const struct bsdf_draw smooth = {.facet = at->bsdf->side};
+    int count = bsdf_branches(at->bsdf, branches);
+    bool rough = false;
+    for (int i = 0; i < count; i++) {
+        if (branches[i].rough)
+            rough = true;
+        else
+            colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
+    }
+    if (!rough)
+        return colour;
+    return vec3_add(colour,
+                    (is_divided(at->bsdf, path) ? follow_layers : follow_rough)(state, at, branches, count, path));
+}
+
+static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                             const struct path *path) {
+    const struct settings *settings = &state->job->settings;
+    const struct world *world = state->job->world;
+    const struct material_context context = {.specular = settings->specular,
+                                             .ambient_plain = settings->ambient_plain,
+                                             .total_reflection = settings->use_tir,
+                                             .observer = state->observer ? observe_material : NULL,
+                                             .observer_context = state->observer,
+                                             .authored = world->authored.materials[hit->material]};
+    struct bsdf bsdf;
+    struct surface_point at = {ray, hit, &bsdf};
+    state->hits++;
+    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    double hole = 1 - bsdf.opacity;
+    if (!(hole > 0))
+        return shade(state, &at, path);
+    struct vec3 behind = follow_hole(state, hit, ray, hole, path);
+    if (hole >= 1)
+        return behind;
+    struct path covered = path_on(path, bsdf.opacity);
+    return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
+}
+
+/* The radiance of a ray with its hit, or NULL. */
+static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                                     const struct path *path) {
+    const struct world *world = state->job->world;
+    bool met = hit != NULL;
+    struct light_hit area_light_hit;
+    const struct light *area_light = visible_light(world, ray, met ? hit->t : ray->t_max, &area_light_hit);
+    double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
+
+    /* The medium along the ray. */
+    double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
+    struct medium_effect air;
+    struct path dimmed;
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
+    struct vec3 left = air.transmittance;
+    observe_ray_begin(state->observer, ray, hit, area_light, distance, path->weight);
+    if (affected) {
+        dimmed = path_on(path, vec3_max_abs(left));
+        path = &dimmed;
+    }
+
+    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
+    bool looked = !(path->weight < path->cutoff);
+    if (!looked)
+        left = vec3_all(0);
+    else if (area_light)
+        colour = light_emitted(area_light, ray, &area_light_hit);
+    else if (met)
+        colour = shade_hit(state, ray, hit, path);
+    else
+        colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
+    seen = colour;
+    if (affected) {
+        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+        colour = vec3_add(vec3_mul(colour, left), in_scattered);
+    }
+    colour = integrator_clamp_light(state, colour, light_limit);
+    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
+    return colour;
+}
+
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+    struct hit hit;
+    if (integrator_cancelled(state))
+        return vec3_all(0); /* deep paths through glass grow exponentially */
+    bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
+    return incident_radiance(state, ray, met ? &hit : NULL, path);
+}
+
+/* A drawing of lines alone. */
+static bool is_blank(const struct integrator_state *state) {
+    return state->job->settings.style == STYLE_INK;
+}
+
+static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
+    bool through =
+        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
+    out->t = through ? INFINITY : hit->t;
+    out->primitive = hit->primitive;
+    out->material = hit->material;
+    out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
+}
+
+/* Whether a camera ray needs no hit: its light is *light. */
+static bool needs_no_hit(struct integrator_state *state, struct vec3 *light) {
+    *light = vec3_all(is_blank(state) ? 1 : 0);
+    return is_blank(state) || integrator_cancelled(state);
+}
+
+/* The light of a camera ray that starts in the media of the eye. hit: or NULL. */
+static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state,
+                                const struct ray *from_eye, const struct hit *hit, uint64_t key) {
+    if (hit && state->camera_hit)
+        record_hit(state->job->world, hit, state->camera_hit);
+    const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
+    return integrator_clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
+}
+
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                          uint64_t key) {
+    struct ray from_eye = *ray;
+    struct hit hit;
+    struct vec3 light;
+    from_eye.media = state->eye_medium_stack;
+    if (needs_no_hit(state, &light))
+        return light;
+    bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
+    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+}
+
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                              const struct packet_answer *met, uint64_t key) {
+    struct ray from_eye = *ray;
+    struct hit hit;
+    struct vec3 light;
+    from_eye.media = state->eye_medium_stack;
+    if (needs_no_hit(state, &light))
+        return light;
+    if (met)
+        world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
+    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+}

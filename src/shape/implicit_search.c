@@ -1,0 +1,600 @@
+/* Crossings of a line and an implicit solid. The line passes the regions (implicit_regions.c) in order. In a region
+ * where the sign may change, the values of the function at both ends of the stretch and bounds of its slope along the
+ * line decide:
+ * - A stretch whose ends have one sign has no crossing if the slope is too small for one.
+ * - A stretch whose ends have different signs has one crossing if the slope has one sign. It is found by the method of
+ *   Chandrupatla.
+ * - Every other stretch is divided into eight parts, whose bounds are computed at once.
+ * Thin walls are found down to the resolution. With a Lipschitz bound, the line is marched in steps without a crossing.
+ *
+ * The search keeps track of the side of the surface, so entries and exits alternate. It searches every region from end
+ * to end, also for rays that begin or end in it. So the nearest hit has the bits of the first crossing of the list.
+ *
+ * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
+ * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997;
+ * J. Hart, "Sphere Tracing", The Visual Computer 12, 1996; B. Keinert et al., "Enhanced Sphere Tracing", STAG 2014. */
+#include "shape/implicit_search_internal.h"
+
+#include <math.h>
+
+/* Fractions of the size. Two crossings that are closer than the resolution may be missed together. A crossing is
+ * located to the accuracy. */
+static const double resolution = 0x1p-25;
+/* The smallest step of a march; twice as long after as many steps of that length in a region. */
+static const double march_resolution = 0x1p-20;
+enum { MARCH_SMALLEST = 64 };
+/* WORK: the limit of operations of the function for one line; an interval operation counts as ten. Beyond the limit,
+ * segments are not divided further. */
+enum { WORK = 4000000 };
+
+struct search {
+    const struct implicit *solid;
+    struct line line;
+    double origin[3], inverse[3];  /* of the line; 1 / direction, 0 along an axis plane */
+    double begin, end;             /* within the bounds, in units of length along the line */
+    uint32_t begin_part, end_part; /* where it meets them */
+    bool inside;                   /* before the current place */
+    double at, value;              /* of the function, where it was evaluated last */
+    uint64_t work, limit;
+    struct crossing waiting; /* not returned yet; the next one may cancel it */
+    bool has_waiting, has_found, is_done, is_full;
+    bool is_any;           /* any crossing does */
+    bool is_unknown;       /* `inside` is not valid, because the segments before were skipped */
+    const struct ray *ray; /* of a nearest hit: its interval; then `found` */
+    struct crossing *found;
+    struct geom_scratch *scratch;
+    bool is_list;
+};
+
+/* Slopes along the line. */
+struct slope {
+    double low, high;
+};
+
+/* --- the ends --- */
+
+static bool clip_box(struct search *search, const struct box *box) {
+    search->begin = -INFINITY;
+    search->end = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double o = vec3_get(search->line.origin, axis), d = vec3_get(search->line.direction, axis);
+        double lo = vec3_get(box->min, axis) - o, hi = vec3_get(box->max, axis) - o;
+        if (d == 0) {
+            if (!(lo < 0 && hi > 0))
+                return false;
+            continue;
+        }
+        double near = (d > 0 ? lo : hi) / d, far = (d > 0 ? hi : lo) / d;
+        if (near > search->begin) {
+            search->begin = near;
+            search->begin_part = IMPLICIT_PART_BOX + (uint32_t)axis;
+        }
+        if (far < search->end) {
+            search->end = far;
+            search->end_part = IMPLICIT_PART_BOX + (uint32_t)axis;
+        }
+    }
+    return search->begin < search->end;
+}
+
+static bool clip_ball(struct search *search, struct vec3 centre, double radius) {
+    struct vec3 o = vec3_sub(search->line.origin, centre);
+    double foot = -vec3_dot(o, search->line.direction);
+    struct vec3 nearest = vec3_add_scaled(o, search->line.direction, foot);
+    double room = radius * radius - vec3_dot(nearest, nearest);
+    if (!(room > 0))
+        return false;
+    search->begin = foot - sqrt(room);
+    search->end = foot + sqrt(room);
+    search->begin_part = search->end_part = IMPLICIT_PART_BALL;
+    return search->begin < search->end;
+}
+
+/* --- crossings, in order --- */
+
+static void give_out(struct search *search) {
+    if (!search->has_waiting)
+        return;
+    search->has_waiting = false;
+    const struct crossing *crossing = &search->waiting;
+    if (search->solid->in.open && crossing->part >= IMPLICIT_PART_BOX)
+        return;
+    if (search->is_list) {
+        search->is_full = !geom_scratch_push(search->scratch, *crossing);
+        search->is_done = search->is_full;
+        return;
+    }
+    if (crossing->t > search->ray->t_min && crossing->t < search->ray->t_max) {
+        *search->found = *crossing;
+        search->has_found = search->is_done = true;
+    }
+}
+
+/* The line changes sides at s. Two changes at one t cancel each other. */
+static void cross(struct search *search, double s, uint32_t part) {
+    double t = line_t(&search->line, s);
+    search->inside = !search->inside;
+    if (search->has_waiting && !(search->waiting.t < t)) {
+        search->has_waiting = false;
+        return;
+    }
+    give_out(search);
+    search->waiting = (struct crossing){.t = t, .part = part, .enter = search->inside};
+    search->has_waiting = true;
+}
+
+/* --- the function --- */
+
+static double evaluate(struct search *search, const struct expr_program *program, double s) {
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    struct vec3 p = line_at(&search->line, s);
+    inputs[EXPR_POINT_X] = p.x;
+    inputs[EXPR_POINT_Y] = p.y;
+    inputs[EXPR_POINT_Z] = p.z;
+    expr_evaluate(program, inputs, outputs);
+    search->work += expr_work(program);
+    return outputs[0];
+}
+
+/* Memory on top of the scratch, which the next crossing overwrites. NULL: it is too small. */
+static void *borrow_memory(struct search *search, size_t size) {
+    struct geom_scratch *scratch = search->scratch;
+    if ((size_t)(scratch->capacity - scratch->used) * sizeof *scratch->items >= size + IMPLICIT_ALIGNMENT)
+        return implicit_aligned(scratch->items + scratch->used);
+    scratch->overflow = search->is_full = search->is_done = true;
+    return NULL;
+}
+
+/* Bounds of the function and of its slope over each of the eight parts, or over all of them in each case of its
+ * discontinuities. False: the scratch is too small. */
+static bool bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
+                          bool are_cases, struct expr_lane_range *out) {
+    const size_t size = expr_lanes_size(program);
+    unsigned char memory[size <= IMPLICIT_STACK ? size + IMPLICIT_ALIGNMENT : 1];
+    void *rows = size <= IMPLICIT_STACK ? implicit_aligned(memory) : borrow_memory(search, size);
+    struct expr_lane_inputs inputs;
+    struct expr_lane_range outputs[EXPR_OUTPUTS];
+    struct expr_directions directions;
+    if (!rows)
+        return false;
+    double margin = search->solid->size * 0x1p-50;
+    directions.count = 1;
+    inputs.are_cases = are_cases;
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        double *low = inputs.low[EXPR_POINT_X + k], *high = inputs.high[EXPR_POINT_X + k];
+        for (int i = 0; i < EXPR_LANES; i++) {
+            double p = search->origin[k] + d * ends[are_cases ? 0 : i];
+            double q = search->origin[k] + d * ends[are_cases ? EXPR_LANES : i + 1];
+            low[i] = (p < q ? p : q) - margin;
+            high[i] = (p < q ? q : p) + margin;
+        }
+        directions.seeds[EXPR_POINT_X + k][0] = d;
+    }
+    search->work += 10 * expr_work(program);
+    expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, rows);
+    *out = outputs[0];
+    return true;
+}
+
+static struct slope slope_in(const struct search *search, const struct implicit_region *region) {
+    struct slope out = {0, 0};
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        if (d == 0)
+            continue;
+        out.low += d * (double)(d > 0 ? region->low[k] : region->high[k]);
+        out.high += d * (double)(d > 0 ? region->high[k] : region->low[k]);
+    }
+    double rounding = (fabs(out.low) + fabs(out.high)) * 0x1p-50;
+    return (struct slope){out.low - rounding, out.high + rounding};
+}
+
+/* --- one crossing --- */
+
+/* Where the sign changes between a and b, which have different signs. */
+static double find_change(struct search *search, const struct expr_program *program, double a, double fa, double b,
+                          double fb) {
+    double tolerance = search->solid->size * implicit_accuracy(search->solid), c = a, fc = fa, t = fa / (fa - fb);
+    for (int step = 0; step < 200; step++) {
+        double limit = tolerance / fabs(b - a);
+        if (!(limit < 0.5))
+            break;
+        t = t > limit ? (t < 1 - limit ? t : 1 - limit) : t <= limit ? limit : 0.5;
+        double x = a + t * (b - a), fx = evaluate(search, program, x);
+        if ((fx < 0) == (fa < 0)) {
+            c = a;
+            fc = fa;
+        } else {
+            c = b;
+            fc = fb;
+            b = a;
+            fb = fa;
+        }
+        a = x;
+        fa = fx;
+        if (fa == 0)
+            break;
+        double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+        bool is_smooth = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
+        t = is_smooth ? fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
+                      : 0.5;
+    }
+    return fabs(fb) < fabs(fa) ? b : a;
+}
+
+/* --- stretches --- */
+
+/* A part of a region: where it ends, and the function there. */
+struct part {
+    double a, fa, b, fb;
+};
+
+/* Whether the slope excludes that the function has reached 0 between two values of one sign. */
+static bool stays(const struct search *search, const struct part *part, struct slope slope) {
+    double w = part->b - part->a, fa = part->fa, fb = part->fb;
+    if (!(slope.low > -INFINITY && slope.high < INFINITY) || fa != fa || fb != fb)
+        return false;
+    if (slope.low >= 0 || slope.high <= 0)
+        return true;
+    bool below = fa < 0;
+    /* Lines of the largest slopes from both ends meet in the farthest value. */
+    double from_a = below ? slope.high : slope.low, from_b = below ? slope.low : slope.high;
+    double x = (fb - fa - from_b * w) / (from_a - from_b), farthest = fa + from_a * x;
+    double rounding = search->solid->size * 0x1p-50 * (slope.high - slope.low);
+    return below ? farthest < rounding : farthest > -rounding;
+}
+
+/* The side of the surface at a point, if bounds decide it. */
+enum side { SIDE_OUTSIDE, SIDE_INSIDE, SIDE_UNKNOWN };
+
+static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
+    if (range->low[lane] >= 0 || range->is_nan >> lane & 1) /* NaN is outside */
+        return SIDE_OUTSIDE;
+    return range->high[lane] < 0 && !(range->may_be_nan >> lane & 1) ? SIDE_INSIDE : SIDE_UNKNOWN;
+}
+
+/* On both sides of a discontinuity the sign may be the same. */
+static enum side side_of_cases(struct search *search, const struct expr_program *program, double a, double b) {
+    const double ends[EXPR_LANES + 1] = {[0] = a, [EXPR_LANES] = b};
+    struct expr_lane_range range;
+    if (!bound_eighths(search, program, ends, true, &range))
+        return SIDE_UNKNOWN;
+    enum side side = side_of_lane(&range, 0);
+    for (int i = 1; i < EXPR_LANES; i++)
+        side = side_of_lane(&range, i) == side ? side : SIDE_UNKNOWN;
+    return side;
+}
+
+/* From s on, the line is on a known side. */
+static void settle(struct search *search, bool inside, double s, uint32_t number, uint32_t first_number) {
+    if (search->is_unknown)
+        search->inside = inside;
+    search->is_unknown = false;
+    if (search->inside != inside)
+        cross(search, s, s > search->begin ? number : first_number);
+}
+
+/* A part with one crossing, or with an odd number of crossings close to each other. */
+static void pass_change(struct search *search, uint32_t number, const struct part *part) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    double t = line_t(&search->line, part->a);
+    if (search->is_any && t > search->ray->t_min && line_t(&search->line, part->b) < search->ray->t_max &&
+        !(search->has_waiting && search->waiting.t >= t)) {
+        search->has_found = search->is_done = true; /* wherever it is */
+        return;
+    }
+    cross(search, find_change(search, program, part->a, part->fa, part->b, part->fb), number);
+}
+
+static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope);
+
+static void search_part(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
+    bool changes = (part->fa < 0) != (part->fb < 0);
+    bool is_known = changes ? slope.low >= 0 || slope.high <= 0 : stays(search, part, slope);
+    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < search->limit)
+        search_eighths(search, number, part, slope);
+    else if (changes)
+        pass_change(search, number, part);
+}
+
+/* The value at s, which is stored for the next part. */
+static double value_at(struct search *search, const struct expr_program *program, double s) {
+    if (search->at != s)
+        search->value = evaluate(search, program, s);
+    search->at = s;
+    return search->value;
+}
+
+static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    struct expr_lane_range range;
+    double ends[EXPR_LANES + 1];
+    for (int i = 0; i < EXPR_LANES; i++)
+        ends[i] = part->a + (part->b - part->a) * ((double)i / EXPR_LANES);
+    ends[EXPR_LANES] = part->b;
+    if (!bound_eighths(search, program, ends, false, &range))
+        return;
+    for (int i = 0; i < EXPR_LANES && !search->is_done; i++) {
+        enum side side = side_of_lane(&range, i);
+        struct slope here = {range.slopes[0].low[i], range.slopes[0].high[i]};
+        if (side == SIDE_UNKNOWN && !(here.low > -INFINITY && here.high < INFINITY))
+            side = side_of_cases(search, program, ends[i], ends[i + 1]);
+        if (search->is_full)
+            return;
+        if (side != SIDE_UNKNOWN) {
+            settle(search, side == SIDE_INSIDE, ends[i], number, number);
+            continue;
+        }
+        here.low = here.low > slope.low ? here.low : slope.low;
+        here.high = here.high < slope.high ? here.high : slope.high;
+        struct part eighth = {.a = ends[i], .b = ends[i + 1]};
+        eighth.fa = i == 0 ? part->fa : value_at(search, program, ends[i]);
+        eighth.fb = i == EXPR_LANES - 1 ? part->fb : value_at(search, program, ends[i + 1]);
+        settle(search, eighth.fa < 0, ends[i], number, number);
+        if (!search->is_done)
+            search_part(search, number, &eighth, here);
+    }
+}
+
+/* The part from s0 to s1 with a Lipschitz bound. Around a point there is no crossing within |f| / lipschitz. If the
+ * function grows along the line, the spheres of the next point reach back, so the step may be longer: it is tried,
+ * and repeated if both spheres do not meet. A march begins at the region, so that it does not depend on the ray. */
+static void march(struct search *search, uint32_t number, double s0, double s1) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    const double lipschitz = search->solid->in.lipschitz;
+    double smallest = search->solid->size * march_resolution, trend = -1; /* of |f| / lipschitz along the line */
+    int smallest_steps = 0;
+    const double first = search->is_any ? (search->ray->t_min - search->line.t0) * search->line.speed : s0;
+    if (first > s0 && first < s1) { /* where the crossing is does not matter */
+        s0 = first;
+        search->is_unknown = true;
+        search->has_waiting = false;
+    }
+    struct part part = {.a = s0, .fa = value_at(search, program, s0)};
+    settle(search, part.fa < 0, s0, number, search->begin_part);
+    while (part.a < s1 && !search->is_done) {
+        double clear = fabs(part.fa) / lipschitz;
+        clear = clear < INFINITY ? clear : 0; /* or NaN */
+        double step = clear > smallest ? clear : smallest, longer = 1.9 * clear / (1 - trend);
+        bool is_longer = longer > step;
+        part.b = fmin(part.a + (is_longer ? longer : step), s1);
+        part.fb = value_at(search, program, part.b);
+        bool changes = (part.fa < 0) != (part.fb < 0);
+        if (is_longer && (changes || !(fabs(part.fa) + fabs(part.fb) >= lipschitz * (part.b - part.a)))) {
+            part.b = fmin(part.a + step, s1);
+            part.fb = value_at(search, program, part.b);
+            changes = (part.fa < 0) != (part.fb < 0);
+        }
+        smallest_steps += step <= smallest;
+        if (smallest_steps == MARCH_SMALLEST) {
+            smallest *= 2;
+            smallest_steps = 0;
+        }
+        trend = (fabs(part.fb) - fabs(part.fa)) / (lipschitz * (part.b - part.a));
+        trend = trend > -1 && !changes ? fmin(trend, 0.8) : -1; /* or NaN */
+        if (changes)
+            pass_change(search, number, &part);
+        if (search->has_waiting && search->waiting.t < line_t(&search->line, part.b) && !search->is_done)
+            give_out(search); /* at once: the steps inside are short */
+        part.a = part.b;
+        part.fa = part.fb;
+    }
+}
+
+/* The box of a node. */
+struct node_box {
+    double lo[3], hi[3];
+};
+
+/* Decides the side by the value at the centre of the region and by the slopes. They bound the function by linear
+ * functions, whose extremes are at the ends of the segment. */
+static enum side side_by_slopes(const struct search *search, const struct implicit_region *region,
+                                const struct node_box *box, double s0, double s1) {
+    double lows[2], highs[2];
+    for (int end = 0; end < 2; end++) {
+        double s = end == 0 ? s0 : s1, low = (double)region->middle_low, high = (double)region->middle_high, size = 0;
+        for (int k = 0; k < 3; k++) {
+            double off =
+                search->origin[k] + vec3_get(search->line.direction, k) * s - region_middle(box->lo[k], box->hi[k]);
+            double a = off * (double)region->low[k], b = off * (double)region->high[k];
+            low += a < b ? a : b;
+            high += a < b ? b : a;
+            size += fabs(a) + fabs(b);
+        }
+        lows[end] = low - size * 0x1p-44;
+        highs[end] = high + size * 0x1p-44;
+    }
+    if (lows[0] > 0 && lows[1] > 0)
+        return SIDE_OUTSIDE;
+    return highs[0] < 0 && highs[1] < 0 ? SIDE_INSIDE : SIDE_UNKNOWN;
+}
+
+/* Whether the sphere around the centre of the region, in which the function has the sign of the centre, contains
+ * both ends and so the segment. */
+static enum side side_by_sphere(const struct search *search, const struct implicit_region *region,
+                                const struct node_box *box, double s0, double s1) {
+    double squares[2] = {0, 0};
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) {
+            double off = search->origin[k] + vec3_get(search->line.direction, k) * (end == 0 ? s0 : s1) -
+                         region_middle(box->lo[k], box->hi[k]);
+            squares[end] += off * off;
+        }
+    double change = search->solid->in.lipschitz * sqrt(squares[0] > squares[1] ? squares[0] : squares[1]) * (1 + 1e-9);
+    if ((double)region->middle_low > change)
+        return SIDE_OUTSIDE;
+    return (double)region->middle_high < -change ? SIDE_INSIDE : SIDE_UNKNOWN;
+}
+
+static void pass_surface(struct search *search, uint32_t number, double s0, double s1) {
+    const struct implicit_region *region = &search->solid->regions[number];
+    const struct expr_program *program = &search->solid->programs[region->program];
+    struct part part = {.a = s0, .b = s1};
+    part.fa = value_at(search, program, s0);
+    part.fb = value_at(search, program, s1);
+    double value = part.fb;
+    settle(search, part.fa < 0, s0, number, search->begin_part);
+    if (!search->is_done)
+        search_part(search, number, &part, slope_in(search, region));
+    search->at = s1;
+    search->value = value;
+}
+
+/* Whether the ray begins after s. For such a segment only the side at its end is needed. */
+static bool is_before(const struct search *search, double s) {
+    return search->ray && line_t(&search->line, s) <= search->ray->t_min;
+}
+
+static void pass_region(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
+    const uint32_t value = search->solid->nodes[node], number = value >> 2;
+    if (is_before(search, s1)) {
+        search->is_unknown = true;
+    } else {
+        enum region_kind kind = (enum region_kind)(value & 3);
+        enum side side = kind == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
+        const bool is_marched = search->solid->in.lipschitz > 0;
+        if (kind == REGION_SURFACE)
+            side = (is_marched ? side_by_sphere : side_by_slopes)(search, &search->solid->regions[number], box, s0, s1);
+        if (side == SIDE_UNKNOWN && is_marched)
+            march(search, number, s0, s1);
+        else if (side == SIDE_UNKNOWN)
+            pass_surface(search, number, s0, s1);
+        else
+            settle(search, side == SIDE_INSIDE, s0, kind == REGION_SURFACE ? number : IMPLICIT_PART_WHOLE,
+                   search->begin_part);
+    }
+    if (!search->ray || search->is_done)
+        return;
+    double t = line_t(&search->line, s1);
+    if (search->has_waiting && search->waiting.t < t)
+        give_out(search);
+    search->is_done = search->is_done || t >= search->ray->t_max;
+}
+
+/* The stretch from s0 to s1, on which the line is in a node of the octree. */
+static void pass_node(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
+    uint32_t value = search->solid->nodes[node], number = value >> 2, part = 0;
+    enum region_kind kind = (enum region_kind)(value & 3);
+    if (kind != REGION_SPLIT || is_before(search, s1)) {
+        pass_region(search, node, box, s0, s1);
+        return;
+    }
+    /* Visits the parts in order. The line changes to the other half of an axis where it crosses the middle. */
+    double middles[3], meets[3];
+    for (int k = 0; k < 3; k++) {
+        middles[k] = region_middle(box->lo[k], box->hi[k]);
+        bool is_upper = search->origin[k] >= middles[k];
+        meets[k] = INFINITY;
+        if (search->inverse[k] != 0) {
+            meets[k] = (middles[k] - search->origin[k]) * search->inverse[k];
+            is_upper = (meets[k] <= s0) == (search->inverse[k] > 0);
+            if (meets[k] <= s0)
+                meets[k] = INFINITY;
+        }
+        part |= is_upper ? 1U << k : 0;
+    }
+    while (s0 < s1 && !search->is_done) {
+        int axis = meets[0] <= meets[1] ? 0 : 1;
+        axis = meets[axis] <= meets[2] ? axis : 2;
+        double next = meets[axis] < s1 ? meets[axis] : s1;
+        if (next > s0) {
+            struct node_box half;
+            for (int k = 0; k < 3; k++) {
+                half.lo[k] = part >> k & 1 ? middles[k] : box->lo[k];
+                half.hi[k] = part >> k & 1 ? box->hi[k] : middles[k];
+            }
+            pass_node(search, number + part, &half, s0, next);
+        }
+        part ^= 1U << axis;
+        meets[axis] = INFINITY;
+        s0 = next;
+    }
+}
+
+/* --- lines --- */
+
+/* False: the line is off the bounds. */
+static bool search_begin(struct search *search, const struct implicit *solid, const struct ray *ray,
+                         struct geom_scratch *scratch) {
+    search->solid = solid;
+    search->scratch = scratch;
+    if (!line_init(&search->line, ray, implicit_middle(solid)) || !line_meets_box(&search->line, &solid->tight))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        search->origin[k] = vec3_get(search->line.origin, k);
+        search->inverse[k] = fabs(d) > 0x1p-1000 ? 1 / d : 0;
+    }
+    search->inside = search->is_unknown = search->has_waiting = search->has_found = search->is_done = search->is_full =
+        search->is_any = search->is_list = false;
+    search->work = 0;
+    search->limit = WORK;
+    search->at = (double)NAN;
+    search->ray = NULL;
+    search->found = NULL;
+    return solid->in.is_ball ? clip_ball(search, solid->in.centre, solid->in.radius)
+                             : clip_box(search, &solid->in.bounds);
+}
+
+static void search_run(struct search *search) {
+    const struct box *b = &search->solid->in.bounds;
+    struct node_box box = {{b->min.x, b->min.y, b->min.z}, {b->max.x, b->max.y, b->max.z}};
+    pass_node(search, 0, &box, search->begin, search->end);
+    if (search->inside && !search->is_done)
+        cross(search, search->end, search->end_part);
+    if (!search->is_done)
+        give_out(search);
+}
+
+bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                        struct crossing_list *out) {
+    struct search search;
+    *out = (struct crossing_list){scratch->used, 0};
+    if (!search_begin(&search, solid, ray, scratch))
+        return true;
+    search.is_list = true;
+    search_run(&search);
+    if (search.is_full) {
+        scratch->used = out->first;
+        return false;
+    }
+    out->count = scratch->used - out->first;
+    return true;
+}
+
+uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
+                            struct geom_scratch *scratch) {
+    struct search search;
+    const uint32_t used = scratch->used;
+    if (!search_begin(&search, solid, ray, scratch))
+        return 0;
+    search.is_list = true;
+    search.limit = limit;
+    search_run(&search);
+    scratch->used = used;
+    return search.work;
+}
+
+static bool find_first(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch, bool is_any,
+                       struct crossing *out) {
+    struct search search;
+    if (!search_begin(&search, solid, ray, scratch) || line_t(&search.line, search.begin) >= ray->t_max ||
+        line_t(&search.line, search.end) <= ray->t_min)
+        return false;
+    search.ray = ray;
+    search.found = out;
+    search.is_any = is_any;
+    search_run(&search);
+    return search.has_found;
+}
+
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                      struct crossing *out) {
+    return find_first(solid, ray, scratch, false, out);
+}
+
+bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch) {
+    struct crossing ignored;
+    return find_first(solid, ray, scratch, true, &ignored);
+}

@@ -1,0 +1,15 @@
+/* The complete description of the crossing that a search has found. */
+#ifndef GRAY_WORLD_WORLD_DESCRIBE_H
+#define GRAY_WORLD_WORLD_DESCRIBE_H
+
+#include "world/world.h"
+
+/* Describes a result of world_nearest_crossing. */
+void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
+                    const struct crossing *crossing, struct hit *hit);
+/* The u and v that the shape of a hit supplies. False: it has none. */
+bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
+/* What is the same for every hit of a triangle of a primitive whose space is the world's. */
+struct group_facet world_facet(const struct world *world, uint32_t primitive, uint32_t triangle);
+
+#endif
