@@ -208,9 +208,11 @@ static int push_root(lua_State *L) {
     return root != NULL;
 }
 
-static int warn_of_handle(lua_State *L) {
-    (void)sandbox_enter(L);
-    lenient_warn(context_of(L), "%s", lua_tostring(L, 1));
+static int warn(lua_State *L) {
+    struct sandbox *sandbox = sandbox_of(L);
+    const struct running_function outer = sandbox->running;
+    lenient_warn(context_of(sandbox_enter(L)->lua), "%s", lua_tostring(L, 1));
+    sandbox->running = outer;
     return 0;
 }
 
@@ -299,7 +301,7 @@ void lenient_open(lua_State *L) {
                                        {"is_gr", is_gr},
                                        {"picture_name", picture_name},
                                        {"root", push_root},
-                                       {"warning", warn_of_handle},
+                                       {"warning", warn},
                                        {"handle", lenient_handle_type},
                                        {"new_ghost", lenient_ghost_new},
                                        {"ghost_info", lenient_ghost_info},
@@ -310,7 +312,8 @@ void lenient_open(lua_State *L) {
     push_lua(L, "open");
     lenient_push_metatables(L);
     context_push_functions(L);
-    lua_call(L, 2, 0);
+    lua_getglobal(L, "gr");
+    lua_call(L, 3, 0);
 }
 
 bool lenient_own_field(lua_State *L) {

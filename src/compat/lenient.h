@@ -21,7 +21,7 @@ struct lenient {
 
 /* Creates it: the calls of the context are lenient. False without memory. */
 bool lenient_begin(struct script_context *context);
-/* Changes the metatables of handles, after all of them have been made. */
+/* Changes the metatables of handles, and the functions of gr on numbers and vectors, after all have been made. */
 void lenient_open(lua_State *L);
 /* Pushes the field at index 2 of the handle at index 1 if the script has set it. */
 bool lenient_own_field(lua_State *L);

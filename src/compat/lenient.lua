@@ -528,9 +528,34 @@ local function ghost_arithmetic() return new_ghost('ghost', false) end
 local function ghost_order() return false end
 local function ghost_length() return 0 end
 
--- Changes the metatables of handles, by the names of their types.
-local function open(metatables, all)
+-- A function of numbers and vectors: 0 takes the place of an argument that it refuses, or of its result.
+local function of_numbers(f, name)
+    return function(...)
+        local args, count, refused = {...}, select('#', ...), 0
+        while true do
+            local results = table.pack(pcall(f, table.unpack(args, 1, count)))
+            if results[1] then return table.unpack(results, 2, results.n) end
+            -- luaL_argerror: "bad argument #3 to '?' (a number is needed)"
+            local number, why = match(tostring(results[2]), '^bad argument #(%d+) to[^(]*%((.*)%)$')
+            local wrong = tonumber(number or 0)
+            if wrong < 1 then error(results[2], 0) end
+            local again = wrong > refused
+            if refused == 0 or not again then
+                local what = again and 'it is' or 'the result is'
+                warning('gr.' .. name .. ': argument ' .. number .. ': ' .. why .. ': ' .. what .. ' 0')
+            end
+            if not again then return 0 end
+            args[wrong], count, refused = 0, max(count, wrong), wrong
+        end
+    end
+end
+
+-- Changes the metatables of handles, by the names of their types, and the functions of gr that are not in `all`.
+local function open(metatables, all, gr)
     functions = all
+    for name, f in next, gr do
+        if type(f) == 'function' and not all[name] then gr[name] = of_numbers(f, name) end
+    end
     for kind, meta in next, metatables do
         local is_ghost = kind == 'ghost'
         local arithmetic, order = is_ghost and ghost_arithmetic or operator('arithmetic'), operator('order', false)
