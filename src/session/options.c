@@ -494,7 +494,7 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 static const struct {
     const char *word, *options, *why;
 } actions[] = {
-    [ACTION_RENDER] = {NULL},
+    [ACTION_RENDER] = {NULL, NULL, NULL},
     [ACTION_MERGE] = {"merge",
                       "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
                       "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
@@ -641,7 +641,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if ((int)options->action < (int)ACTIONS_WITH_WORDS && unused[options->action])
-        return refuse_for_action(unused[options->action], options->action, error);
+        return refuse_for_action(unused[options->action], (int)options->action, error);
     return options_check(options, error);
 }
 
