@@ -228,6 +228,20 @@ const char *files_hint_of_missing_scene(struct sandbox *sandbox) {
 
 /* Pushes the chunk, or a message. Raises only before the file is mapped, so the file is always unmapped. A first line
  * that starts with # is skipped, but not its line end, so that line numbers stay correct. */
+static bool contains(const char *text, size_t size, const char *word) {
+    const size_t length = strlen(word);
+    for (size_t at = 0; at + length <= size; at++)
+        if (text[at] == word[0] && memcmp(text + at, word, length) == 0)
+            return true;
+    return false;
+}
+
+/* Notes how the scene renders: by positions, as scenes of other programs do, or by fields. */
+static void note_style(struct sandbox *sandbox, const char *text, size_t size) {
+    sandbox->is_positional = contains(text, size, "gr.render(") && !contains(text, size, "gr.render{") &&
+                             !contains(text, size, "gr.render {") && !contains(text, size, "gr.frames");
+}
+
 int files_load(lua_State *L, const char *path) {
     struct sandbox *sandbox = sandbox_of(L);
     struct source_name *source = arena_alloc(&sandbox->keep, sizeof *source);
@@ -260,6 +274,8 @@ int files_load(lua_State *L, const char *path) {
         size -= end ? (size_t)(end - text) : size;
         text = end ? end : text;
     }
+    if (strcmp(path, sandbox->files.path) == 0)
+        note_style(sandbox, text, size);
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options->no_sandbox ? "bt" : "t");
     const char *other = status == LUA_ERRSYNTAX && strcmp(path, sandbox->files.path) == 0
                             ? hint_of_file(sandbox, path, bytes.data, bytes.size)

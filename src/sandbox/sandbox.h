@@ -64,6 +64,7 @@ struct sandbox {
     char raised[1536];                 /* the last error of a C function, without its position */
     char refused[512];                 /* why io.open returned nil the last time, or "" */
     bool unforgivable;                 /* --lenient would not continue after it */
+    bool is_positional;                /* the scene renders by positions, as scenes of other programs do */
     struct error fatal;
     bool ended; /* os.exit was called with success */
     /* Pushes a loader for a module that does not exist. NULL: that is an error. */

@@ -78,11 +78,12 @@ static const char *indent(struct arena *arena, const char *text) {
     return out;
 }
 
-/* Whether a function of gr raised this message, and would not under --lenient. */
+/* Whether a function of gr raised this message, and would not under --lenient, and the scene may be one of another
+ * program. */
 static bool is_forgivable(const struct script_context *context, const char *message) {
     const struct sandbox *sandbox = &context->sandbox;
     size_t length = strlen(message), raised = strlen(sandbox->raised);
-    return !context->lenient && !sandbox->unforgivable && raised > 0 && length >= raised &&
+    return !context->lenient && sandbox->is_positional && !sandbox->unforgivable && raised > 0 && length >= raised &&
            strcmp(message + length - raised, sandbox->raised) == 0;
 }
 
