@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *owner_words(enum owner owner) {
+const char *owner_words(enum function_owner owner) {
     return owner == OWNER_GR ? "gr." : "node:";
 }
 
@@ -58,12 +58,12 @@ bool form_next(const struct script_function *function, const char **form, int *i
 #define KIND_NAME(kind, name, words, annotation, like) [kind] = (name),
 #define KIND_WORDS(kind, name, words, annotation, like) [kind] = (words),
 
-const char *kind_name(enum kind kind) {
+const char *kind_name(enum argument_kind kind) {
     static const char *const names[] = {KIND_LIST(KIND_NAME)};
     return names[kind];
 }
 
-const char *kind_words(enum kind kind) {
+const char *kind_words(enum argument_kind kind) {
     static const char *const words[] = {KIND_LIST(KIND_WORDS)};
     return words[kind];
 }

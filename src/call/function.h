@@ -95,7 +95,7 @@ struct script_context;
     X(KIND_CURVES, "curves", "a table of tables of pairs {x, z}", "number[][][]", LIKE_TABLE)                          \
     X(KIND_FUNCTION, "function", "a function", "function|gr.texture", LIKE_FUNCTION | 1 << HANDLE_TEXTURE)             \
     X(KIND_CALLBACK, "callback", "a function", "function", LIKE_FUNCTION)
-enum kind { KIND_LIST(LIST_MEMBER) KIND_COUNT };
+enum argument_kind { KIND_LIST(LIST_MEMBER) KIND_COUNT };
 
 /* What gr.texture, gr.bump and their like made. */
 struct script_texture {
@@ -155,7 +155,7 @@ enum {
 
 struct script_parameter {
     const char *name;
-    enum kind kind;
+    enum argument_kind kind;
     unsigned flags;
     double low, high;     /* of each number; both 0 = any finite number */
     const char *choices;  /* words separated by blanks */
@@ -164,7 +164,7 @@ struct script_parameter {
     const char *help;     /* one sentence */
 };
 
-enum owner { OWNER_GR, OWNER_NODE };
+enum function_owner { OWNER_GR, OWNER_NODE };
 /* RESULT_FRAMES: nothing; calls the function of the animation. */
 #define RESULT_KINDS(X)                                                                                                \
     X(RESULT_NOTHING, "nothing")                                                                                       \
@@ -194,7 +194,7 @@ enum { SELF };
 /* `run` is the C function of a row, which cannot raise. args[i] belongs to parameters[i]. */
 struct script_function {
     const char *name;
-    enum owner owner;
+    enum function_owner owner;
     const struct script_parameter *parameters;
     int parameter_count;
     /* The positional forms: parameter names in their order, separated by blanks; "name?" is optional at the end. The
@@ -215,20 +215,20 @@ struct function_rows {
 /* "gr.sphere" or "node:scale". */
 const char *function_title(const struct script_function *function, char out[96]);
 /* Its part before the name. */
-const char *owner_words(enum owner owner);
+const char *owner_words(enum function_owner owner);
 /* The parameter that takes any number of nodes, or NULL; and its index. */
 const struct script_parameter *function_rest(const struct script_function *function, int *index);
 /* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead. Only
  * methods whose arguments are all optional, and node:render, have fields. */
 bool function_takes_names(const struct script_function *function);
-/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of fields.
- */
+/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of
+ * fields. */
 bool function_renders(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What the script must pass: "a number", "a colour {r, g, b}". */
-const char *kind_words(enum kind kind);
+const char *kind_words(enum argument_kind kind);
 /* "number", "colour". */
-const char *kind_name(enum kind kind);
+const char *kind_name(enum argument_kind kind);
 
 #endif

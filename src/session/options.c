@@ -345,6 +345,7 @@ static bool read_value(const struct setting *option, const char *text, struct op
     void *base = option_base(option, options), *field = (char *)base + option->offset;
     long long integer = 0;
     bool ok = false;
+    /* The kind decides the type behind the pointer. */
     switch (option->kind) {
     case SETTING_FLAG:
         ok = !text || strcmp(text, "yes") == 0 || strcmp(text, "no") == 0;

@@ -215,7 +215,7 @@ static const char *use_of(const struct script_function *function) {
     return strstr(function->name, "render") ? "" : "root:add_child(ball) show{} show{}";
 }
 
-static bool is_numeric(enum kind kind) {
+static bool is_numeric(enum argument_kind kind) {
     switch (kind) {
     case KIND_NUMBER:
     case KIND_WHOLE:
