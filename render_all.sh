@@ -193,7 +193,7 @@ for name in 10demo 14demo; do
     number=$((number + 1))
 done
 
-next="open $gallery/index.html in a browser; docs/README.md leads to your first scene"
+next="open $gallery/index.html in a browser; docs/start.md leads to your first scene"
 if [ -n "$failed" ]; then
     echo "render_all.sh: these failed:$failed; the reasons are above and in the page: $next" >&2
     exit 1

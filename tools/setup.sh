@@ -71,10 +71,10 @@ if [ "$mode" = --tests ]; then
     want machines openmpi-bin command -v mpirun
     want animations ffmpeg command -v ffmpeg
     want animations apngdis command -v apngdis
-    want tools universal-ctags have_ctags
     want shells zsh command -v zsh
     want shells fish command -v fish
     want pages man-db command -v man
+    want tools universal-ctags have_ctags
     want tools gzip command -v gzip
     want tools procps command -v pgrep
     want tools mount command -v mount

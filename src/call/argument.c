@@ -36,7 +36,7 @@ static const char *argument_path_text(const struct argument_path *argument_path,
 /* How a value of a kind is made, by the Lua type that is given in its place: the first row that fits. */
 enum { ANY_TYPE = -2, LIST_OF_NODES = 50, HANDLE = 100 };
 static const struct {
-    enum kind kind;
+    enum argument_kind kind;
     int given; /* a type of Lua, LIST_OF_NODES or ANY_TYPE; of handles HANDLE + their type */
     const char *words;
 } made[] = {
@@ -224,8 +224,7 @@ static struct vec3 read_interval(struct script_context *c, int index, const stru
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
- * Lua.
- */
+ * Lua. */
 static const char *read_text(struct script_context *c, int index, const struct argument_path *argument_path) {
     lua_State *L = c->sandbox.lua;
     char words[128];
@@ -390,6 +389,7 @@ static void read_materials(struct script_context *c, int index, struct argument_
                            struct script_value *value) {
     lua_State *L = c->sandbox.lua;
     uint32_t length = list_length(c, index, &argument_path), count = 0;
+    /* A list, or a table with names. */
     if (length == 0)
         for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++)
             if (lua_type(L, -2) != LUA_TSTRING)
@@ -405,6 +405,7 @@ static void read_materials(struct script_context *c, int index, struct argument_
         return;
     if (count > MATERIAL_NAMES)
         sandbox_raise(&c->sandbox, "%s has more than %d entries", argument_path.parameter->name, MATERIAL_NAMES);
+    /* Lua has no order of names: they are sorted, so that the result is always the same. */
     const char **names = value->names = context_array(c, count, sizeof *names);
     count = 0;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++) {
@@ -440,6 +441,7 @@ static void read_faces(struct script_context *c, int index, struct argument_path
         if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
             wrong_type(c, &argument_path, "a table of indices", -1);
         starts[k] = (uint32_t)corners;
+        /* First the sizes: the arrays of the call are allocated once. */
         corners += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (corners >= UINT32_MAX)
@@ -455,6 +457,7 @@ static void read_faces(struct script_context *c, int index, struct argument_path
             lua_rawgeti(L, -1, argument_path.j);
             double x = read_number(c, -1, &argument_path);
             char words[128];
+            /* The first ray tracers of this language dropped fractions without a word. */
             if (x != floor(x)) {
                 context_warn_once(c, WARNED_FRACTION, "%s is %.15g: fractions of indices are dropped",
                                   argument_path_text(&argument_path, words), x);
@@ -497,6 +500,7 @@ static void read_rows(struct script_context *c, int index, struct argument_path 
         if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
             wrong_type(c, &argument_path, pairs ? "a table of pairs" : "a table of numbers", -1);
         starts[k] = (uint32_t)total;
+        /* First the sizes, for one array of all numbers. */
         total += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (total >= UINT32_MAX / 4)
@@ -535,6 +539,7 @@ static void read_caustics(struct script_context *c, int index, const struct argu
     }
     if (!lua_istable(L, index))
         wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
+    /* The first unknown field by name, so that the message does not depend on the order in the table. */
     const char *unknown = NULL;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING)
@@ -619,6 +624,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
     lua_State *L = c->sandbox.lua;
     char words[128];
     value->given = true;
+    /* A texture stands for a value of any kind that accepts one. */
     const struct handle *handle = p->flags & OR_TEXTURE ? handle_at(L, index) : NULL;
     bool is_function = (p->flags & OR_TEXTURE) && lua_type(L, index) == LUA_TFUNCTION;
     if (is_function || (handle && handle->type == HANDLE_TEXTURE)) {
@@ -827,8 +833,7 @@ void argument_read_nodes(struct script_context *c, int index, const struct scrip
 }
 
 /* The argument types that a value can have, judged by its Lua type alone: bits. Strings that are numbers are both, a
- * ghost is any handle.
- */
+ * ghost is any handle. */
 enum {
     LIKE_NUMBER = 1 << HANDLE_TYPES,
     LIKE_BOOLEAN = LIKE_NUMBER << 1,
@@ -847,7 +852,7 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
-bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
+bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsigned flags) {
     static const int wanted[KIND_COUNT] = {
         [KIND_NUMBER] = LIKE_NUMBER,
         [KIND_WHOLE] = LIKE_NUMBER,

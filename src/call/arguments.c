@@ -116,6 +116,7 @@ _Noreturn static void no_form_fits(struct script_context *c, const struct script
         bool optional, known = false;
         form_next(function, &form, &index, &optional);
         const struct script_parameter *p = &function->parameters[index];
+        /* Forms that begin with the same parameter are named once. */
         for (int earlier = 0; earlier < k; earlier++) {
             const char *other = function->forms[earlier];
             int other_index = 0;

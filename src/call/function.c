@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *owner_words(enum owner owner) {
+const char *owner_words(enum function_owner owner) {
     return owner == OWNER_GR ? "gr." : "node:";
 }
 
@@ -57,7 +57,7 @@ bool form_next(const struct script_function *function, const char **form, int *i
     }
 }
 
-const char *kind_words(enum kind kind) {
+const char *kind_words(enum argument_kind kind) {
     switch (kind) {
     case KIND_NUMBER:
         return "a number";

@@ -20,7 +20,7 @@
 struct script_context;
 
 /* The kinds of arguments. The plain C form is in struct script_value. */
-enum kind {
+enum argument_kind {
     KIND_NUMBER,     /* number */
     KIND_WHOLE,      /* number: a float with a whole value is fine */
     KIND_BOOLEAN,    /* boolean */
@@ -116,7 +116,7 @@ enum {
 
 struct script_parameter {
     const char *name;
-    enum kind kind;
+    enum argument_kind kind;
     unsigned flags;
     double low, high;     /* of each number; both 0 = any finite number */
     const char *choices;  /* words separated by blanks */
@@ -125,7 +125,7 @@ struct script_parameter {
     const char *help;     /* one sentence */
 };
 
-enum owner { OWNER_GR, OWNER_NODE };
+enum function_owner { OWNER_GR, OWNER_NODE };
 enum result_kind {
     RESULT_NOTHING,
     RESULT_SELF,
@@ -154,7 +154,7 @@ enum { SELF };
 /* `run` is the C function of a row, which cannot raise. args[i] belongs to parameters[i]. */
 struct script_function {
     const char *name;
-    enum owner owner;
+    enum function_owner owner;
     const struct script_parameter *parameters;
     int parameter_count;
     /* The positional forms: parameter names in their order, separated by blanks; "name?" is optional at the end. The
@@ -175,18 +175,18 @@ struct function_rows {
 /* "gr.sphere" or "node:scale". */
 const char *function_title(const struct script_function *function, char out[96]);
 /* Its part before the name. */
-const char *owner_words(enum owner owner);
+const char *owner_words(enum function_owner owner);
 /* The parameter that takes any number of nodes, or NULL; and its index. */
 const struct script_parameter *function_rest(const struct script_function *function, int *index);
 /* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead. Only
  * methods whose arguments are all optional, and node:render, have fields. */
 bool function_takes_names(const struct script_function *function);
-/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of fields.
- */
+/* Whether it renders pictures: the only ones that write a file. Their positional form may end with a table of
+ * fields. */
 bool function_renders(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What the script must pass: "a number", "a colour {r, g, b}". */
-const char *kind_words(enum kind kind);
+const char *kind_words(enum argument_kind kind);
 
 #endif

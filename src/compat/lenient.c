@@ -232,7 +232,7 @@ static void match_form(struct script_context *c, const struct script_function *f
         m->score -= !m->taken[p] && !m->is_optional[p];
 }
 
-static bool wants_tuple(enum kind kind) {
+static bool wants_tuple(enum argument_kind kind) {
     return kind == KIND_POINT || kind == KIND_DIRECTION || kind == KIND_COLOUR || kind == KIND_TRIPLE ||
            kind == KIND_SIZE || kind == KIND_QUATERNION;
 }

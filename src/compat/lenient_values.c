@@ -554,7 +554,7 @@ static bool has_ending(const char *text) {
     return dot && dot > text && length >= 2 && length <= 5 && !strpbrk(dot, "/ ");
 }
 
-static int fit_of_text(lua_State *L, int index, enum kind kind) {
+static int fit_of_text(lua_State *L, int index, enum argument_kind kind) {
     bool is_file = kind == KIND_FILE || kind == KIND_OUTPUT || kind == KIND_IMAGE;
     if (lua_type(L, index) == LUA_TNUMBER)
         return 1;

@@ -311,16 +311,6 @@ static struct picture_request picture_request_of(const struct options *options, 
                                     .check = options->check || is_asked(options)};
 }
 
-/* Enlarges the part that is rendered, within the picture. */
-static void add_rim(struct picture_request *picture, uint32_t rim) {
-    const struct film_rectangle shown = picture->shown;
-    uint32_t right = picture->full_width - shown.x1, below = picture->full_height - shown.y1;
-    picture->x0 = shown.x0 > rim ? shown.x0 - rim : 0;
-    picture->y0 = shown.y0 > rim ? shown.y0 - rim : 0;
-    picture->width = shown.x1 + (right > rim ? rim : right) - picture->x0;
-    picture->height = shown.y1 + (below > rim ? rim : below) - picture->y0;
-}
-
 /* Of a frame that a later one may be equal to; else zero. With --lenient, scripts change their scene for a picture. */
 static struct digest digest_of_frame(const struct picture_work *work) {
     bool never = !is_frame(work) || work->picture_request.check || work->picture_request.in_window ||
@@ -355,13 +345,13 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     picture->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;
-    picture->x0 = area.x0, picture->y0 = area.y0, picture->width = area.width, picture->height = area.height;
     if (warning[0] != '\0')
         render_process_warn_at(process, work->request->where, warning);
-    picture->shown =
-        (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width, picture->y0 + picture->height};
+    picture->shown = (struct film_rectangle){area.x0, area.y0, area.x0 + area.width, area.y0 + area.height};
     uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
-    add_rim(picture, rim + finish_rim(&job->settings.finish, picture->full_height));
+    rim += finish_rim(&job->settings.finish, picture->full_height);
+    struct film_rectangle all = film_rectangle_grown(&picture->shown, rim, picture->full_width, picture->full_height);
+    picture->x0 = all.x0, picture->y0 = all.y0, picture->width = all.x1 - all.x0, picture->height = all.y1 - all.y0;
     if (job->settings.view_is_target)
         picture->camera.view = vec3_sub(job->camera.view, job->camera.eye);
     picture->files = file_read_log_sum(&process->read_log);

@@ -185,6 +185,7 @@ void render_process_report_samples(const struct picture_work *work) {
     if (!has_limit || work->picture_request.in_window || rays->pixels == 0 ||
         (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
         return;
+    /* The limit that ended the samples decides the sentence. */
     double mean = (double)rays->samples / (double)rays->pixels;
     unsigned long long samples = rays->passes_samples;
     if (rays->late_pixels > 0)
@@ -300,6 +301,7 @@ void effects_note(struct picture_work *work) {
         if ((!option && !field) || is_off(row, set ? (const void *)&work->job.settings : (const void *)options) ||
             has_effect(row->effect, work, file))
             continue;
+        /* An option is reported once in a run, a field once for each line of the script. */
         uint64_t bit = UINT64_C(1) << (set ? i : i - setting_count), *vain = &process->vain[!set];
         if (option && *vain & bit)
             continue;

@@ -80,11 +80,13 @@ static bool answer_retry(struct supervisor *supervisor, const struct picture_req
     if (!supervisor->retry.kept)
         return false;
     output->pictures = number;
+    /* Pictures before the kept one are finished, or failed. */
     if (number < supervisor->retry.kept) {
         error_set(&error, ERROR_SCENE, "this picture failed before, too");
         supervisor_send_answer(supervisor, MESSAGE_FILM, settled, settled, &error, -1);
         return true;
     }
+    /* A script may do something else the second time. */
     bool same = same_picture(request, &output->current.request);
     supervisor->retry.kept = 0;
     if (!same) {
@@ -168,28 +170,32 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* ok: a file with that name was written. */
+static void show_written(struct supervisor *supervisor, bool ok, const char *name, const struct error *error) {
+    char line[NAME_LIMIT + 64];
+    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error->text);
+    viewer_show_notice(&supervisor->viewer, line, !ok);
+}
+
 static void save_from_window(struct supervisor *supervisor,
                              bool (*take)(const struct viewer *viewer, const struct file_target *picture, char *name,
                                           struct error *error)) {
     struct error error;
-    char name[NAME_LIMIT], line[NAME_LIMIT + 64];
+    char name[NAME_LIMIT];
     const struct file_target picture = {.path = supervisor->viewer.name, .rules = &supervisor->output.files.saved};
     bool ok = take(&supervisor->viewer, &picture, name, &error);
     output_say(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, ok ? "gray: notice: %s is written" : "%s",
                ok ? name : error.text);
-    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error.text);
-    viewer_show_notice(&supervisor->viewer, line, !ok);
+    show_written(supervisor, ok, name, &error);
 }
 
 /* The script's picture, under its name. */
 static void write_from_window(struct supervisor *supervisor) {
     struct error error;
-    char line[NAME_LIMIT + 64];
     bool ok = output_write(&supervisor->output, &error);
     if (!ok && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);
-    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? supervisor->viewer.name : error.text);
-    viewer_show_notice(&supervisor->viewer, line, !ok);
+    show_written(supervisor, ok, supervisor->viewer.name, &error);
 }
 
 void supervisor_open_window(struct supervisor *supervisor) {

@@ -14,8 +14,6 @@ struct figure {
     uint64_t count;
 };
 
-enum { FIGURES = 44 };
-
 static uint64_t all_rays(const struct render_statistics *rays) {
     return rays->camera_rays + rays->reflected_rays + rays->refracted_rays + rays->shadow_rays + rays->photon_rays;
 }
@@ -24,7 +22,8 @@ static double ratio(uint64_t a, uint64_t b) {
     return b > 0 ? (double)a / (double)b : 0;
 }
 
-static int list_figures(struct figure out[FIGURES], const struct picture_report *report) {
+static void print_figures(FILE *stream, const struct picture_report *report,
+                          void (*print)(FILE *stream, const struct figure *figure)) {
     const struct render_statistics *rays = &report->rays;
     uint64_t sum = all_rays(rays);
     const struct figure all[] = {
@@ -71,36 +70,39 @@ static int list_figures(struct figure out[FIGURES], const struct picture_report 
         {"film_bytes", "film", FIGURE_BYTES, 0, report->film_bytes},
         {"peak_bytes", "peak memory", FIGURE_BYTES, 0, report->peak_bytes},
     };
-    enum { COUNT = sizeof all / sizeof *all };
-    _Static_assert(sizeof all / sizeof *all <= (size_t)FIGURES, "the caller's array is too small");
-    for (int i = 0; i < COUNT; i++)
-        out[i] = all[i];
-    return COUNT;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        print(stream, &all[i]);
+}
+
+static void print_text(FILE *stream, const struct figure *figure) {
+    switch (figure->form) {
+    case FIGURE_COUNT:
+        (void)fprintf(stream, "  %-20s %14" PRIu64 "\n", figure->title, figure->count);
+        return;
+    case FIGURE_SECONDS:
+        (void)fprintf(stream, "  %-20s %14.3f s\n", figure->title, figure->value);
+        return;
+    case FIGURE_RATE:
+        (void)fprintf(stream, "  %-20s %14.2f\n", figure->title, figure->value);
+        return;
+    case FIGURE_BYTES:
+        (void)fprintf(stream, "  %-20s %14.1f MB\n", figure->title, 1e-6 * (double)figure->count);
+        return;
+    }
+}
+
+static void print_json(FILE *stream, const struct figure *figure) {
+    if (figure->form == FIGURE_SECONDS || figure->form == FIGURE_RATE)
+        (void)fprintf(stream, ",\"%s\":%.6f", figure->key, figure->value);
+    else
+        (void)fprintf(stream, ",\"%s\":%" PRIu64, figure->key, figure->count);
 }
 
 void statistics_print_text(FILE *stream, const char *name, const struct picture_request *request,
                            const struct picture_report *report) {
-    struct figure figures[FIGURES];
-    int count = list_figures(figures, report);
     text_print_scene_line(stream, name);
     (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 "\n", "size", request->width, request->height);
-    for (int i = 0; i < count; i++) {
-        const struct figure *figure = &figures[i];
-        switch (figure->form) {
-        case FIGURE_COUNT:
-            (void)fprintf(stream, "  %-20s %14" PRIu64 "\n", figure->title, figure->count);
-            break;
-        case FIGURE_SECONDS:
-            (void)fprintf(stream, "  %-20s %14.3f s\n", figure->title, figure->value);
-            break;
-        case FIGURE_RATE:
-            (void)fprintf(stream, "  %-20s %14.2f\n", figure->title, figure->value);
-            break;
-        case FIGURE_BYTES:
-            (void)fprintf(stream, "  %-20s %14.1f MB\n", figure->title, 1e-6 * (double)figure->count);
-            break;
-        }
-    }
+    print_figures(stream, report, print_text);
     (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 " x %" PRIu32 "\n", "voxels of the scene",
                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2]);
     if (report->rays.render_seconds > 0)
@@ -110,17 +112,10 @@ void statistics_print_text(FILE *stream, const char *name, const struct picture_
 
 void statistics_print_json(FILE *stream, const char *name, const struct picture_request *request,
                            const struct picture_report *report) {
-    struct figure figures[FIGURES];
-    int count = list_figures(figures, report);
     (void)fputs("{\"picture\":", stream);
     text_print_json(stream, name);
     (void)fprintf(stream, ",\"width\":%" PRIu32 ",\"height\":%" PRIu32, request->width, request->height);
-    for (int i = 0; i < count; i++) {
-        if (figures[i].form == FIGURE_SECONDS || figures[i].form == FIGURE_RATE)
-            (void)fprintf(stream, ",\"%s\":%.6f", figures[i].key, figures[i].value);
-        else
-            (void)fprintf(stream, ",\"%s\":%" PRIu64, figures[i].key, figures[i].count);
-    }
+    print_figures(stream, report, print_json);
     (void)fprintf(stream, ",\"grid_cells\":[%" PRIu32 ",%" PRIu32 ",%" PRIu32 "]}\n", report->grid_cells[0],
                   report->grid_cells[1], report->grid_cells[2]);
     (void)fflush(stream);

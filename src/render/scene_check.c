@@ -253,6 +253,7 @@ static bool is_room(const struct world *world, uint32_t solid) {
 static void check_insides(struct check *check) {
     const struct world *world = check->world;
     char text[NOTICE_SIZE];
+    /* A solid around the scene is a room; one around the eye alone is a mistake. */
     uint32_t room = enclosing_solid(check, check->camera.eye);
     if (room != WORLD_NOTHING && !is_room(world, room) && fills_picture(check, room)) {
         (void)snprintf(text, sizeof text, "the eye is inside '%.100s', an opaque solid, and sees nothing else",
@@ -262,6 +263,7 @@ static void check_insides(struct check *check) {
     for (uint32_t i = 0; i < world->light_count && i < LIGHTS_CHECKED; i++) {
         const struct light *light = &world->lights[i];
         struct light_target middle;
+        /* Lights with a list of nodes are placed on purpose. */
         if (light->lit || !light_middle(light, &middle) || middle.distant)
             continue;
         uint32_t solid = enclosing_solid(check, middle.at);

@@ -29,8 +29,8 @@ static int end_script(lua_State *L) {
     sandbox_raise_fatal(L);
 }
 
-/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called.
- */
+/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be
+ * called. */
 static int position_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;

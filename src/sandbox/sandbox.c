@@ -1,6 +1,6 @@
 /* Source positions, warnings and errors of a running script. The position is that of the nearest Lua function on the
- * stack with a known line, so that C functions called through pcall or other C functions still name the script's line.
- */
+ * stack with a known line, so that C functions called through pcall or other C functions still name the script's
+ * line. */
 #include "sandbox/sandbox.h"
 
 #include "base/hash.h"

@@ -195,7 +195,7 @@ static int dispatch(lua_State *L) {
 }
 
 /* Pushes the function of that owner whose name has the same letters, as in addChild; false: there is none. */
-static bool push_alike(lua_State *L, enum owner owner, const char *name) {
+static bool push_alike(lua_State *L, enum function_owner owner, const char *name) {
     for (int k = 0; k < function_count(); k++) {
         const char *a = function_at(k)->name, *b = name;
         while (*a && *b) {
@@ -213,7 +213,7 @@ static bool push_alike(lua_State *L, enum owner owner, const char *name) {
 }
 
 /* With --lenient: pushes a function of almost that name, or a ghost, with a warning. */
-static void push_substitute(struct script_context *c, enum owner owner, const char *name) {
+static void push_substitute(struct script_context *c, enum function_owner owner, const char *name) {
     const char *before = owner_words(owner);
     c->sandbox.running.name = NULL;
     if (push_alike(c->sandbox.lua, owner, name)) {
@@ -224,7 +224,7 @@ static void push_substitute(struct script_context *c, enum owner owner, const ch
     lenient_push_ghost(c->sandbox.lua, name, owner == OWNER_NODE);
 }
 
-_Noreturn static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
+_Noreturn static void no_such_name(struct script_context *c, enum function_owner owner, const char *name) {
     const char *before = owner_words(owner);
     c->sandbox.running.name = NULL;
     const char *use = owner == OWNER_GR ? foreign_function(name) : foreign_method(name);
@@ -293,7 +293,7 @@ void dispatch_push(lua_State *L, const struct script_function *function) {
     lua_pushcclosure(L, dispatch, 1);
 }
 
-static void push_functions(lua_State *L, enum owner owner) {
+static void push_functions(lua_State *L, enum function_owner owner) {
     lua_createtable(L, 0, function_count());
     for (int k = 0; k < function_count(); k++) {
         if (function_at(k)->owner != owner)

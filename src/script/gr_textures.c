@@ -1,6 +1,5 @@
 /* Textures that are no images: patterns, and operations on other textures. Each function has its binding and its table
- * row in this file.
- */
+ * row in this file. */
 #include "script/gr_textures_internal.h"
 
 #include "compat/lenient_handles.h"

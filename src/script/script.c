@@ -80,8 +80,7 @@ static void define_open(lua_State *L) {
 }
 
 /* The length of the source position at the start of a message, "scene.lua:12: " or that of a chunk from a string; 0
- * when it has none.
- */
+ * when it has none. */
 static size_t position_length(const struct sandbox *sandbox, const char *message) {
     size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
     for (const struct source_name *source = sandbox->files.sources; source && length == 0; source = source->next) {

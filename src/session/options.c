@@ -264,74 +264,71 @@ static bool read_choice(const struct setting *option, void *base, const char *te
     return false;
 }
 
-/* name: of the option, or of --default and its field. */
-static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
-    int shown = (int)name.length;
-    char unit[32] = ""; /* SECONDS, STOPS, PIXELS; other names of values have one letter */
-    if (option->value && strlen(option->value) > 1)
-        (void)snprintf(unit, sizeof unit, "%s, ", option->value);
+/* What the value of an option is to be; NULL: it takes none. room: for a text with numbers. */
+static const char *needed_value(const struct setting *option, char room[128]) {
+    bool has_unit = option->value && strlen(option->value) > 1; /* SECONDS, STOPS, PIXELS; others have one letter */
+    const char *unit = has_unit ? option->value : "", *comma = has_unit ? ", " : "";
     switch (option->kind) {
     case SETTING_CAUSTICS:
     case SETTING_WHOLE:
-        return error_set(error, ERROR_USAGE, "%.*s needs %sa whole number from %.0f to %.0f, not '%s'", shown,
-                         name.text, unit, option->low, option->high, text);
+        (void)snprintf(room, 128, "%s%sa whole number from %.0f to %.0f", unit, comma, option->low, option->high);
+        return room;
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs %sa number from %g to %g, not '%s'", shown, name.text,
-                             unit, option->low, option->high, text);
-        return error_set(error, ERROR_USAGE, "%.*s needs %sa number of at least %g, not '%s'", shown, name.text, unit,
-                         option->low, text);
+            (void)snprintf(room, 128, "%s%sa number from %g to %g", unit, comma, option->low, option->high);
+        else
+            (void)snprintf(room, 128, "%s%sa number of at least %g", unit, comma, option->low);
+        return room;
     case SETTING_BYTES:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
-                         shown, name.text, text);
+        return "a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB)";
     case SETTING_SEED:
-        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
-                         shown, name.text, text);
+        return "a whole number from 0 to 18446744073709551615";
     case SETTING_CHOICE:
     case SETTING_TONE:
     case SETTING_STATS:
     case SETTING_DENOISE:
-        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, name.text, option->words, text);
+        (void)snprintf(room, 128, "one of %s", option->words);
+        return room;
     case SETTING_LAYERS:
-        return error_set(
-            error, ERROR_USAGE,
-            "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
-            "lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
-            "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not '%s'",
-            shown, name.text, text);
+        return "names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, lights, and with "
+               "--integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, specular_direct, "
+               "specular_indirect, transmission_direct, transmission_indirect) or all";
     case SETTING_TEXT:
-        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, name.text);
+        return "a text";
     case SETTING_SIZE:
-        return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
-                         name.text, text);
+        return "WxH, two whole numbers from 1 to 1048576";
     case SETTING_CROP:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
-                         shown, name.text, text);
+        return "X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1";
     case SETTING_PIXEL:
-        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, name.text,
-                         text);
+        return "X,Y, two whole numbers from 0";
     case SETTING_SHARD:
-        return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
-                         name.text, text);
+        return "I/N, whole numbers with I from 1 to N";
     case SETTING_FRAMES:
-        return error_set(error, ERROR_USAGE,
-                         "%.*s needs N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B, not '%s'",
-                         shown, name.text, FRAMES_MAX, text);
+        (void)snprintf(room, 128, "N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B", FRAMES_MAX);
+        return room;
     case SETTING_FOLDER:
-        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, name.text);
+        return "the name of a folder";
     case SETTING_DEFINE:
-        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, name.text, text);
+        return "name=value with a Lua name";
     case SETTING_DEFAULT:
-        return error_set(error, ERROR_USAGE, "%.*s needs FIELD=VALUE, a field of gr.render and its value, not '%s'",
-                         shown, name.text, text);
+        return "FIELD=VALUE, a field of gr.render and its value";
     case SETTING_FLAG:
-        return error_set(error, ERROR_USAGE, "%.*s needs yes or no, not '%s'", shown, name.text, text);
+        return "yes or no";
     case SETTING_ACTION:
         break;
     }
-    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, name.text);
+    return NULL;
+}
+
+/* name: of the option, or of --default and its field. */
+static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
+    char room[128];
+    const char *need = needed_value(option, room);
+    bool empty = option->kind == SETTING_TEXT || option->kind == SETTING_FOLDER;
+    if (!need)
+        return error_set(error, ERROR_USAGE, "%.*s takes no value", (int)name.length, name.text);
+    return error_set(error, ERROR_USAGE, empty ? "%.*s needs %s" : "%.*s needs %s, not '%s'", (int)name.length,
+                     name.text, need, text);
 }
 
 /* Room for lists that grow with the words of the command line. */
@@ -348,6 +345,7 @@ static bool read_value(const struct setting *option, const char *text, struct op
     void *base = option_base(option, options), *field = (char *)base + option->offset;
     long long integer = 0;
     bool ok = false;
+    /* The kind decides the type behind the pointer. */
     switch (option->kind) {
     case SETTING_FLAG:
         ok = !text || strcmp(text, "yes") == 0 || strcmp(text, "no") == 0;

@@ -3,14 +3,7 @@
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
 #include "film/path_film.h"
-#include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_internal.h"
-#include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_player_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -255,6 +248,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
     viewer->pass.state = PASS_WAITING;
     viewer->display.hud_dirty = true;
     viewer->pass.unbuilt = reply->unbuilt;
+    /* The reply is to the last command; what it shows is drawn at the next step. */
     switch (reply->kind) {
     case REPLY_BUILT:
         fly_camera_measure(&viewer->fly_camera, &reply->report.bounds);

@@ -2,7 +2,7 @@
 #ifndef GRAY_VIEWER_VIEWER_DRAW_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_DRAW_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer.h"
 
 void viewer_draw_tiles(struct viewer *viewer);               /* film to canvas */
 void viewer_redraw(struct viewer *viewer);                   /* the canvas, with another exposure */

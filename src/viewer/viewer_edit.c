@@ -1,14 +1,10 @@
 /* Selecting, changing, saving. The selection is stored in its state at the time of picking, with the change of its pose
  * at that time; its current pose follows from the current change, so undoing needs no reply of the render process. All
  * maps are computed in world space and converted to the space of the node's parent. */
-#include "viewer/viewer_edit_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "inspect/pick.h"
 #include "math/elementary.h"
-#include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_input_internal.h"
-
-#include "viewer/viewer_lights_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -435,6 +431,7 @@ void viewer_make_own_material(struct viewer *viewer) {
                             .source = picked->material_serial};
     (void)snprintf(change.name, sizeof change.name, "%s", picked->name);
     viewer_make_edit(viewer, &change, true, false);
+    /* The changes of the shared material hold for the copy, too. */
     picked->material_serial = OWN_SERIAL - change.number;
     for (int i = 0; i < count; i++) {
         held[i].serial = picked->material_serial;

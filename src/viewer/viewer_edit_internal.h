@@ -2,7 +2,8 @@
 #ifndef GRAY_VIEWER_VIEWER_EDIT_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_EDIT_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "render/camera.h"
+#include "viewer/viewer.h"
 
 /* A click on the picture, at pixels of the window: selects a visible light mark there, else sends a request to the
  * render process. operand: selects the operand of a combined solid whose surface is there. */

@@ -1,11 +1,5 @@
 /* Keys and the mouse. */
-#include "viewer/viewer_input_internal.h"
-
-#include "viewer/viewer_draw_internal.h"
-#include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_player_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include <string.h>
 
@@ -89,6 +83,7 @@ static void handle_view_key(struct viewer *viewer, int key, bool control) {
         viewer_change_view(viewer);
         viewer->camera_moved = false;
         return;
+    /* A digit goes to the view that was saved under it. */
     default:
         if (key < '0' || key > '9' || !fly_camera_recall(fly_camera, key - '0'))
             return;
@@ -150,7 +145,7 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
     }
 }
 
-static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
+void viewer_choose_tool(struct viewer *viewer, enum edit_tool tool) {
     viewer->edit.tool = viewer->edit.tool == tool ? TOOL_NONE : tool;
     viewer->edit.joins = false;
     viewer->display.hud_dirty = true;
@@ -175,17 +170,17 @@ static bool handle_edit_key(struct viewer *viewer, const struct window_event *ev
         if (event->control)
             viewer_undo(viewer, event->shift);
         else
-            choose_tool(viewer, TOOL_SIZE);
+            viewer_choose_tool(viewer, TOOL_SIZE);
         return true;
     case 'y':
         if (event->control)
             viewer_undo(viewer, true);
         return event->control;
     case 'm':
-        choose_tool(viewer, TOOL_MOVE);
+        viewer_choose_tool(viewer, TOOL_MOVE);
         return true;
     case 't':
-        choose_tool(viewer, TOOL_TURN);
+        viewer_choose_tool(viewer, TOOL_TURN);
         return true;
     case 'p':
         viewer_request_pixel_trace(viewer, viewer->window.panel.mouse_x, viewer->window.panel.mouse_y);
@@ -198,6 +193,7 @@ static bool handle_edit_key(struct viewer *viewer, const struct window_event *ev
         viewer->lights.listed = !viewer->lights.listed;
         viewer->display.hud_dirty = true;
         return true;
+    /* The list of a pixel scrolls; without one the selection goes down. */
     case WINDOW_PAGE_DOWN:
         if (viewer->trace.text[0] == '\0')
             viewer_select_up(viewer, true);
@@ -341,6 +337,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
     case WINDOW_RELEASE:
         handle_button(viewer, event, event->kind == WINDOW_PRESS);
         return;
+    /* What happens outside is not reported: keys count as released. */
     case WINDOW_LEAVE:
         memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
         viewer->input.pressed = false;

@@ -2,12 +2,13 @@
 #ifndef GRAY_VIEWER_VIEWER_INPUT_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_INPUT_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer.h"
 
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event);
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Stops rendering and building, and keeps the image; or continues. */
 void viewer_halt(struct viewer *viewer, bool on);
-void viewer_render(struct viewer *viewer); /* renders renders again, from coarse to fine */
+void viewer_choose_tool(struct viewer *viewer, enum edit_tool tool); /* or none, if it is already chosen */
+void viewer_render(struct viewer *viewer);                           /* renders renders again, from coarse to fine */
 
 #endif

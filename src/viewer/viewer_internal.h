@@ -1,9 +1,15 @@
-/* Shared by the files of the viewer. */
+/* What the files of the viewer share: each declares its own in a header, and they all see each other. */
 #ifndef GRAY_VIEWER_VIEWER_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_INTERNAL_H
 
-#include "render/camera.h"
-#include "viewer/viewer.h"
+#include "viewer/viewer_draw_internal.h"
+#include "viewer/viewer_edit_internal.h"
+#include "viewer/viewer_input_internal.h"
+#include "viewer/viewer_large_internal.h"
+#include "viewer/viewer_lights_internal.h"
+#include "viewer/viewer_overlay_internal.h"
+#include "viewer/viewer_panel_internal.h"
+#include "viewer/viewer_player_internal.h"
 
 /* The picture is complete, and there is nothing to do. */
 bool viewer_is_idle(const struct viewer *viewer);

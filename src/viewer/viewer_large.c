@@ -2,7 +2,7 @@
  * at the resolution of the window. This film has separate memory, which is sent to the render process with each such
  * pass. The film of the picture, and everything that is picked, saved or drawn over it, keeps the size of the picture.
  * Until a tile is finished, the window shows that part of the picture at the resolution of the picture. */
-#include "viewer/viewer_large_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
 #include "image/png_write.h"
@@ -124,6 +124,7 @@ void viewer_draw_large(struct viewer *viewer) {
     struct viewer_large *large = &viewer->window.large;
     const struct film *film = &viewer->pass.film;
     struct tone tone = picture_tone(&viewer->request);
+    /* The enlarged image of the display is below tiles that are not finished. */
     if (large->stale) {
         copy_picture(viewer);
         memset(large->drawn, 0, large->tiles);

@@ -2,7 +2,7 @@
 #ifndef GRAY_VIEWER_VIEWER_LARGE_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_LARGE_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer.h"
 
 bool viewer_wants_large(const struct viewer *viewer);       /* the view is complete, and the window is larger */
 bool viewer_large_is_outdated(const struct viewer *viewer); /* the pass is for another size of the window */

@@ -1,12 +1,11 @@
 /* Lights in the window: the data that the render process has reported, their marks on the picture, and changing them.
  * Lights without a position (directional ones, skies) are marked in the direction of their light, at the border of the
  * picture if that is not in view. A change made here is used until the render process reports the same. */
-#include "viewer/viewer_lights_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
 #include "light/light_edit.h"
 #include "math/elementary.h"
-#include "viewer/viewer_edit_internal.h"
 
 #include <math.h>
 #include <string.h>

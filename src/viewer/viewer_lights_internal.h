@@ -2,7 +2,8 @@
 #ifndef GRAY_VIEWER_VIEWER_LIGHTS_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_LIGHTS_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "render/camera.h"
+#include "viewer/viewer.h"
 
 void viewer_receive_lights(struct viewer *viewer, const struct preview_reply *reply);
 const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number); /* NULL: it was not reported */

@@ -1,10 +1,9 @@
 /* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection is drawn
  * over it. While the camera moves, there are fewer lines with coarse depth, and the outline is a box; both are made
  * again before the finest pass continues. */
-#include "viewer/viewer_overlay_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
-#include "viewer/viewer_draw_internal.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef GRAY_VIEWER_VIEWER_OVERLAY_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_OVERLAY_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer.h"
 
 void viewer_choose_overlay(struct viewer *viewer, enum overlay overlay); /* or none, if it is already shown */
 void viewer_invalidate_overlay(struct viewer *viewer);                   /* the view or the scene has changed */

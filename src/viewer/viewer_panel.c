@@ -1,13 +1,12 @@
 /* The lights on the picture, their list, and the panel of the selection. */
-#include "viewer/viewer_panel_internal.h"
+#include "viewer/viewer_internal.h"
 
 #include "light/light_edit.h"
 #include "math/elementary.h"
 #include "math/frame.h"
-#include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_lights_internal.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -140,8 +139,14 @@ struct column {
 };
 
 /* Broken into lines; long texts keep their end. */
-static void draw_text(struct viewer *viewer, struct column *column, const char *text) {
+static void __attribute__((format(printf, 3, 4)))
+draw_text(struct viewer *viewer, struct column *column, const char *format, ...) {
     enum { LINES = 4 };
+    char all[4096], *text = all;
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(all, sizeof all, format, arguments);
+    va_end(arguments);
     int length = (int)strlen(text), room = LINES * column->columns;
     for (text += length > room ? length - room : 0; *text;
          text += (int)strlen(text) < column->columns ? (int)strlen(text) : column->columns) {
@@ -153,94 +158,71 @@ static void draw_text(struct viewer *viewer, struct column *column, const char *
 }
 
 static void draw_point(struct viewer *viewer, struct column *column, const char *what, struct vec3 p) {
-    char row[128];
-    (void)snprintf(row, sizeof row, "%s %.4g %.4g %.4g", what, p.x, p.y, p.z);
-    draw_text(viewer, column, row);
+    draw_text(viewer, column, "%s %.4g %.4g %.4g", what, p.x, p.y, p.z);
 }
 
-#define TOOL_BUTTONS(X)                                                                                                \
-    X(BUTTON_MOVE, "Move")                                                                                             \
-    X(BUTTON_TURN, "Turn")                                                                                             \
-    X(BUTTON_SIZE, "Size")                                                                                             \
-    X(BUTTON_UP, "Up")                                                                                                 \
-    X(BUTTON_DOWN, "Down")                                                                                             \
-    X(BUTTON_COPY, "Copy")                                                                                             \
-    X(BUTTON_DELETE, "Delete")
-enum tool_button { TOOL_BUTTONS(LIST_MEMBER) };
+static bool is_node(const struct viewer *viewer) {
+    return viewer->edit.selection.kind == SELECTED_NODE;
+}
+
+static void copy(struct viewer *viewer) {
+    viewer_add_node(viewer, ADDED_COPY);
+}
+
+static void select_above(struct viewer *viewer) {
+    viewer_select_up(viewer, false);
+}
+
+static void select_below(struct viewer *viewer) {
+    viewer_select_up(viewer, true);
+}
+
+/* What the buttons are for: a tool, or a function that is called at once. */
+static const struct tool_button {
+    const char *word;
+    enum edit_tool tool;
+    void (*use)(struct viewer *viewer);
+    bool for_nodes_only;
+} tool_buttons[] = {{"Move", TOOL_MOVE, NULL, false},
+                    {"Turn", TOOL_TURN, NULL, false},
+                    {"Size", TOOL_SIZE, NULL, false},
+                    {"Up", TOOL_NONE, select_above, true},
+                    {"Down", TOOL_NONE, select_below, true},
+                    {"Copy", TOOL_NONE, copy, false},
+                    {"Delete", TOOL_NONE, viewer_delete_selection, false}};
 
 /* Whether the selection supports it. */
-static bool can_use(const struct viewer *viewer, enum tool_button button) {
+static bool can_use(const struct viewer *viewer, const struct tool_button *button) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
-    bool node = viewer->edit.selection.kind == SELECTED_NODE;
-    switch (button) {
-    case BUTTON_MOVE:
-        return node || (light && light->moves);
-    case BUTTON_TURN:
-        return node || (light && light->turns);
-    case BUTTON_SIZE:
-        return node || (light && light->sizes);
-    case BUTTON_UP:
-        return node;
-    case BUTTON_DOWN:
-        return node && viewer->edit.selection.picked.below > 0;
-    case BUTTON_COPY:
-    case BUTTON_DELETE:
+    if (button->for_nodes_only)
+        return is_node(viewer) && (button->use != select_below || viewer->edit.selection.picked.below > 0);
+    switch (button->tool) {
+    case TOOL_MOVE:
+        return is_node(viewer) || (light && light->moves);
+    case TOOL_TURN:
+        return is_node(viewer) || (light && light->turns);
+    case TOOL_SIZE:
+        return is_node(viewer) || (light && light->sizes);
+    case TOOL_NONE:
         break;
     }
     return true;
 }
 
-static enum edit_tool tool_of(enum tool_button button) {
-    switch (button) {
-    case BUTTON_MOVE:
-        return TOOL_MOVE;
-    case BUTTON_TURN:
-        return TOOL_TURN;
-    case BUTTON_SIZE:
-        return TOOL_SIZE;
-    case BUTTON_UP:
-    case BUTTON_DOWN:
-    case BUTTON_COPY:
-    case BUTTON_DELETE:
-        break;
-    }
-    return TOOL_NONE;
-}
-
-static void use_button(struct viewer *viewer, enum tool_button button) {
-    switch (button) {
-    case BUTTON_MOVE:
-    case BUTTON_TURN:
-    case BUTTON_SIZE:
-        viewer->edit.tool = viewer->edit.tool == tool_of(button) ? TOOL_NONE : tool_of(button);
-        viewer->edit.joins = false;
-        return;
-    case BUTTON_UP:
-    case BUTTON_DOWN:
-        viewer_select_up(viewer, button == BUTTON_DOWN);
-        return;
-    case BUTTON_COPY:
-        viewer_add_node(viewer, ADDED_COPY);
-        return;
-    case BUTTON_DELETE:
-        viewer_delete_selection(viewer);
-        return;
-    }
-}
-
 static void draw_tools(struct viewer *viewer, struct column *column) {
-    static const char *const words[] = {TOOL_BUTTONS(LIST_WORD)};
     struct panel *panel = &viewer->window.panel;
     int x = column->x;
-    for (int i = 0; i < LIST_COUNT(TOOL_BUTTONS); i++) {
-        enum tool_button button = (enum tool_button)i;
-        enum edit_tool tool = tool_of(button);
+    for (size_t i = 0; i < sizeof tool_buttons / sizeof *tool_buttons; i++) {
+        const struct tool_button *button = &tool_buttons[i];
+        bool is_tool = button->tool != TOOL_NONE;
         if (!can_use(viewer, button))
             continue;
-        bool used = panel_button(panel, x, column->y, words[i], tool != TOOL_NONE && viewer->edit.tool == tool);
-        x += panel_button_width(panel, words[i]) + 2 * panel->canvas.scale;
-        if (used)
-            use_button(viewer, button);
+        bool used = panel_button(panel, x, column->y, button->word, is_tool && viewer->edit.tool == button->tool);
+        x += panel_button_width(panel, button->word) + 2 * panel->canvas.scale;
+        if (used && is_tool)
+            viewer_choose_tool(viewer, button->tool);
+        else if (used)
+            button->use(viewer);
     }
     column->y += panel_line_height(panel) + 4 * panel->canvas.scale;
 }
@@ -297,11 +279,11 @@ static void choose_part(struct viewer *viewer, struct column *column) {
 
 static void draw_inputs(struct viewer *viewer, struct column *column) {
     struct panel *panel = &viewer->window.panel;
-    char row[128];
     double numbers[3];
     if (viewer->edit.selection.picked.material_serial != 0) {
         choose_part(viewer, column);
         viewer_material_now(viewer, viewer->edit.part, numbers);
+        /* Three sliders for a colour, one for a number. */
         bool colour = material_part_count(viewer->edit.part) == 3, changed;
         struct vec3 c = {numbers[0], numbers[1], numbers[2]};
         double top = viewer->edit.part == MATERIAL_PART_KD || viewer->edit.part == MATERIAL_PART_KS ? 1 : 4;
@@ -313,9 +295,8 @@ static void draw_inputs(struct viewer *viewer, struct column *column) {
             numbers[0] = c.x, numbers[1] = c.y, numbers[2] = c.z;
         if (changed)
             viewer_set_material(viewer, viewer->edit.part, numbers);
-        (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", material_part_name(viewer->edit.part),
-                       numbers[0], numbers[1], numbers[2]);
-        draw_text(viewer, column, row);
+        draw_text(viewer, column, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", material_part_name(viewer->edit.part),
+                  numbers[0], numbers[1], numbers[2]);
         if (viewer->edit.selection.picked.idle_parts >> viewer->edit.part & 1)
             draw_text(viewer, column, "no effect here: a texture replaces it");
     }
@@ -329,13 +310,10 @@ static void draw_inputs(struct viewer *viewer, struct column *column) {
 static void draw_node(struct viewer *viewer, struct column *column) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 layout = viewer_moved_point(viewer, picked->position);
-    char row[256];
-    draw_text(viewer, column, picked->node_path);
-    (void)snprintf(row, sizeof row, "%s, %s", picked->shape, picked->material);
-    draw_text(viewer, column, row);
+    draw_text(viewer, column, "%s", picked->node_path);
+    draw_text(viewer, column, "%s, %s", picked->shape, picked->material);
     draw_point(viewer, column, "at", layout);
-    (void)snprintf(row, sizeof row, "distance %.5g", vec3_length(vec3_sub(layout, viewer->pass.view.camera.eye)));
-    draw_text(viewer, column, row);
+    draw_text(viewer, column, "distance %.5g", vec3_length(vec3_sub(layout, viewer->pass.view.camera.eye)));
     draw_tools(viewer, column);
     if (viewer->edit.selection.kind == SELECTED_NODE)
         draw_inputs(viewer, column);
@@ -344,12 +322,10 @@ static void draw_node(struct viewer *viewer, struct column *column) {
 static void draw_light(struct viewer *viewer, struct column *column) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     struct panel *panel = &viewer->window.panel;
-    char row[128];
     if (!light)
         return;
-    (void)snprintf(row, sizeof row, "light %u of %u: %s", viewer->edit.selection.light, viewer->lights.count,
-                   light_kind_name((enum light_kind)light->kind));
-    draw_text(viewer, column, row);
+    draw_text(viewer, column, "light %u of %u: %s", viewer->edit.selection.light, viewer->lights.count,
+              light_kind_name((enum light_kind)light->kind));
     if (light->has_position)
         draw_point(viewer, column, "at", light->position);
     if (vec3_max_abs(light->direction) > 0)
@@ -358,6 +334,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
     draw_tools(viewer, column);
     if (viewer->edit.selection.kind != SELECTED_LIGHT)
         return;
+    /* Brightness first, since it keeps the colour. */
     double stops = viewer_light_stops_now(viewer);
     struct vec3 colour = viewer_light_colour_now(viewer);
     if (panel->pressed)
@@ -367,8 +344,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
     if (panel_slider(panel, &slider, &stops))
         viewer_brighten_light(viewer, stops);
     column->y += panel_line_height(panel);
-    (void)snprintf(row, sizeof row, "%+.2f stops", stops);
-    draw_text(viewer, column, row);
+    draw_text(viewer, column, "%+.2f stops", stops);
     if (draw_sliders(viewer, column, viewer->lights.colour_max, &colour))
         viewer_light_colour(viewer, colour);
 }

@@ -2,7 +2,8 @@
 #ifndef GRAY_VIEWER_VIEWER_PANEL_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_PANEL_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "render/camera.h"
+#include "viewer/viewer.h"
 
 void viewer_draw_edge(struct viewer *viewer, const struct camera_frame *frame, struct vec3 a, struct vec3 b,
                       struct canvas_colour colour);

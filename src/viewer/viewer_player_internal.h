@@ -2,7 +2,7 @@
 #ifndef GRAY_VIEWER_VIEWER_PLAYER_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_PLAYER_INTERNAL_H
 
-#include "viewer/viewer_internal.h"
+#include "viewer/viewer.h"
 
 enum player_decision {
     PLAYER_REFINES, /* passes of this frame, as of any picture */

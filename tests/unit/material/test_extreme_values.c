@@ -215,7 +215,7 @@ static const char *use_of(const struct script_function *function) {
     return strstr(function->name, "render") ? "" : "root:add_child(ball) show{} show{}";
 }
 
-static bool is_numeric(enum kind kind) {
+static bool is_numeric(enum argument_kind kind) {
     switch (kind) {
     case KIND_NUMBER:
     case KIND_WHOLE:
@@ -537,7 +537,7 @@ static void try_combinations(struct gallery *gallery, const char *value) {
 static void try_values(const char *const *values, bool must_refuse, bool combinations_too, bool is_long) {
     struct gallery gallery;
     open_gallery(&gallery);
-    gallery.max = is_long ? 9 : 2;
+    gallery.max = is_long ? 9 : 1;
     gallery.is_long = is_long;
     for (; *values; values++) {
         try_everywhere(&gallery, *values, must_refuse);

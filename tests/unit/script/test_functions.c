@@ -308,7 +308,7 @@ TEST(a_function_of_too_many_long_paths_is_refused_after_few_calls) {
 TEST(a_function_of_many_long_paths_is_recorded) {
     runs("fn(function(p) local x = p.x for i = 1, 10 do x = sin(x) * p.y + p.z end"
          " for i = 1, 12 do if gr.noise(p * i) > 0.3 then x = x + 2 ^ i end end return x end)");
-    runs("fn(function(p) for i = 1, 700 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
+    runs("fn(function(p) for i = 1, 400 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
 }
 
 TEST(an_entry_of_a_table_is_a_float_where_one_of_them_is) {

@@ -579,23 +579,29 @@ static void add_to(struct sums *sums, double x) {
     sums->squares += x * x;
 }
 
-/* Within five standard errors, which are small; true for any mean if the expected value is not known. */
+/* The standard error of the mean is small; true if the expected value is not known. */
+static bool is_precise(const struct sums *sums, double factor, double expected) {
+    double mean = sums->sum / sums->count, variance = sums->squares / sums->count - mean * mean;
+    return isnan(expected) || factor * sqrt(variance / sums->count) < 0.04 * expected;
+}
+
+/* Within five standard errors; true for any mean if the expected value is not known. */
 static bool agrees(const struct sums *sums, double factor, double expected) {
     double mean = sums->sum / sums->count, variance = sums->squares / sums->count - mean * mean;
-    double deviation = factor * sqrt(variance / sums->count);
-    return isnan(expected) || (fabs(factor * mean - expected) < 5 * deviation && deviation < 0.04 * expected);
+    return isnan(expected) || fabs(factor * mean - expected) < 5 * factor * sqrt(variance / sums->count);
 }
 
 /* Integral geometry (Santalo 1976, I.4 and IV.14): of lines that cross a ball of radius R evenly from all sides, the
  * mean length inside a solid times pi R^2 is its volume, the mean number of crossings times 2 pi R^2 the area of its
  * surface. The ball encloses the shape's box. */
 static void measure(const struct made_geometry *made, struct test_random *random, struct geom_scratch *scratch) {
-    enum { LINES = 60000 };
+    enum { LINES = 60000, FEW = 10000 };
     struct box box = geometry_bounds(&made->geometry);
     struct vec3 middle = vec3_scale(vec3_add(box.min, box.max), 0.5);
     double radius = vec3_length(vec3_sub(box.max, box.min)) / 2, across = M_PI * radius * radius;
     struct sums inside = {0}, crossings = {0};
-    for (int i = 0; i < LINES; i++) {
+    bool precise = false;
+    for (int i = 0; i < LINES && !precise; i++) {
         double z = test_uniform(random, -1, 1), turn = test_uniform(random, 0, 2 * M_PI), r = sqrt(1 - z * z);
         struct vec3 direction = {r * cos(turn), r * sin(turn), z}, side, up;
         planar_across(direction, &side, &up);
@@ -608,8 +614,10 @@ static void measure(const struct made_geometry *made, struct test_random *random
             length += scratch->items[k].t - scratch->items[k - 1].t;
         add_to(&inside, length);
         add_to(&crossings, list.count);
+        precise = i % FEW == FEW - 1 && is_precise(&inside, across, made->volume) &&
+                  is_precise(&crossings, 2 * across, made->area);
     }
-    if (!agrees(&inside, across, made->volume) || !agrees(&crossings, 2 * across, made->area))
+    if (!precise || !agrees(&inside, across, made->volume) || !agrees(&crossings, 2 * across, made->area))
         test_fail(__FILE__, __LINE__, "%s: volume %g, %g by lines; area %g, %g by lines",
                   geometry_kind_name(&made->geometry), made->volume, across * inside.sum / inside.count, made->area,
                   2 * across * crossings.sum / crossings.count);

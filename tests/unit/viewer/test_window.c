@@ -5,10 +5,7 @@
 #include "render/render.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "viewer/viewer_edit_internal.h"
 #include "viewer/viewer_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_player_internal.h"
 
 #include <math.h>
 #include <stdio.h>
