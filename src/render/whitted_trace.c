@@ -243,7 +243,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     struct vec3 sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
-    observe_split(state->observer, 1 / rays);
+    OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
     struct candidates candidates;
     candidates.end = 0;
     while (candidates.end < cells) {
