@@ -6,6 +6,7 @@
 #include "base/suggestion.h"
 #include "base/unreachable.h"
 #include "call/display_colour.h"
+#include "call/named_numbers_internal.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
@@ -115,35 +116,13 @@ static double read_whole(struct script_context *c, int index, const struct argum
     return x;
 }
 
-/* Pushes {1, 2, 3} of {x = 1, y = 2, z = 3}, or of the letters of a colour or a quaternion; false: there are no such
- * names, and nothing is pushed. */
-static bool push_named_tuple(lua_State *L, int index, int count) {
-    static const char *const names[] = {"xyz", "rgb", "wxyz", "xz", "xy", "uv"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        int found = 0;
-        if (strlen(names[i]) != (size_t)count)
-            continue;
-        lua_createtable(L, count, 0);
-        for (; found < count; found++) {
-            lua_pushlstring(L, &names[i][found], 1);
-            if (lua_rawget(L, index) == LUA_TNIL)
-                break;
-            lua_rawseti(L, -2, found + 1);
-        }
-        if (found == count)
-            return true;
-        lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
-    }
-    return false;
-}
-
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
 static void read_tuple(struct script_context *c, int index, struct argument_path argument_path, int count,
                        double *out) {
     lua_State *L = c->sandbox.lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
-    if (length == 0 && push_named_tuple(L, index, count)) {
+    if (length == 0 && named_numbers_push(L, index, count)) {
         read_tuple(c, lua_gettop(L), argument_path, count, out);
         lua_pop(L, 1);
         return;
@@ -179,13 +158,18 @@ static struct vec3 read_vector(struct script_context *c, int index, const struct
     return (struct vec3){x[0], x[1], x[2]};
 }
 
-static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+static struct vec3 read_pair(struct script_context *c, int index, const struct argument_path *argument_path) {
     double x[2];
-    char words[128];
     read_row(c, index, argument_path, 2, x);
-    if (x[0] > x[1])
-        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
     return (struct vec3){x[0], x[1], 0};
+}
+
+static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+    struct vec3 pair = read_pair(c, index, argument_path);
+    char words[128];
+    if (pair.x > pair.y)
+        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
+    return pair;
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
@@ -601,6 +585,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
     }
     switch (p->kind) {
     case KIND_NUMBER:
+        if (p->choices && p->choices[0] && lua_type(L, index) == LUA_TSTRING && !lua_isnumber(L, index)) {
+            value->number = p->high + 1 + read_choice(c, index, &argument_path);
+            return true;
+        }
         value->number = read_number(c, index, &argument_path);
         if (p->unit && strcmp(p->unit, "degrees") == 0)
             context_warn_of_radians(c, p->name, value->number);
@@ -614,7 +602,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->boolean = lua_toboolean(L, index);
         return true;
     case KIND_TEXT:
-        value->text = read_text(c, index, &argument_path);
+        if ((p->flags & OR_PAIR) && lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
+            value->text = read_text(c, index, &argument_path);
         return true;
     case KIND_FILE:
         value->text = read_file_name(c, index, &argument_path);
@@ -644,6 +635,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_TRIPLE:
+        if ((p->flags & OR_COMPASS) && compass_read(c, index, p->name, &value->vector))
+            return true;
         value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_SIZE:
@@ -663,13 +656,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     }
     case KIND_PAIR:
-        if (lua_istable(L, index)) {
-            double pair[2];
-            read_tuple(c, index, argument_path, 2, pair);
-            value->vector = vec3_make(pair[0], pair[1], 0);
-        } else {
+        if (lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
             value->vector.x = value->vector.y = read_number(c, index, &argument_path);
-        }
         return true;
     case KIND_NODE:
         value->node = read_handle(c, index, &argument_path, HANDLE_NODE);
@@ -681,10 +671,13 @@ static bool read_value(struct script_context *c, int index, const struct script_
         read_materials(c, index, argument_path, value);
         return true;
     case KIND_IMAGE:
-        if (lua_isstring(L, index)) {
+        handle = handle_at(L, index);
+        if ((p->flags & OR_SKY) && handle && handle->type == HANDLE_SKY)
+            value->sky = handle->pointer;
+        else if (lua_isstring(L, index))
             value->text = read_file_name(c, index, &argument_path);
+        if (value->sky || value->text)
             return true;
-        }
         value->texture = read_handle(c, index, &argument_path, HANDLE_TEXTURE);
         value->image = value->texture ? image_of(value->texture) : NULL;
         if (value->texture && !value->image)
@@ -823,6 +816,7 @@ bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsign
     static const int wanted[] = {KIND_LIST(KIND_LIKE)};
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
-                   (flags & OR_CURVE ? LIKE_FUNCTION : 0);
+                   (flags & OR_CURVE ? LIKE_FUNCTION : 0) | (flags & OR_PAIR ? LIKE_TABLE : 0) |
+                   (flags & OR_SKY ? 1 << HANDLE_SKY : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }

@@ -36,7 +36,7 @@ static bool has_field(const void *context, const char *name) {
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) /* `self` is no field */
         if (strcmp(function->parameters[k].name, name) == 0)
             return true;
-    return false;
+    return function->passes && has_field(function->passes->rows, name);
 }
 
 static bool form_has(const struct script_function *function, const char *form, int parameter) {
@@ -188,6 +188,8 @@ _Noreturn static void unknown_field(struct script_context *c, const struct scrip
     int first = function->owner == OWNER_NODE, count = function->parameter_count - first;
     for (int k = first; k < function->parameter_count; k++)
         suggest_offer(&suggestion, function->parameters[k].name);
+    for (int k = 0; function->passes && k < function->passes->rows->parameter_count; k++)
+        suggest_offer(&suggestion, function->passes->rows->parameters[k].name);
     if (use || suggestion.best)
         sandbox_raise(&c->sandbox, "unknown field '%.100s'; did you mean '%s'?", field, use ? use : suggestion.best);
     enum { SHORT_LIST = 5 };

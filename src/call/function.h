@@ -22,7 +22,7 @@ struct script_context;
 
 /* The kinds of arguments: name, what the script must pass, the type in annotations (NULL: the choices), and the Lua
  * types (argument.c). The plain C form is in struct script_value:
- *   KIND_NUMBER: number
+ *   KIND_NUMBER: number; a word of parameter.choices: the number of a setting for it (setting.h)
  *   KIND_WHOLE: number: a float with a whole value is fine
  *   KIND_BOOLEAN: boolean
  *   KIND_TEXT: text
@@ -149,6 +149,9 @@ enum {
     OR_PROFILE = 512,
     OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
     OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
+    OR_COMPASS = 4096,  /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
+    OR_PAIR = 8192,     /* of KIND_TEXT: also accepts two numbers */
+    OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };
@@ -204,6 +207,9 @@ struct script_function {
     bool (*run)(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error);
     const char *help;
+    bool in_lua; /* after `run`, the function of that name in lua/words.lua makes the result */
+    /* Its first row: a function whose fields are accepted, too, and come back in a table. NULL: none. */
+    const struct function_rows *passes;
 };
 
 /* The rows of one file. */

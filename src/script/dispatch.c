@@ -11,6 +11,7 @@
 #include "formats/font.h"
 #include "record/record.h"
 #include "script/gr_frames_internal.h"
+#include "script/gr_words_internal.h"
 #include "script/table_internal.h"
 #include "settings/foreign_words.h"
 
@@ -99,6 +100,8 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
 _Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in answer()");
 
 static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
+    if (function->in_lua)
+        return words_answer(L, function);
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;

@@ -275,7 +275,8 @@ static const char *needed_value(const struct setting *option, char room[128]) {
         return room;
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            (void)snprintf(room, 128, "%s%sa number from %g to %g", unit, comma, option->low, option->high);
+            (void)snprintf(room, 128, "%s%sa number from %g to %g%s%s", unit, comma, option->low, option->high,
+                           option->words && option->words[0] ? ", or " : "", option->words ? option->words : "");
         else
             (void)snprintf(room, 128, "%s%sa number of at least %g", unit, comma, option->low);
         return room;
@@ -361,7 +362,8 @@ static bool read_value(const struct setting *option, const char *text, struct op
             *(int *)field = (int)integer;
         break;
     case SETTING_NUMBER:
-        ok = read_number(text, option->low, option->high, field);
+        *(double *)field = setting_number_of_word(option, text);
+        ok = *(double *)field > 0 || read_number(text, option->low, option->high, field);
         break;
     case SETTING_BYTES:
         ok = read_bytes(text, option->low, option->high, field);
