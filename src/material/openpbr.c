@@ -85,6 +85,8 @@ void openpbr_classic(struct material *material) {
     out->ks = vec3_add(vec3_scale(vec3_all(weight), 1 - metal), vec3_scale(colour, metal));
     out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? fmin(share / weight, 1) : 0);
     out->roughness = out->reflect > 0 && roughness > smooth ? roughness : 0;
+    double rays = out->glossy_samples > 0 ? out->glossy_samples : 4; /* N of N x N; fewer show a small share as well */
+    out->glossy_samples = (int)fmin(fmax(floor(0.75 * rays * sqrt(metal + (1 - metal) * share) + 0.5), 1), rays);
     if (textured && metal > 0) { /* its colour is that of reflections */
         material->inputs[INPUT_KS] = material->inputs[INPUT_KD];
         material->inputs[INPUT_KD].authored = &black;

@@ -242,7 +242,7 @@ TEST(materials_are_found_by_name) {
     test_free_result(&result);
 }
 
-/* Whitted's integrator with classic = true and without: about as bright, and several times faster. */
+/* Whitted's integrator with classic = true and without: about as bright. */
 TEST(classic_layers_resemble_the_layers) {
     static const char scene[] = "gr.render(gr.studio{node = gr.sphere{material = gr.openpbr_material{base_color = "
                                 "{0.6, 0.3, 0.1}, coat_weight = 1,\n"
