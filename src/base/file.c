@@ -458,8 +458,10 @@ bool file_list(const char *folder, size_t limit, bool (*fn)(void *context, const
         memcpy(names[count++], entry->d_name, length + 1);
     }
     (void)closedir(stream);
+    /* The order of a folder differs between machines. */
     if (names)
         qsort(names, count, sizeof *names, compare_names);
+    /* All names are freed, also after a refusal. */
     bool go_on = names != NULL;
     for (size_t i = 0; i < count; i++) {
         go_on = go_on && fn(context, names[i]);

@@ -58,6 +58,7 @@ static void add_spelling(struct path_policy_folder *folder, const char *given) {
 static bool add_canonical(struct path_policy *path_policy, const char *given, const char *canonical,
                           enum path_policy_kind kind, struct error *error) {
     size_t length = strlen(canonical);
+    /* The root is the empty prefix. */
     if (length == 1)
         length = 0;
     for (size_t i = 0; i < path_policy->count; i++) {
@@ -77,6 +78,7 @@ static bool add_canonical(struct path_policy *path_policy, const char *given, co
         return error_no_memory(error, "the folders a scene may read");
     memcpy(path, canonical, length);
     path[length] = '\0';
+    /* The folder is kept open: later a link under its name cannot lead elsewhere. */
     int descriptor = MAY_FAIL(open(canonical, O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (descriptor < 0) {
         int why = errno;
@@ -237,6 +239,7 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
         errno = ENAMETOOLONG;
         return false;
     }
+    /* Parts on the way to a folder of the policy are not looked at: they may be unreadable. */
     bool known = leads_to_folder(path_policy, next);
     if (!known && !find(path_policy, next, false, &below)) {
         r->is_out = true;
@@ -247,6 +250,7 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
         return false;
     if (!known && S_ISLNK(status.st_mode) && (follow || rest[0] != '\0'))
         return follow_link(r, next, rest);
+    /* A file has nothing below it. */
     if (!known && rest[0] != '\0' && !S_ISDIR(status.st_mode)) {
         errno = ENOTDIR;
         return false;
@@ -268,6 +272,7 @@ static bool resolve(const struct path_policy *path_policy, const char *path, boo
         errno = strlen(path) >= PATH_MAX ? ENAMETOOLONG : path[0] == '\0' ? ENOENT : EACCES;
         return false;
     }
+    /* Part by part, so that no link is followed out of the folders. */
     for (;;) {
         const char *part = r->rest + strspn(r->rest, "/");
         size_t length = strcspn(part, "/");

@@ -161,6 +161,7 @@ struct pool *pool_create(int threads, char warning[256]) {
     (void)pthread_cond_init(&pool->start, NULL);
     (void)pthread_cond_init(&pool->finish, NULL);
     pool->workers = 1;
+    /* The caller of pool_run is the first worker. Fewer threads are no error. */
     for (int i = 0; i < wanted - 1; i++) {
         pool->threads[i] = (struct pool_thread){.pool = pool, .worker = i + 1};
         int failure = start_thread(&pool->threads[i].thread, thread_main, &pool->threads[i]);

@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+extern const char *const makers_txt[];
+
 /* The position of a value, for messages: name, name[i], name[i][j]. */
 struct argument_path {
     const struct script_parameter *parameter;
@@ -33,52 +35,17 @@ static const char *argument_path_text(const struct argument_path *argument_path,
     return out;
 }
 
-/* How a value of a kind is made, by the Lua type that is given in its place: the first row that fits. */
-enum { ANY_TYPE = -2, LIST_OF_NODES = 50, HANDLE = 100 };
-static const struct {
-    enum kind kind;
-    int given; /* a type of Lua, LIST_OF_NODES or ANY_TYPE; of handles HANDLE + their type */
-    const char *words;
-} made[] = {
-    {KIND_MATERIAL, ANY_TYPE, "gr.material{kd = {r, g, b}} makes a material"},
-    {KIND_MATERIALS, ANY_TYPE, "write {name = material}, or a list {material, ...}"},
-    {KIND_FOG, ANY_TYPE, "gr.uniform_fog{density = ..., colour = {r, g, b}} makes a fog"},
-    {KIND_NODE, HANDLE + HANDLE_LIGHT, "lights belong in the field lights of gr.render"},
-    {KIND_NODE, HANDLE + HANDLE_MATERIAL, "a shape has the material, as in gr.sphere(material)"},
-    {KIND_NODE, LIST_OF_NODES,
-     "gr.node{children = {...}} makes one node of a list, and add_child takes one node each time"},
-    {KIND_NODE, LUA_TTABLE, "gr.mesh(material, verts, faces) makes a node of tables of numbers"},
-    {KIND_NODE, LUA_TFUNCTION, "call the function, as in gr.sphere(material)"},
-    {KIND_NODE, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
-    {KIND_NODES, HANDLE + HANDLE_NODE, "write it in braces, as in {node}"},
-    {KIND_NODES, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
-    {KIND_LIGHTS, HANDLE + HANDLE_LIGHT, "write it in braces, as in {light}"},
-    {KIND_LIGHTS, ANY_TYPE, "gr.light{position = {x, y, z}, colour = {r, g, b}} makes a light"},
-    {KIND_IMAGE, ANY_TYPE, "gr.texture('file.png') makes a texture"},
-    {KIND_BACKGROUND, HANDLE + HANDLE_TEXTURE, "gr.sky_map{image = texture} makes a sky"},
-    {KIND_COLOUR, HANDLE + HANDLE_MATERIAL, "a material is the argument of a shape, as in gr.sphere(material)"},
-    {KIND_COLOUR, LUA_TSTRING, "red is {1, 0, 0} or '#ff0000'"},
-    {KIND_COLOUR, LUA_TNUMBER, "white is {1, 1, 1}"},
-    {KIND_POINT, LUA_TNUMBER, "write the three numbers in braces"},
-    {KIND_DIRECTION, LUA_TNUMBER, "write the three numbers in braces"},
-    {KIND_TEXT, HANDLE + HANDLE_NODE, "nodes in a node are its children, as in gr.node{children = {...}}"},
-    {KIND_TEXT, LIST_OF_NODES, "nodes in a node are its children, as in gr.node{children = {...}}"},
-    {KIND_BOOLEAN, LUA_TSTRING, "they are written without quotes"},
-    {KIND_FUNCTION, ANY_TYPE, "write function(p) return ... end"},
-    {KIND_CALLBACK, ANY_TYPE, "write function(t) return ... end"},
-};
-
-static int given_type(lua_State *L, int index) {
+/* The type of Lua or of the handle; of a list of nodes "nodes". */
+static const char *given_type(lua_State *L, int index) {
     const struct handle *handle = handle_at(L, index);
     if (handle)
-        return HANDLE + (int)handle->type;
-    int type = lua_type(L, index);
-    if (type != LUA_TTABLE)
-        return type;
+        return handle_key(handle->type);
+    if (!lua_istable(L, index))
+        return luaL_typename(L, index);
     lua_rawgeti(L, index, 1);
     handle = handle_at(L, -1);
     lua_pop(L, 1);
-    return handle && handle->type == HANDLE_NODE ? LIST_OF_NODES : type;
+    return handle && handle->type == HANDLE_NODE ? "nodes" : "table";
 }
 
 _Noreturn static void wrong_type(struct script_context *c, const struct argument_path *argument_path,
@@ -87,15 +54,13 @@ _Noreturn static void wrong_type(struct script_context *c, const struct argument
     lua_State *L = c->sandbox.lua;
     const struct script_parameter *p = argument_path->parameter;
     index = lua_absindex(L, index);
-    const char *given = value_words(L, index);
-    int type = given_type(L, index);
+    const char *given = value_words(L, index), *type = given_type(L, index);
     bool is_whole = argument_path->i == 0 || p->kind == KIND_NODES || p->kind == KIND_LIGHTS;
-    bool is_file = is_whole && type == LUA_TSTRING && (p->flags & OR_TEXTURE) && strchr(lua_tostring(L, index), '.');
-    if (is_file)
+    if (is_whole && (p->flags & OR_TEXTURE) && lua_type(L, index) == LUA_TSTRING && strchr(lua_tostring(L, index), '.'))
         snprintf(hint, sizeof hint, "; gr.texture('%.100s') makes a texture of a file", lua_tostring(L, index));
-    for (size_t i = 0; is_whole && i < sizeof made / sizeof *made && hint[0] == '\0'; i++)
-        if (made[i].kind == p->kind && (made[i].given == ANY_TYPE || made[i].given == type))
-            snprintf(hint, sizeof hint, "; %s", made[i].words);
+    for (const char *const *row = makers_txt; is_whole && *row && !hint[0]; row += 3)
+        if (strcmp(row[0], kind_name(p->kind)) == 0 && (strcmp(row[1], "any") == 0 || strcmp(row[1], type) == 0))
+            snprintf(hint, sizeof hint, "; %s", row[2]);
     sandbox_raise(&c->sandbox, "%s must be %s, not %s%s", argument_path_text(argument_path, words), wanted, given,
                   hint);
 }
@@ -224,8 +189,7 @@ static struct vec3 read_interval(struct script_context *c, int index, const stru
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
- * Lua.
- */
+ * Lua. */
 static const char *read_text(struct script_context *c, int index, const struct argument_path *argument_path) {
     lua_State *L = c->sandbox.lua;
     char words[128];
@@ -390,6 +354,7 @@ static void read_materials(struct script_context *c, int index, struct argument_
                            struct script_value *value) {
     lua_State *L = c->sandbox.lua;
     uint32_t length = list_length(c, index, &argument_path), count = 0;
+    /* A list, or a table with names. */
     if (length == 0)
         for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++)
             if (lua_type(L, -2) != LUA_TSTRING)
@@ -405,6 +370,7 @@ static void read_materials(struct script_context *c, int index, struct argument_
         return;
     if (count > MATERIAL_NAMES)
         sandbox_raise(&c->sandbox, "%s has more than %d entries", argument_path.parameter->name, MATERIAL_NAMES);
+    /* Lua has no order of names: they are sorted, so that the result is always the same. */
     const char **names = value->names = context_array(c, count, sizeof *names);
     count = 0;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1), count++) {
@@ -440,6 +406,7 @@ static void read_faces(struct script_context *c, int index, struct argument_path
         if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
             wrong_type(c, &argument_path, "a table of indices", -1);
         starts[k] = (uint32_t)corners;
+        /* First the sizes: the arrays of the call are allocated once. */
         corners += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (corners >= UINT32_MAX)
@@ -455,6 +422,7 @@ static void read_faces(struct script_context *c, int index, struct argument_path
             lua_rawgeti(L, -1, argument_path.j);
             double x = read_number(c, -1, &argument_path);
             char words[128];
+            /* The first ray tracers of this language dropped fractions without a word. */
             if (x != floor(x)) {
                 context_warn_once(c, WARNED_FRACTION, "%s is %.15g: fractions of indices are dropped",
                                   argument_path_text(&argument_path, words), x);
@@ -497,6 +465,7 @@ static void read_rows(struct script_context *c, int index, struct argument_path 
         if (lua_rawgeti(L, index, argument_path.i) != LUA_TTABLE)
             wrong_type(c, &argument_path, pairs ? "a table of pairs" : "a table of numbers", -1);
         starts[k] = (uint32_t)total;
+        /* First the sizes, for one array of all numbers. */
         total += lua_rawlen(L, -1);
         lua_pop(L, 1);
         if (total >= UINT32_MAX / 4)
@@ -535,6 +504,7 @@ static void read_caustics(struct script_context *c, int index, const struct argu
     }
     if (!lua_istable(L, index))
         wrong_type(c, argument_path, kind_words(argument_path->parameter->kind), index);
+    /* The first unknown field by name, so that the message does not depend on the order in the table. */
     const char *unknown = NULL;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING)
@@ -619,6 +589,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
     lua_State *L = c->sandbox.lua;
     char words[128];
     value->given = true;
+    /* A texture stands for a value of any kind that accepts one. */
     const struct handle *handle = p->flags & OR_TEXTURE ? handle_at(L, index) : NULL;
     bool is_function = (p->flags & OR_TEXTURE) && lua_type(L, index) == LUA_TFUNCTION;
     if (is_function || (handle && handle->type == HANDLE_TEXTURE)) {
@@ -827,8 +798,7 @@ void argument_read_nodes(struct script_context *c, int index, const struct scrip
 }
 
 /* The argument types that a value can have, judged by its Lua type alone: bits. Strings that are numbers are both, a
- * ghost is any handle.
- */
+ * ghost is any handle. */
 enum {
     LIKE_NUMBER = 1 << HANDLE_TYPES,
     LIKE_BOOLEAN = LIKE_NUMBER << 1,
@@ -847,44 +817,10 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
-bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
-    static const int wanted[KIND_COUNT] = {
-        [KIND_NUMBER] = LIKE_NUMBER,
-        [KIND_WHOLE] = LIKE_NUMBER,
-        [KIND_BOOLEAN] = LIKE_BOOLEAN,
-        [KIND_TEXT] = LIKE_TEXT,
-        [KIND_FILE] = LIKE_TEXT,
-        [KIND_OUTPUT] = LIKE_TEXT,
-        [KIND_CHOICE] = LIKE_TEXT,
-        [KIND_AXIS] = LIKE_TEXT,
-        [KIND_POINT] = LIKE_TABLE,
-        [KIND_DIRECTION] = LIKE_TABLE,
-        [KIND_COLOUR] = LIKE_TABLE | LIKE_TEXT,
-        [KIND_TRIPLE] = LIKE_TABLE,
-        [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_INTERVAL] = LIKE_TABLE,
-        [KIND_QUATERNION] = LIKE_TABLE,
-        [KIND_PAIR] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODE] = 1 << HANDLE_NODE,
-        [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
-        [KIND_MATERIALS] = LIKE_TABLE,
-        [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
-        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY,
-        [KIND_FOG] = 1 << HANDLE_FOG,
-        [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODES] = LIKE_TABLE,
-        [KIND_LIGHTS] = LIKE_TABLE,
-        [KIND_POINTS] = LIKE_TABLE,
-        [KIND_PAIRS] = LIKE_TABLE,
-        [KIND_STOPS] = LIKE_TABLE,
-        [KIND_FACES] = LIKE_TABLE,
-        [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_ROWS] = LIKE_TABLE,
-        [KIND_CURVES] = LIKE_TABLE,
-        [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
-        [KIND_CALLBACK] = LIKE_FUNCTION,
-    };
-    assert(wanted[kind]); /* every kind has a case */
+#define KIND_LIKE(kind, name, words, annotation, like) [kind] = (like),
+
+bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsigned flags) {
+    static const int wanted[] = {KIND_LIST(KIND_LIKE)};
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
                    (flags & OR_CURVE ? LIKE_FUNCTION : 0);

@@ -4,8 +4,8 @@
 
 #include "call/context.h"
 
-/* The value at an absolute stack index, unless it is nil. May raise. False: it is a ghost, so the call has no effect.
- */
+/* The value at an absolute stack index, unless it is nil. May raise. False: it is a ghost, so the call has no
+ * effect. */
 bool argument_read(struct script_context *context, int index, const struct script_parameter *parameter,
                    struct script_value *value);
 /* Text at that index; it remains in Lua. May raise. */
@@ -16,6 +16,6 @@ void argument_read_nodes(struct script_context *context, int index, const struct
 /* A nil in that table with an entry after it is an error. May raise. */
 void argument_check_holes(struct script_context *context, int index, const struct script_parameter *parameter);
 /* Whether a value of this Lua type can be an argument of the kind. */
-bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags);
+bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsigned flags);
 
 #endif

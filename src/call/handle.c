@@ -1,7 +1,7 @@
 /* Handles: the Lua values for nodes, materials, lights and textures. A handle is a userdata with a tag and a pointer
  * into the scene's arena, without finalizer: the scene outlives the Lua state. A ghost is the handle of an object that
- * this version does not support; it exists with --lenient only and is accepted everywhere (compat/lenient_handles.h).
- */
+ * this version does not support; it exists with --lenient only and is accepted everywhere
+ * (compat/lenient_handles.h). */
 #include "call/handle.h"
 
 #include "call/context.h"
@@ -18,7 +18,7 @@ const char *handle_words(enum handle_type type) {
     return words[type];
 }
 
-const void *handle_key(enum handle_type type) {
+const char *handle_key(enum handle_type type) {
     return type_names[type];
 }
 

@@ -499,6 +499,7 @@ bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch 
         scratch->overflow = true;
         return false;
     }
+    /* The stack of the program as bits; leaves may use the scratch above it. */
     uint32_t *stack = (uint32_t *)(void *)&scratch->items[used], depth = 0;
     scratch->used += plan->state_items;
     for (uint32_t i = 0; i < csg->program_length; i++) {
@@ -519,6 +520,7 @@ bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch 
                     : operation == CSG_INTERSECTION ? left && right
                                                     : left && !right;
         }
+        /* The bits above are of values that were taken: they are cleared. */
         uint32_t bit = UINT32_C(1) << depth % 32, below = bit - 1;
         stack[depth / 32] = (depth % 32 ? stack[depth / 32] & below : 0) | (value ? bit : 0);
         depth++;

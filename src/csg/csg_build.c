@@ -29,6 +29,7 @@ static bool program_is_well_formed(const struct csg *csg, bool *used, uint32_t *
     uint32_t depth = 0, leaves = 0, deepest = 0;
     uint32_t first_clip_leaf = csg->clipped ? csg->program[csg->solid_length].leaf : csg->leaf_count;
     for (uint32_t i = 0; i < csg->program_length; i++) {
+        /* The clip begins above the solid, which stays on the stack. */
         uint32_t base = i < csg->solid_length ? 0 : 1;
         switch (csg->program[i].operation) {
         case CSG_LEAF: {
@@ -88,6 +89,7 @@ static uint32_t build_nodes(const struct csg *csg, struct csg_plan *plan, uint32
             stack[depth++] = (struct pending){p.parent, !p.negated};
             continue;
         }
+        /* De Morgan: under a negation, unions are intersections. A node of the kind of its parent is merged into it. */
         bool leaf = operation == CSG_LEAF, all = !leaf && (operation == CSG_UNION) == p.negated;
         uint32_t node = p.parent;
         if (node == CSG_NONE || (!leaf && is_all[node] != all)) {
@@ -235,6 +237,7 @@ static void select_middle(const struct csg_plan *plan, uint32_t *order, uint32_t
     uint32_t lo = 0, hi = count - 1;
     while (lo < hi) {
         uint32_t pivot = order[lo + (hi - lo) / 2], i = lo, j = hi;
+        /* Equal middles are ordered by their numbers, so that the result is the same everywhere. */
         double value = box_middle(&plan->boxes[pivot], axis);
         for (;;) {
             for (;; i++) {

@@ -217,10 +217,12 @@ bool csg_build_parts(struct arena *arena, const struct csg_program *program, con
     *parts = ok ? arena_alloc_array(arena, *count, sizeof **parts) : NULL;
     if (!*parts)
         ok = error_no_memory(error, "CSG");
+    /* Nothing is disjoint: the program as it is. */
     if (ok && *count == 1) {
         (*parts)[0] = csg_build(arena, program->leaves, program->leaf_count, program->tokens, program->length, error);
         ok = (*parts)[0] != NULL;
     }
+    /* A part has the number of its first operand. */
     uint32_t made = 0;
     for (uint32_t i = 0; ok && *count > 1 && i < s.count; i++) {
         if (s.part[i] != i)

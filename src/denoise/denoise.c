@@ -351,6 +351,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
     struct denoise_run *d = context;
     struct denoise_scratch *s = d->scratch + worker;
     float shares[CANDIDATES][BLOCK];
+    /* The first block may begin outside of the picture. */
     int left = -(int)(d->level->x0 % ALIGNMENT), top = -(int)(d->level->y0 % ALIGNMENT);
     int across = (d->level->width - left + BLOCK - 1) / BLOCK;
     int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
@@ -363,6 +364,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
     }
     for (int f = 0; f < DENOISE_FEATURES; f++)
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
+    /* Estimates of all candidates, then the best mixture for each pixel. */
     for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
         regress_half(d, s, half, bounds);
     d->kernels->compare_candidates(s);
@@ -467,6 +469,7 @@ static void correct_finer(void *context, uint32_t y, int worker) {
         int near_x = (int)(whole_x / 2 - level->x0), far_x = near_x + (whole_x % 2 ? 1 : -1);
         size_t at = pixel_at(finer, x, (int)y);
         for (int half = 0; half < 2; half++) {
+            /* Bilinear interpolation: 3/4 and 1/4 along each axis. */
             float sum[3] = {0};
             const float own[3] = {finer->estimate[half][0][at], finer->estimate[half][1][at],
                                   finer->estimate[half][2][at]};
@@ -654,6 +657,7 @@ static float supported_mean(const struct denoise_run *d, const struct denoise_pi
             darkest = other < darkest ? other : darkest;
         }
     }
+    /* A pixel between these bounds stays; one beyond them is moved to the bound. */
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
     float errors = d->evidence[at] >= 0 ? edge_errors : support_errors;
     float high = (a < b ? a : b) - errors * sqrtf(own), low = (a < b ? b : a) + errors * sqrtf(others);
@@ -813,6 +817,7 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
         return no_memory(error);
     if (!denoise_colours(d, error) || !denoise_features(d, error) || !make_estimates(d, error))
         return false;
+    /* From fine to coarse, and the corrections back. */
     while (d->level < d->levels + LEVELS - 1) {
         d->level++;
         if (!make_coarse(d, error) || !make_estimates(d, error))
@@ -824,6 +829,7 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
             return false;
         free_level(d->level);
     }
+    /* What the estimates have lost at silhouettes. */
     if (!make_plane(d->level, &d->evidence) || !make_plane(d->level, &d->agreement))
         return no_memory(error);
     for (; d->pass < RESIDUAL_PASSES; d->pass++)
@@ -848,6 +854,7 @@ bool denoise(const struct denoise_source *source, struct pool *pool, float (*out
     d.levels[0].height = (int)source->height;
     d.levels[0].x0 = source->x0;
     d.levels[0].y0 = source->y0;
+    /* Each level has half of the width and height of the one before. */
     for (int i = 1; i < LEVELS; i++)
         d.levels[i] = coarser(&d.levels[i - 1]);
     d.level = d.levels;

@@ -1,5 +1,5 @@
-/* Bounds with slopes, one instruction at a time: for the evaluators of one box and of eight (expr_slopes_internal.h).
- */
+/* Bounds with slopes, one instruction at a time: for the evaluators of one box and of eight
+ * (expr_slopes_internal.h). */
 #ifndef GRAY_EXPR_EXPR_DERIVATIVE_INTERNAL_H
 #define GRAY_EXPR_EXPR_DERIVATIVE_INTERNAL_H
 

@@ -311,6 +311,7 @@ bool film_tile_order(const struct film *film, enum tile_order order, uint32_t *o
         }
         keys[i] = key << 32 | i;
     }
+    /* The number of the tile in the low half decides between equal keys, so the order is the same everywhere. */
     sort_words(keys, count);
     for (uint32_t i = 0; i < count; i++)
         out[i] = (uint32_t)keys[i];

@@ -372,10 +372,12 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->shard = get_u32(&input);
     out->shards = get_u32(&input);
     out->whole = get_u32(&input) != 0;
+    /* The table of a tone curve follows the settings, if they have one. */
     bool settings_fit = get_settings(&input, &out->settings);
     if (out->settings.tone.curve == TONE_FUNCTION)
         settings_fit = record->size >= PICTURE_FIXED + settings_size() + TONE_TABLE_SIZE &&
                        get_table(&input, &out->tone_table) && settings_fit;
+    /* Nothing in the file is trusted: later code computes sizes and indices from these numbers. */
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
@@ -455,6 +457,7 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
             ok = check_tile(reader, file, &record, &last, error);
             file->tiles++;
             break;
+        /* The number of records shows that the file is whole. */
         case RECORD_END: {
             struct byte_reader input = {record.payload};
             if (record.size != 8 || get_u64(&input) != reader->records - 1)

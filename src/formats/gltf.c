@@ -145,6 +145,7 @@ static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t ava
         return error_no_memory(g->error, g->path);
     if (!gltf_accessor_read_whole(g, p->indices, &a, out->index))
         return false;
+    /* Only the vertices between the smallest and the largest index are read. */
     uint32_t min = UINT32_MAX, max = 0;
     for (uint64_t i = 0; i < a.count; i++) {
         min = out->index[i] < min ? out->index[i] : min;
@@ -349,6 +350,7 @@ static bool read_mesh(struct gltf *g, size_t number, const json_t *source) {
     }
     struct mesh_plan plan = {0};
     struct primitive p;
+    /* The first pass finds what the mesh has: its arrays are the same for all primitives. */
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < json_array_size(primitives); i++) {
             (void)snprintf(p.where, sizeof p.where, "meshes[%zu].primitives[%zu]", number, i);
@@ -382,6 +384,7 @@ static bool read_placement(struct gltf *g, const json_t *source, struct transfor
         struct affine forward;
         if (!gltf_numbers(g, source, "matrix", m, 16, where))
             return false;
+        /* glTF stores columns. */
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 4; k++)
                 forward.m[i][k] = m[4 * k + i];
@@ -397,6 +400,7 @@ static bool read_placement(struct gltf *g, const json_t *source, struct transfor
         return gltf_fail(g, where, "its rotation is no quaternion");
     if (*singular)
         return true;
+    /* The matrix of the unit quaternion; its inverse is its transpose. */
     double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
     struct affine r = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
                         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
@@ -431,6 +435,7 @@ static bool read_node(struct gltf *g, struct visit visit, uint8_t *seen, struct 
         model_warn(g->model, "%s: %s: it is scaled to nothing and not shown", g->path, where);
         return true;
     }
+    /* Numbers are those of the model: nodes that are not shown have none. */
     uint32_t number = (uint32_t)g->model->nodes.count;
     struct model_node *node = model_add_node(g->model, g->error);
     if (!node || !gltf_index(g, source, "mesh", "meshes", &node->mesh, where))
@@ -447,6 +452,7 @@ static bool read_node(struct gltf *g, struct visit visit, uint8_t *seen, struct 
     struct visit *below = list_room(stack, count ? count : 1, sizeof *below);
     if (!below)
         return error_no_memory(g->error, g->path);
+    /* The last one first, since a stack returns them in the other order. */
     for (size_t i = 0; i < count; i++) {
         const json_t *child = json_array_get(children, count - 1 - i);
         json_int_t index = json_integer_value(child);
@@ -480,6 +486,7 @@ static bool push_roots(struct gltf *g, struct list *stack) {
         }
         return true;
     }
+    /* Without scenes the roots are those nodes that are nobody's child. */
     uint8_t *child = mem_alloc_zero(count ? count : 1, 1);
     bool ok = child != NULL;
     for (size_t i = 0; ok && i < count; i++) {
@@ -654,6 +661,7 @@ static bool split(struct gltf *g, const uint8_t *data, size_t size, const char *
         return gltf_fail(g, "byte 4", "GLB of version 2 is read, this is of version %u", version);
     if (whole > size)
         return gltf_fail(g, "byte 8", "the file promises %u bytes, but has only %zu", whole, size);
+    /* The chunks: JSON, then at most one of bytes; others are skipped. */
     size_t at = 12;
     for (int chunk = 0; at + 8 <= whole; chunk++) {
         size_t bytes = scan_u32(data + at, false);

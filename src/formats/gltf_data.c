@@ -27,6 +27,7 @@ bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size
         return gltf_fail(g, where, "a data URI that is not base64");
     const char *text = comma + 1;
     size_t length = strlen(text);
+    /* Padding adds nothing. */
     while (length > 0 && text[length - 1] == '=')
         length--;
     uint8_t *bytes = mem_alloc(length / 4 * 3 + 4);
@@ -47,6 +48,7 @@ bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size
             bytes[made++] = (uint8_t)bits;
         }
     }
+    /* What is left over: two digits are one byte, three are two. */
     if (length % 4 >= 2)
         bytes[made++] = (uint8_t)(length % 4 == 2 ? bits >> 4 : bits >> 10);
     if (length % 4 == 3)
@@ -87,6 +89,7 @@ static bool fetch(struct gltf *g, uint32_t index) {
     uint64_t length;
     if (!gltf_whole(g, object, "byteLength", UINT64_MAX, &length, where))
         return false;
+    /* In the binary chunk, in the text, or in a file beside it. */
     if (!uri) {
         if (index != 0 || !g->binary)
             return gltf_fail(g, where, "it has no uri, and the file no binary chunk for it");
@@ -131,6 +134,7 @@ bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *siz
         return gltf_fail(g, where, "it has no buffer");
     if (!fetch(g, buffer))
         return false;
+    /* No sum of two numbers of the file, which could overflow. */
     size_t have = g->buffers[buffer].size;
     if (offset > have || length > have - offset)
         return gltf_fail(g, where, "bytes %llu to %llu of a buffer that has %zu", (unsigned long long)offset,
@@ -182,6 +186,7 @@ static bool find_part(struct gltf *g, const json_t *object, struct view_part *pa
         part->stride = step;
     if (part->stride < part->element)
         return gltf_fail(g, where, "its stride is smaller than its elements");
+    /* The last element must lie inside, not only the first. */
     bool fits = part->count == 0 || (offset <= size && size - offset >= part->element &&
                                      part->count - 1 <= (size - (size_t)offset - part->element) / part->stride);
     if (!fits)
@@ -232,6 +237,7 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
         return false;
     out->data = part.data;
     out->stride = part.stride;
+    /* An accessor may consist of sparse elements alone; the others are 0 then. */
     const json_t *sparse = json_object_get(object, "sparse");
     return !sparse || sparse_part(g, sparse, out, where);
 }
@@ -254,6 +260,7 @@ bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_access
         for (size_t k = 0; k < width; k++)
             out[i * width + k] =
                 a->data ? value_of(a->data + (first + i) * a->stride + k * size, a->type, a->normalized) : 0;
+    /* Sparse elements replace some of the others. */
     for (uint64_t s = 0; s < a->sparse_count; s++) {
         double at = scan_number(a->sparse_indices + s * number_size(a->sparse_type), a->sparse_type, false);
         if (!(at < (double)a->count))

@@ -49,6 +49,7 @@ static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map
             model_warn(g->model, "%s: the picture '%.200s' %s", g->path, name, model_why_missing(g->model));
         return true;
     }
+    /* An embedded picture is decoded once, for all materials that use it. */
     if (!g->images[index]) {
         if (uri) {
             if (!gltf_decode_data(g, uri, &decoded, &size, where))
@@ -201,6 +202,7 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     m->layers.coat_ior = 1.5;
     m->layers.coat_darkening = 0;
     m->layers.transmission_colour = m->kd;
+    /* Without a thickness the surface is a sheet, not a solid. */
     m->layers.thin_walled = !(number_or(volume, "thicknessFactor", 0) > 0);
     m->ks = unit_colour(colour);
     m->roughness = share(rough, "roughnessFactor", 1);

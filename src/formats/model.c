@@ -77,6 +77,7 @@ static bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t *
     stream.next_in = (z_const Bytef *)(uintptr_t)data;
     size_t limit = START + size * GROWTH, at = 0;
     bool ok = true, more = true;
+    /* A gzip file may consist of several members, one behind the other. */
     while (ok && more) {
         ok = member(&stream, path, (struct file_bytes){data, size}, &bytes, limit, error);
         at = consumed(&stream, data);
@@ -85,6 +86,7 @@ static bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t *
             (void)inflateReset(&stream);
     }
     (void)inflateEnd(&stream);
+    /* Tapes and some programs pad with zeros. */
     for (size_t i = at; ok && i < size; i++)
         if (data[i] != 0)
             ok = error_set(error, ERROR_SCENE, "%s: byte %zu: other bytes follow the gzip data", path, i);
@@ -228,6 +230,7 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
         .face_start = m->starts.items,
         .vertex_index = m->vertex_index.items,
     };
+    /* Normals and uv have indices of their own, or those of the vertices. */
     if (m->normals.count && (m->normals_by_vertex || m->normal_index.count)) {
         input.normal_count = (uint32_t)m->normals.count;
         input.normals = m->normals.items;
@@ -375,6 +378,7 @@ static bool model_finish(struct model *model, struct error *error) {
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!finish_mesh(model, &model_meshes(model)[i], error))
             return false;
+    /* A file without nodes has its one mesh. */
     if (model->nodes.count == 0) {
         struct model_node *node = model_add_node(model, error);
         if (!node)
@@ -386,7 +390,7 @@ static bool model_finish(struct model *model, struct error *error) {
 
 /* --- which kind of file --- */
 
-enum kind { KIND_OBJ, KIND_PLY, KIND_STL_TEXT, KIND_STL_BINARY, KIND_GLTF };
+enum model_kind { MODEL_OBJ, MODEL_PLY, MODEL_STL_TEXT, MODEL_STL_BINARY, MODEL_GLTF };
 
 static bool holds(const uint8_t *data, size_t size, const char *word) {
     size_t length = strlen(word);
@@ -396,32 +400,34 @@ static bool holds(const uint8_t *data, size_t size, const char *word) {
     return false;
 }
 
-static enum kind kind_of(const char *path, const uint8_t *data, size_t size) {
+static enum model_kind kind_of(const char *path, const uint8_t *data, size_t size) {
     size_t length, at = 0;
     const char *extension = extension_of(path, &length);
     if (size >= 4 && memcmp(data, "glTF", 4) == 0)
-        return KIND_GLTF;
+        return MODEL_GLTF;
     if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
-        return KIND_PLY;
+        return MODEL_PLY;
+    /* A binary STL file says how long it is; no other file does by accident. */
     uint64_t claimed =
         size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 | (uint64_t)data[83] << 24
                    : 0;
     if (claimed > 0 && 84 + 50 * claimed == size)
-        return KIND_STL_BINARY;
+        return MODEL_STL_BINARY;
     while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
         at++;
     bool solid = size - at >= 6 && strncasecmp((const char *)data + at, "solid", 5) == 0 && data[at + 5] <= ' ';
+    /* Binary STL files may begin with "solid", too: what follows decides. */
     size_t head = size - at < 4096 ? size - at : 4096;
     if (is_word(extension, length, "stl"))
-        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? KIND_STL_TEXT
-                                                                                                : KIND_STL_BINARY;
+        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT
+                                                                                                : MODEL_STL_BINARY;
     if (solid && holds(data + at, head, "facet normal"))
-        return KIND_STL_TEXT;
+        return MODEL_STL_TEXT;
     if (is_word(extension, length, "ply"))
-        return KIND_PLY;
+        return MODEL_PLY;
     if (is_word(extension, length, "gltf") || is_word(extension, length, "glb") || (at < size && data[at] == '{'))
-        return KIND_GLTF;
-    return KIND_OBJ;
+        return MODEL_GLTF;
+    return MODEL_OBJ;
 }
 
 /* What a failed download leaves in place of a model. */
@@ -441,15 +447,15 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
     if (page)
         return error_set(error, ERROR_SCENE, "%s: %s", model->path, page);
     switch (kind_of(model->path, data, size)) {
-    case KIND_OBJ:
+    case MODEL_OBJ:
         return obj_load(model, (const char *)data, size, error);
-    case KIND_PLY:
+    case MODEL_PLY:
         return ply_load(model, data, size, error);
-    case KIND_STL_TEXT:
+    case MODEL_STL_TEXT:
         return stl_load(model, data, size, false, error);
-    case KIND_STL_BINARY:
+    case MODEL_STL_BINARY:
         return stl_load(model, data, size, true, error);
-    case KIND_GLTF:
+    case MODEL_GLTF:
         return gltf_load(model, data, size, error);
     }
     UNREACHABLE("a file of no kind");

@@ -31,6 +31,7 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
         error_set(error, ERROR_SCENE, "%s: its path is too long", path);
         return NULL;
     }
+    /* The same file, read in the same way. */
     struct model *model = assets_find_object(assets, key);
     if (model)
         return model;
@@ -209,6 +210,7 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.ks = from->ks;
     m->phong.shininess = 1;
     m->phong.roughness = from->roughness;
+    /* What the classic integrator and photons read of the layers. */
     m->phong.reflect = layers->base_metalness;
     m->phong.refract = from->transmission;
     m->phong.has_ior = from->transmission > 0 && !layers->thin_walled;

@@ -209,6 +209,7 @@ static bool read_statement(struct library *l) {
     l->at += length;
     if (is_word(&word, length, "newmtl"))
         return new_material(l);
+    /* Statements before the first material belong to none. */
     struct model_material *m = l->material;
     if (!m)
         return true;
@@ -228,6 +229,7 @@ static bool read_statement(struct library *l) {
                 {"bump", offsetof(struct model_material, map_bump)},
                 {"norm", offsetof(struct model_material, map_normal)},
                 {"map_Kn", offsetof(struct model_material, map_normal)}};
+    /* Unknown statements are passed over: there are many dialects. */
     for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
         if (is_word(&word, length, colours[i].word))
             return read_colour(l, (struct vec3 *)(void *)((char *)m + colours[i].offset));

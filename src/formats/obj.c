@@ -401,6 +401,7 @@ static bool read_libraries(struct reader *reader) {
         return false;
     if (found)
         return true;
+    /* Names with blanks are tried whole first; then each word is a file. */
     end = name + length;
     for (const char *at = name; at < end;) {
         const char *word_end = at;
@@ -605,6 +606,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
         reader.at += 3;
 
+    /* Indices may refer to elements that come later, so they are checked at the end. */
     bool ok = true;
     while (ok && reader.at < reader.end)
         ok = read_line(&reader);
@@ -612,6 +614,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
         forgive_indices(&reader);
     ok = ok && check_indices(&reader);
     struct model_mesh *mesh = ok ? model_add_mesh(model, error) : NULL;
+    /* The mesh takes over what was read. */
     if (mesh) {
         mesh->vertices = reader.elements[VERTEX], mesh->vertex_index = reader.indices[VERTEX];
         mesh->uvs = reader.elements[UV], mesh->uv_index = reader.indices[UV];

@@ -102,6 +102,7 @@ static bool header_line(struct ply *ply, struct words *words) {
             p++;
             continue;
         }
+        /* A control character that is no blank is a word, so that the message names it. */
         const uint8_t *first = p;
         while (p<ply->end && * p> ' ')
             p++;
@@ -169,6 +170,7 @@ static enum ply_property property_of(const struct words *words, int i, const cha
                    {"diffuse_red", RED},
                    {"diffuse_green", GREEN},
                    {"diffuse_blue", BLUE}};
+    /* Programs use many names for the same numbers; unknown ones are skipped. */
     bool indices = word_is(words, i, "vertex_indices") || word_is(words, i, "vertex_index");
     if (is_list && strcmp(element, "face") == 0)
         return indices ? CORNERS : word_is(words, i, "texcoord") ? CORNER_UVS : NOTHING;
@@ -273,6 +275,7 @@ static bool read_header(struct ply *ply) {
             return header_fail(ply, &words, 0, "is not a word of a PLY header");
         }
     }
+    /* Errors name a line, as in text. */
     ply->format = ASCII;
     return fail(ply, "the file ends before end_header");
 }

@@ -24,6 +24,7 @@ static bool weld(struct model *model, struct model_mesh *mesh, struct error *err
     if (!index || !starts || !mesh_weld((const double(*)[3])vertices, (uint32_t)corners, index))
         return error_no_memory(error, model->path);
     for (size_t c = 0; c < corners; c++) {
+        /* The first corner of a place is kept, and has its new number already. */
         if (index[c] != c) {
             index[c] = index[index[c]];
             continue;
@@ -56,6 +57,7 @@ static bool load_binary(struct model *model, struct model_mesh *mesh, const uint
     double(*vertices)[3] = list_room(&mesh->vertices, 3 * (size_t)count, sizeof *vertices);
     if (!vertices)
         return error_no_memory(error, model->path);
+    /* Behind the normal of each triangle, which its corners give anyway. */
     const uint8_t *at = data + HEADER + 12;
     for (uint32_t i = 0; i < count; i++, at += FACET)
         for (unsigned k = 0; k < 9; k++) {

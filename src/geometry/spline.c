@@ -127,6 +127,7 @@ static void cut(struct outline *out, bool write, const struct spline_segment *se
         emit(out, write, &piece);
         return;
     }
+    /* Cut where a coordinate turns, so that each piece is monotonic in both. */
     double cuts[5], slope[3];
     int cut_count = 0;
     bernstein_derivative(piece.p, 3, slope);
@@ -140,6 +141,7 @@ static void cut(struct outline *out, bool write, const struct spline_segment *se
             cuts[j] = cuts[j - 1];
         cuts[j] = moved;
     }
+    /* Each cut is a share of what is left of the segment. */
     double done = 0;
     for (int i = 0; i < cut_count; i++) {
         double x = (cuts[i] - done) / (1 - done);
@@ -160,6 +162,7 @@ bool outline_build(struct arena *arena, const struct spline_segment *segments, u
     *out = (struct outline){0};
     for (uint32_t i = 0; i < count; i++)
         cut(out, false, &segments[i], i, straight);
+    /* Counted first, then stored. */
     uint32_t total = out->count;
     out->pieces = arena_alloc_array(arena, total, sizeof *out->pieces);
     if (!out->pieces)
@@ -167,6 +170,7 @@ bool outline_build(struct arena *arena, const struct spline_segment *segments, u
     out->count = 0;
     for (uint32_t i = 0; i < count; i++)
         cut(out, true, &segments[i], i, straight);
+    /* By the length of the chords, for u. */
     for (uint32_t i = 0; i < total; i++) {
         struct outline_piece *c = &out->pieces[i];
         double dp = c->p[3] - c->p[0], dq = c->q[3] - c->q[0];

@@ -185,6 +185,7 @@ void render_process_report_samples(const struct picture_work *work) {
     if (!has_limit || work->picture_request.in_window || rays->pixels == 0 ||
         (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
         return;
+    /* The limit that ended the samples decides the sentence. */
     double mean = (double)rays->samples / (double)rays->pixels;
     unsigned long long samples = rays->passes_samples;
     if (rays->late_pixels > 0)
@@ -213,14 +214,9 @@ void render_process_report_samples(const struct picture_work *work) {
  * once for each line of a script with such a field. An option on the command line chooses the integrator for scenes
  * that were written for another one, so their fields get no notice then. */
 
-/* Whether the name of the file ends so. */
-static bool ends_in(const char *file, const char *ending) {
-    size_t length = strlen(file), end = strlen(ending);
-    return length >= end && strcasecmp(file + length - end, ending) == 0;
-}
-
 static bool is_linear_file(const struct picture_work *work, const char *file) {
-    bool linear = ends_in(file, ".pfm") || ends_in(file, ".hdr") || ends_in(file, ".exr");
+    const char *dot = strrchr(file, '.');
+    bool linear = dot && (!strcasecmp(dot, ".pfm") || !strcasecmp(dot, ".hdr") || !strcasecmp(dot, ".exr"));
     return linear && !work->picture_request.in_window && !work->process->options->display;
 }
 
@@ -300,6 +296,7 @@ void effects_note(struct picture_work *work) {
         if ((!option && !field) || is_off(row, set ? (const void *)&work->job.settings : (const void *)options) ||
             has_effect(row->effect, work, file))
             continue;
+        /* An option is reported once in a run, a field once for each line of the script. */
         uint64_t bit = UINT64_C(1) << (set ? i : i - setting_count), *vain = &process->vain[!set];
         if (option && *vain & bit)
             continue;

@@ -90,6 +90,7 @@ static void talk_to_child(struct supervisor *supervisor) {
                                     {.fd = supervisor->signals, .events = POLLIN}};
         if (poll(watched, 2, poll_time(supervisor)) < 0 && errno != EINTR)
             break;
+        /* A child that is beyond its limits is killed, unless it is ending anyway. */
         if (supervisor_script_patience(supervisor) == 0) {
             supervisor->script.out_of_time = supervisor->deadline == 0;
             break;
@@ -103,6 +104,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         leave_abandoned(supervisor);
         if (supervisor->deadline > 0 && clock_now() > supervisor->deadline)
             break;
+        /* What the user sees goes on whether or not the child reports something. */
         output_show_progress(&supervisor->output);
         report_script(supervisor);
         show_notes(supervisor);
@@ -111,6 +113,7 @@ static void talk_to_child(struct supervisor *supervisor) {
             supervisor_restart(supervisor);
         if (!watched[0].revents)
             continue;
+        /* One message at a time, so that signals and the window wait for no more than that. */
         enum channel_result result = channel_receive(&supervisor->channel, &message);
         if (result == CHANNEL_END)
             return;
@@ -209,6 +212,7 @@ static void run_and_watch(struct supervisor *supervisor) {
             supervisor_note_error(supervisor, &error);
         if (!wait_for_change(supervisor))
             break;
+        /* Everything that counts for one run begins again. */
         supervisor->watch.any = false;
         viewer_keep(&supervisor->viewer);
         atomic_store(&supervisor->control->next_frame, viewer_next_frame(&supervisor->viewer));
@@ -282,6 +286,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     output_init(&supervisor->output, options, supervisor->control);
     supervisor->output.wait_for_text = supervisor_wait_for_reader;
     supervisor->output.wait_context = supervisor;
+    /* Errors before the first child are reported like those of a script. */
     bool ready = supervisor->control
                      ? supervisor_listen(supervisor, &error) && start_farm(supervisor, transport, &error) &&
                            (!options->watch || watch_scripts(supervisor, &error))
@@ -295,6 +300,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
         run_and_watch(supervisor);
     else
         supervisor_note_error(supervisor, &error);
+    /* The window closes first: writing files may take long. */
     viewer_end(&supervisor->viewer);
     if (supervisor->quit_at > 0)
         output_say(&supervisor->output, LINE_DETAIL, "gray: the window closed in %.1f ms",

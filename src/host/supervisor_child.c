@@ -198,6 +198,7 @@ static void report_death(struct supervisor *supervisor, int how) {
     char making[NAME_LIMIT + 64] = "";
     if (picture->open)
         (void)snprintf(making, sizeof making, " while it rendered %.400s, which is not written", picture->name);
+    /* The first cause that is known is the reason. */
     if (supervisor->script.out_of_time)
         error_set(&error, ERROR_SCENE,
                   "%.400s: the script used up its %g s of processor time (--script-time allows more)", script,
@@ -237,6 +238,7 @@ static bool tries_again(struct supervisor *supervisor, int how) {
                        supervisor->options->scripts[supervisor->next_script]);
     farm_note(output->farm, text);
     supervisor->retry.count++;
+    /* The first rank keeps the finished tiles of the picture that was being made. */
     if (farm_is_first(output->farm) && output->current.open && !output->current.request.check) {
         farm_take_back_own(output->farm);
         supervisor->retry.kept = supervisor->retry.kept ? supervisor->retry.kept : output->pictures;

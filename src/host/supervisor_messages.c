@@ -80,11 +80,13 @@ static bool answer_retry(struct supervisor *supervisor, const struct picture_req
     if (!supervisor->retry.kept)
         return false;
     output->pictures = number;
+    /* Pictures before the kept one are finished, or failed. */
     if (number < supervisor->retry.kept) {
         error_set(&error, ERROR_SCENE, "this picture failed before, too");
         supervisor_send_answer(supervisor, MESSAGE_FILM, settled, settled, &error, -1);
         return true;
     }
+    /* A script may do something else the second time. */
     bool same = same_picture(request, &output->current.request);
     supervisor->retry.kept = 0;
     if (!same) {

@@ -107,6 +107,7 @@ static bool inflate_rows(struct chunks *chunks, z_stream *stream, const struct p
         stream->next_in = chunk.bytes;
         stream->avail_in = (uInt)chunk.size;
         while (sound && filled < size) {
+            /* A row is complete before it is unfiltered; one row is in memory. */
             size_t within = filled % (row_size + 1);
             uint32_t y = (uint32_t)(filled / (row_size + 1));
             stream->next_out = row + within;

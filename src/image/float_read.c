@@ -101,6 +101,7 @@ static bool hdr_read_header(struct reading *r, struct hdr_header *header) {
     for (int i = 0; i < HEADER_LINES; i++) {
         if (!next_line(r, line))
             return report_error(r, "the header of a Radiance picture has no end");
+        /* An empty line ends the header; the size follows. */
         if (line[0] == '\0') {
             if (!known)
                 return report_error(r, "a Radiance picture must say FORMAT=32-bit_rle_rgbe");
@@ -111,6 +112,7 @@ static bool hdr_read_header(struct reading *r, struct hdr_header *header) {
             if (!known)
                 return report_error(r, "only Radiance pictures of FORMAT=32-bit_rle_rgbe are read");
         } else if (strncmp(line, "EXPOSURE=", 9) == 0) {
+            /* Exposures multiply; the picture is divided by all of them. */
             double exposure = strtod(line + 9, NULL);
             if (!(exposure >= 1e-30 && exposure <= 1e30))
                 return report_error(r, "the EXPOSURE of a Radiance picture must be above 0");
@@ -266,6 +268,7 @@ struct image *image_parse_pfm(const char *path, const uint8_t *data, size_t size
     struct image *image = allocate(&r, width, height);
     if (!image)
         return NULL;
+    /* PFM files begin with the bottom row. A negative scale means little-endian numbers. */
     for (size_t y = 0; y < height; y++) {
         float *out = (float *)image->levels[0].texels + (size_t)(height - 1 - y) * (size_t)width * 4;
         for (size_t x = 0; x < width; x++) {

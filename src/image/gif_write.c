@@ -221,6 +221,7 @@ bool gif_write(const struct file_target *target, const struct animation_source *
     struct gif *gif = mem_alloc_zero(1, sizeof *gif);
     if (!gif)
         return error_no_memory(error, target->path);
+    /* All memory before the file is opened. */
     gif->source = source;
     gif->count = palette_count_create();
     gif->search = palette_search_create();

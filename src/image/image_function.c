@@ -80,6 +80,7 @@ bool image_make_ranges(struct image *image, struct error *error) {
     size_t count = 0;
     uint32_t side = 1U << BLOCK_SHIFT, width = (image->levels[0].width + side - 1) / side,
              height = (image->levels[0].height + side - 1) / side;
+    /* A pyramid over blocks, up to a single one, in one piece of memory. */
     for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
         shape.levels[shape.level_count++] = (struct range_level){width, height, NULL};
         count += (size_t)width * height;
@@ -96,6 +97,7 @@ bool image_make_ranges(struct image *image, struct error *error) {
     for (int k = 0; k < ranges->level_count; k++) {
         ranges->levels[k].blocks = blocks;
         blocks += (size_t)ranges->levels[k].width * ranges->levels[k].height;
+        /* The lowest level from texels, the others from the one below. */
         if (k == 0)
             add_texels(image, ranges);
         else

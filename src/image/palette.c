@@ -165,6 +165,7 @@ bool palette_make(const struct palette_count *count, struct palette *out) {
     struct colour *colours = mem_alloc_zero(all + 1, sizeof *colours);
     if (!colours)
         return false;
+    /* The mean of a cell stands for its colours. */
     for (uint32_t number = 0; number < CELLS; number++) {
         const struct cell *cell = &count->cells[number];
         if (cell->count == 0)
@@ -177,6 +178,7 @@ bool palette_make(const struct palette_count *count, struct palette *out) {
     boxes[0] = (struct cut_box){.last = used};
     measure(colours, &boxes[0]);
     int made = used > 0;
+    /* Median cut: always the box whose colours differ most. */
     while (made > 0 && made < PALETTE_COLOURS) {
         int widest = 0;
         for (int k = 1; k < made; k++)

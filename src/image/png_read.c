@@ -288,6 +288,7 @@ static bool read_colours(struct image *image, const uint8_t *data, size_t size) 
     struct chunk cicp = find_chunk(data, size, "cICP"), profile = find_chunk(data, size, "iCCP");
     struct chunk srgb = find_chunk(data, size, "sRGB"), gamma = find_chunk(data, size, "gAMA");
     char text[256] = "", name[NAME_LIMIT + 1];
+    /* The first one that exists counts; what it states beyond sRGB is reported. */
     if (cicp.size == 4) {
         const char *unknown = NULL;
         image->transfer = by_number(cicp.bytes[1], &unknown);
@@ -325,6 +326,7 @@ struct image *image_parse_png(const char *path, const uint8_t *data, size_t size
         png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning, &reader, on_alloc, on_free);
     reader.info = reader.png ? png_create_info_struct(reader.png) : NULL;
     bool ok = reader.info ? decode(&reader, error) : error_no_memory(error, path);
+    /* What libpng reports last is not always the cause. */
     if (!ok && error->kind == ERROR_NONE) {
         if (reader.out_of_memory)
             error_no_memory(error, path);

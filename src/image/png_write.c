@@ -91,6 +91,7 @@ static void pack_stripe(void *context, uint32_t item, int index) {
         packer->above = packer->row;
         packer->row = other;
     }
+    /* A stripe ends at a byte and refers to nothing before it, so stripes are packed in any order. */
     z_stream *stream = &packer->stream;
     stripe->raw = (to - from) * (writer->row_bytes + 1);
     stripe->adler = (uint32_t)adler32_z(1, packer->filtered, stripe->raw);

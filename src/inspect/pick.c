@@ -110,6 +110,7 @@ static bool join_operand(struct box *box, const struct node *operand, const stru
         const struct node *node = scene_traversal_node(&t);
         if (event == SCENE_ENTER) {
             const struct box_frame *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
+            /* The map of the node above depends on whether this one is a child or an operand. */
             const struct transform *map = !above                                       ? world_from_above
                                           : scene_traversal_operand(&t) == SCENE_CHILD ? &above->of_children
                                                                                        : &above->world_from_node;
@@ -225,6 +226,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     out->hit = p->route > 0;
     if (!out->hit)
         return true;
+    /* The route leads to the shape; the user moves up and down on it. */
     if (!choose_node(p, hit, up))
         return error_no_memory(error, "the route to an operand");
     const struct node *node = p->steps[p->depth - 1].node;
@@ -237,6 +239,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
         pick_copy_name(out->parent_name, p->steps[p->depth - 2].node->name);
     }
     pick_copy_name(out->shape, shape_description(p, node));
+    /* Of the material, what can be changed, and which changes would not be seen. */
     describe_material(p->world->authored.materials[hit->material], out);
     out->idle_parts = idle_parts(&p->world->materials[hit->material], hit);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
@@ -253,6 +256,7 @@ bool pick_at(const struct render_job *job, const struct node *root, struct pick_
     struct hit hit;
     char ignored[256];
     *out = (struct picked){0};
+    /* A click means what is in the middle of the pixel, without blur. */
     settings.lens.aperture = 0;
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &frame, ignored,
                         error))

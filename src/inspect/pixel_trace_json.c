@@ -152,11 +152,11 @@ void pixel_trace_print_json(const struct trace_report *report, struct text_write
     text_writer_put(writer, "{\"picture\":%q,\"width\":%u,\"height\":%u,\"x\":%u,\"y\":%u,\"marked\":%b,\"full\":%b",
                     report->picture->file, job->width, job->height, pixel_trace->x, pixel_trace->y, pixel_trace->marked,
                     pixel_trace->full);
-    if (pixel_trace->marked && !pixel_trace->full && pixel_trace->mark_reason == MARK_THIN)
+    if (pixel_trace->marked && !pixel_trace->full && pixel_trace->mark.reason == MARK_THIN)
         text_writer_put(writer, ",\"thin\":true");
     else if (pixel_trace->marked && !pixel_trace->full)
-        text_writer_put(writer, ",\"differs_from\":[%d,%d],\"by\":%j,\"tolerance\":%j", pixel_trace->mark_x,
-                        pixel_trace->mark_y, pixel_trace->mark_distance, pixel_trace->mark_tolerance);
+        text_writer_put(writer, ",\"differs_from\":[%d,%d],\"by\":%j,\"tolerance\":%j", pixel_trace->mark.x,
+                        pixel_trace->mark.y, pixel_trace->mark.distance, pixel_trace->mark.tolerance);
     text_writer_put(writer, ",\"samples\":[");
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
         text_writer_put(writer, "{\"sample\":%u,\"x\":%j,\"y\":%j,\"counts\":%b,\"rays\":[", (unsigned)sample->number,

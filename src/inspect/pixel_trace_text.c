@@ -306,6 +306,7 @@ static void print_paths(struct text_state *t) {
                     settings->noise > 0        ? " (--spp; --noise may need fewer)"
                     : settings->time_limit > 0 ? " (--spp, without --time-limit)"
                                                : "");
+    /* The next one after the last that was printed: no list is sorted. */
     const struct pixel_trace_sample *last = NULL;
     for (int i = 0; i < BRIGHTEST; i++) {
         const struct pixel_trace_sample *next = NULL;
@@ -321,10 +322,10 @@ static void print_paths(struct text_state *t) {
 
 /* Why the pixel has N x N samples. */
 static void print_mark(struct text_writer *writer, const struct pixel_trace *pixel_trace) {
-    const char *neighbour = direction(pixel_trace->mark_x, pixel_trace->mark_y);
-    double distance = pixel_trace->mark_distance, tolerance = pixel_trace->mark_tolerance;
+    const char *neighbour = direction(pixel_trace->mark.x, pixel_trace->mark.y);
+    double distance = pixel_trace->mark.distance, tolerance = pixel_trace->mark.tolerance;
     text_writer_print(writer, "%d x %d samples: ", pixel_trace->samples, pixel_trace->samples);
-    switch (pixel_trace->mark_reason) {
+    switch (pixel_trace->mark.reason) {
     case MARK_COLOUR:
         text_writer_print(writer, "the first one differs from the %s neighbour's by %.6g > %g\n", neighbour, distance,
                           tolerance);

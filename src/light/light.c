@@ -79,6 +79,7 @@ bool light_middle(const struct light *light, struct light_target *out) {
 bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out) {
     if (!light_middle(light, &out->middle))
         return false;
+    /* Its light is the same everywhere. */
     if (out->middle.distant) {
         out->direction = out->middle.at;
         out->distance = INFINITY;
@@ -88,6 +89,7 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
     }
     struct vec3 to_light = vec3_sub(out->middle.at, point);
     out->distance = vec3_length(to_light);
+    /* No direction leads to the light. */
     if (!(out->distance > 0))
         return false;
     out->direction = vec3_scale(to_light, 1 / out->distance);

@@ -187,6 +187,7 @@ static bool build_shares(struct light_sampler *out, const struct building *b, ui
     double *share = arena_alloc_array(arena, part_count, sizeof *share);
     if (!candidates || !until || !share)
         return false;
+    /* Lights with a place by their power. */
     bool by_power = out->choice == LIGHT_CHOICE_POWER;
     for (uint32_t i = 0; i < b->bounded; i++) {
         const struct light_bounds *bounds = &b->bounds[b->items[i]];
@@ -194,12 +195,14 @@ static bool build_shares(struct light_sampler *out, const struct building *b, ui
         until[i] = by_power ? bounds->steady + bounds->attenuation : 1;
         sum += until[i];
     }
+    /* Those without one count as the mean of the others. */
     double mean = b->bounded > 0 ? sum / b->bounded : 1;
     for (uint32_t i = b->bounded; i < out->count; i++) {
         candidates[i] = (struct light_part){out->infinite[i - b->bounded], 0};
         until[i] = mean;
         sum += mean;
     }
+    /* Sums that end at exactly 1, whatever was rounded. */
     for (uint32_t i = 0; i < out->count; i++) {
         double begin = so_far;
         so_far = i + 1 < out->count ? fmin(so_far + until[i] / sum, 1) : 1;

@@ -54,6 +54,7 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
     struct clear_sky *clear = &out->clear;
     clear->sun = sun;
     clear->ground = ground;
+    /* Below the horizon the model has no values: the sun is at it then. */
     double cos_sun = sun.y < 0 ? 0 : sun.y > 1 ? 1 : sun.y, theta = el_acos(cos_sun);
     double chi = (4.0 / 9 - turbidity / 120) * (PI - 2 * theta);
     double luminance = (4.0453 * turbidity - 4.9710) * el_tan(chi) - 0.2155 * turbidity + 2.4192;

@@ -154,10 +154,12 @@ bool transform_from_affine(const struct affine *forward, struct transform *out) 
         }
         out->inverse.m[i][3] = 0;
     }
+    /* The inverse undoes the translation first. */
     struct vec3 moved = affine_vector(&out->inverse, vec3_make(m[0][3], m[1][3], m[2][3]));
     out->inverse.m[0][3] = -moved.x;
     out->inverse.m[1][3] = -moved.y;
     out->inverse.m[2][3] = -moved.z;
+    /* A tiny determinant may leave the range of doubles. */
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
             if (!isfinite(out->inverse.m[i][j]))

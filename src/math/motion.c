@@ -95,6 +95,7 @@ static double turn_about(const struct affine *turn, struct vec3 *axis) {
         q[b] = m[b][k] + m[k][b];
         q[3] = m[b][a] - m[a][b];
     }
+    /* The shorter one of the two ways around. */
     double sign = q[3] < 0 ? -1 : 1;
     struct vec3 v = {sign * q[0], sign * q[1], sign * q[2]};
     double sine = vec3_length(v);

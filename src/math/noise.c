@@ -249,6 +249,7 @@ static inline void search_cells(double x, double y, double z, struct cell_point 
     nearest->square = next->square = INFINITY;
     for (int i = 0; i < 5; i++) {
         for (int j = 0; j < 5; j++) {
+            /* Cells that are farther away than the second point are not looked at. */
             double across = gap(px, steps[i]) + gap(py, steps[j]);
             for (int k = 0; k < 5 && across < next->square; k++) {
                 if (across + gap(pz, steps[k]) >= next->square)

@@ -139,6 +139,7 @@ static inline void noise_perlin_block(const struct noise_table *table, const dou
     for (int k = 0; k < 3; k++)
         for (int g = 0; g < count; g++)
             _mm_store_si128((__m128i *)(void *)(cells[k] + 8 * g), noise_cell(operands[k] + 8 * g, &offsets[k][g]));
+    /* Hashes of the eight corners of the cells, two in one number. */
     __m512i j = _mm512_load_si512(cells[1]), k = _mm512_load_si512(cells[2]);
     __m512i first = noise_neighbours(table, _mm512_load_si512(cells[0]));
     __m512i a = noise_neighbours(table, _mm512_add_epi16(_mm512_and_si512(first, byte), j));
@@ -158,6 +159,7 @@ static inline void noise_perlin_block(const struct noise_table *table, const dou
             low[c] = _mm512_cvtepu16_epi64(_mm_load_si128((const __m128i *)(const void *)(corners[c] + 8 * g)));
             high[c] = _mm512_srli_epi64(low[c], 8);
         }
+        /* The ramps of the corners, mixed along x, y and z in the order of noise_perlin. */
         __m512d near_low = noise_mixes(u, noise_ramps(low[0], x, y, z), noise_ramps(low[1], x1, y, z));
         __m512d near_high = noise_mixes(u, noise_ramps(low[2], x, y1, z), noise_ramps(low[3], x1, y1, z));
         __m512d far_low = noise_mixes(u, noise_ramps(high[0], x, y, z1), noise_ramps(high[1], x1, y, z1));

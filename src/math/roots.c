@@ -155,6 +155,7 @@ static int roots_in_interval(const double *c, int degree, const double *points, 
     double touch = 0.0;
     for (int i = 0; i < point_count; i++) {
         double value = evaluate(c, degree, points[i]);
+        /* Points with the value 0 next to each other are one root. */
         if (value == 0.0) {
             if (!touched)
                 touch = points[i];
@@ -162,6 +163,7 @@ static int roots_in_interval(const double *c, int degree, const double *points, 
             continue;
         }
         int sign_here = value > 0.0 ? 1 : -1;
+        /* A touch without a change of sign counts twice. */
         if (touched) {
             out[count++] = touch;
             if (sign == sign_here)

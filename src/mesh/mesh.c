@@ -308,12 +308,14 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
         scratch->used = out->first;
         return false;
     }
+    /* An index may report a triangle several times. */
     struct crossing *items = scratch->items + out->first;
     uint32_t count = scratch->used - out->first, kept = 0;
     crossings_sort_by(items, count, before);
     for (uint32_t i = 0; i < count; i++)
         if (i == 0 || items[i].part != items[kept - 1].part)
             items[kept++] = items[i];
+    /* On a closed mesh entries and exits alternate, whatever was rounded. */
     if (mesh->closed) {
         double size =
             fmax(vec3_max_abs(ray->origin), fmax(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
@@ -403,6 +405,7 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
                           input->face_material != NULL,
                           input->colours != NULL};
     uint64_t h = hash_bytes(counts, sizeof counts, 0);
+    /* The counts come first, so that no table can be taken for another one. */
     h = hash_bytes(input->vertices, input->vertex_count * sizeof *input->vertices, h);
     if (input->face_count)
         h = hash_bytes(input->face_start, ((size_t)input->face_count + 1) * sizeof *input->face_start, h);
@@ -481,6 +484,7 @@ static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_
         if (!mesh->normals || !mesh->normal_corners)
             return false;
         mesh->normal_count = input->normal_count;
+        /* Normals are stored as unit vectors. */
         for (uint32_t i = 0; i < input->normal_count; i++) {
             const double *n = input->normals[i];
             struct vec3 unit = vec3_normalize(vec3_make(n[0], n[1], n[2]));
@@ -625,6 +629,7 @@ static void *shrink(void *block, size_t size) {
 static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t triangles, uint32_t *face_of) {
     if (!copy_tables(mesh, input, triangles) || !add_faces(mesh, input, face_of) || !mesh_find_topology(mesh))
         return false;
+    /* Where every face is one triangle, the triangles are the polygons, too. */
     bool whole = mesh->triangle_count == input->face_count && triangles == input->face_count;
     if (!mesh->closed && drop_degenerate(mesh, face_of) > 0) {
         whole = false;
@@ -634,6 +639,7 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
     if (!whole && input->face_count && !copy_polygons(mesh, input))
         return false;
     mesh->dropped_faces = faces_without_triangles(mesh, face_of);
+    /* What was dropped needs no memory. */
     size_t count = mesh->triangle_count;
     if (count < triangles) {
         mesh->corners = shrink(mesh->corners, count * sizeof *mesh->corners);
@@ -670,6 +676,7 @@ struct mesh *mesh_create(const struct mesh_input *input, struct error *error) {
     struct mesh *mesh = mem_alloc_zero(1, sizeof *mesh);
     if (mesh)
         mesh->accel = mem_alloc_zero(1, sizeof *mesh->accel);
+    /* The references exist before the mesh is filled, so that a failure can release it. */
     uint32_t *face_of = mem_alloc(triangles * sizeof *face_of);
     if (mesh) {
         mesh->references = 1;

@@ -258,6 +258,7 @@ static bool division_init(struct division *d, const struct mesh *mesh) {
               copy_rows(&d->vertices, mesh->vertices[0], 3, mesh->vertex_count) &&
               (!mesh->uvs || copy_rows(&d->uvs, mesh->uvs[0], 2, mesh->uv_count)) &&
               (!mesh->normals || copy_rows(&d->normals, mesh->normals[0], 3, mesh->normal_count));
+    /* Colours are computed with like everything else, in double precision. */
     if (ok && mesh->colours) {
         d->colours.width = 3;
         ok = rows_grow(&d->colours, mesh->vertex_count);
@@ -268,6 +269,7 @@ static bool division_init(struct division *d, const struct mesh *mesh) {
     for (uint32_t f = 0; ok && f < mesh->triangle_count; f++) {
         d->faces[f].material = mesh->materials ? mesh->materials[f] : 0;
         for (int k = 0; k < 3; k++)
+            /* Vertices at one place are one vertex, so that the surface does not tear. */
             d->faces[f].corners[k] =
                 (struct corner){same[mesh->corners[f][k]], mesh->uvs ? mesh->uv_corners[f][k] : MESH_NONE,
                                 mesh->normals ? mesh->normal_corners[f][k] : MESH_NONE};
@@ -396,6 +398,7 @@ static bool write_tables(struct division *d, const struct mesh *mesh, struct mes
     uint32_t faces = d->face_count;
     own->vertex_index = table_of(d, 0);
     own->face_start = mem_alloc(((size_t)faces + 1) * sizeof *own->face_start);
+    /* The tables take over the memory of the division. */
     own->vertices = (double(*)[3])d->vertices.numbers;
     d->vertices.numbers = NULL;
     bool ok = own->vertex_index && own->face_start;

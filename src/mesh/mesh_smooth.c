@@ -297,6 +297,7 @@ bool mesh_input_smooth(struct mesh_input *input, struct mesh_tables *own, double
     input->normal_count = 0;
     if (!(degrees > 0))
         return true;
+    /* Corners at one vertex share a normal if smooth edges connect their faces. */
     size_t corners = corner_count(input), vertices = input->vertex_count;
     struct smoothing s = {.input = input, .unit = unit_of(input)};
     s.same = mem_alloc(vertices * sizeof *s.same);

@@ -205,6 +205,7 @@ static bool write_sheet(const struct animation *animation, struct error *error) 
         return true;
     if (!animation_sheet_name(animation->files->options->output, name, error))
         return false;
+    /* One frame at a time is in memory beside the sheet. */
     sheet.rgb = mem_alloc_zero((size_t)sheet.columns * sheet.width, (size_t)3 * sheet.rows * sheet.height);
     uint8_t *rgb = mem_alloc((size_t)3 * animation->width * animation->height);
     bool ok = (sheet.rgb && rgb) || error_no_memory(error, "the contact sheet");

@@ -471,6 +471,7 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
     if (*already || !film)
         return true;
     uint32_t count = film_tile_count(film);
+    /* Nobody owns a tile yet. */
     if (farm_is_first(farm)) {
         uint16_t *owner = mem_resize_array(farm->owner, count, sizeof *owner);
         if (!owner)
@@ -480,6 +481,7 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
         for (int rank = 0; rank < farm->transport->size; rank++)
             farm->peers[rank].made = 0;
     }
+    /* Tiles with samples of a checkpoint stay with the first rank; all others are handed out. */
     for (uint32_t tile = 0; tile < count; tile++) {
         enum film_tile state = state_of(film, tile);
         bool begun = film_tile_is_begun((uint8_t)state);

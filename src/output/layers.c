@@ -88,6 +88,7 @@ bool layers_write(const struct file_target *picture, const struct film *film, co
     for (int i = 0; i < AOV_COUNT && picture_format(picture->path) != PICTURE_EXR; i++) {
         if (!(film->layer_mask >> i & 1))
             continue;
+        /* The values of a layer lie behind those of the layers before it. */
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width, .tone = tone};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
         rows.scale = aov_scale(rows.aov, rows.values, pixels);

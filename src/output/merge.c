@@ -68,6 +68,7 @@ static bool check_tiles(const struct part *parts, size_t count, struct error *er
 /* Checks that the parts of one picture belong together and none is missing or present twice. */
 static bool check_parts(const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *first = &parts[0].picture;
+    /* Parts are sorted by their numbers: equal ones are neighbours. */
     for (size_t i = 1; i < count; i++) {
         const char *difference = tile_picture_difference(&parts[i].picture, first);
         if (difference)
@@ -80,11 +81,13 @@ static bool check_parts(const struct part *parts, size_t count, struct error *er
             return error_set(error, ERROR_SCENE, "%.300s: is part %u of %u, and so is %.300s", parts[i].path,
                              parts[i].picture.shard, first->shards, parts[i - 1].path);
     }
+    /* Each part is complete. */
     for (size_t i = 0; i < count; i++) {
         if (!parts[i].picture.whole)
             return error_set(error, ERROR_SCENE, "%.300s: part %u of %u is not finished (%zu tiles are)", parts[i].path,
                              parts[i].picture.shard, first->shards, parts[i].tiles);
     }
+    /* And none is missing. */
     if (count == first->shards)
         return check_tiles(parts, count, error);
     char missing[256] = "";

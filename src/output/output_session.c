@@ -360,6 +360,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         return false;
     if (*already)
         return true;
+    /* Its name, and whether that can be written, before anything is rendered. */
     if (!choose_name(output, request, picture->name, error) ||
         !picture_files_written(&output->files, picture->name, written, error))
         return false;
@@ -368,6 +369,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
                          written);
     if (!animation_begin(&output->animation, request, number_of(output, request), error))
         return false;
+    /* Frames of an animation have 8 bits a channel. */
     picture->request = *request;
     picture->request.settings.deep = request->settings.deep && output->options->animation == ANIMATION_NONE;
     picture->written = output->plays;
@@ -380,6 +382,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         return false;
     if (!check_own(output, request, written, error))
         return false;
+    /* The film, or what an earlier run has left of the picture. */
     describe_tiles(output, picture);
     if (!prepare_film(output, written, already, error))
         return false;
@@ -554,11 +557,13 @@ bool output_done(struct output_session *output, const struct picture_report *rep
     progress_hide(&output->progress);
     report_display(output, display_end(&output->display, &gone), &gone);
     warn_of_clamped(output, report);
+    /* The window has written it already. */
     if (output->current.written) {
         report_statistics(output, &output->current, report);
         close_picture(&output->current);
         return true;
     }
+    /* A second picture would be wrong usage, so the first one waits in memory. */
     if (one_name_for_all(output) && !animation_streams(&output->animation, &output->current.request)) {
         progress_end(&output->progress, PROGRESS_WRITTEN);
         output->held_report = *report;
@@ -571,6 +576,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         report_statistics(output, &output->current, report);
     else
         keep_unwritten(output, &output->current, error);
+    /* The next frame may be equal to this one, and is then written from its film. */
     if (ok && (output->current.request.frame.number > 0 || output->options->animation != ANIMATION_NONE))
         move_picture(&output->previous, &output->current);
     close_picture(&output->current);

@@ -27,10 +27,12 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     (void)snprintf(files->quota.words, sizeof files->quota.words,
                    "the pictures of the run take more than %s (--picture-bytes allows more)",
                    size_words(files->quota.limit, size));
+    /* Names that scripts choose lie below these folders; those of the user may lie anywhere. */
     bool ok = path_policy_add(&files->folders, ".", PATH_POLICY_WRITE, &files->folders_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
         ok = path_policy_add(&files->folders, options->script.allow_write[i], PATH_POLICY_WRITE, &files->folders_error);
     const struct path_policy *folders = options->script.no_sandbox ? NULL : &files->folders;
+    /* What may be replaced depends on what a file is for. */
     files->picture = (struct file_rules){.may_replace = picture_file_is,
                                          .expected = "a picture",
                                          .advice = by_user ? NULL : advice,
@@ -65,6 +67,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->checkpoint.quota = files->named_checkpoint.quota = NULL;
     files->saved = (struct file_rules){
         .never_replace = true, .role = FILE_ROLE_BESIDE, .folders = files->picture.folders, .guard = &files->guard};
+    /* No picture replaces a script of the run. */
     for (int i = 0; i < options->script_count; i++) {
         struct file_identity identity;
         if (file_identity_of(options->scripts[i], &identity))
@@ -184,6 +187,7 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
                          "%s: pictures of scripts must be below the working directory, without a hidden name "
                          "(-o FILE or --allow-write DIR allow other places)",
                          from_script);
+    /* A missing ending is added, an unknown one is an error. */
     enum ending ending = ending_of(from_script);
     bool lenient = files->options->script.lenient;
     char extensions[PICTURE_EXTENSIONS_SIZE];

@@ -221,11 +221,13 @@ static bool is_whole(const struct film *film, const struct film_rectangle *part)
 static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
     size_t floats = film->record.marks ? film->record.floats : 0;
+    /* Memory of size 0 is not NULL. */
     out->layers = mem_alloc(width * height * count * sizeof *out->layers);
     out->floats = mem_alloc(width * height * floats * sizeof *out->floats);
     out->marked = mem_alloc(width * height * film->record.marks);
     if (!out->layers || !out->floats || !out->marked)
         return false;
+    /* The first pass and its marks belong together; other floats are not written. */
     if (film->record.marks) {
         cut(out->floats, film->floats, floats * sizeof *out->floats, film, part);
         cut(out->marked, film->marked, sizeof *out->marked, film, part);
@@ -319,6 +321,7 @@ struct picture_shown *picture_shown_make(const struct picture *picture, struct d
     const struct film *film = &picture->film;
     const struct finish finish = picture->request.settings.finish;
     struct film_rectangle part = picture->request.shown;
+    /* A request without a part shows the whole film. */
     if (part.x1 == 0)
         part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
     if (!(path_film_parts(film->record) & PATH_PART_FEATURES))
@@ -329,6 +332,7 @@ struct picture_shown *picture_shown_make(const struct picture *picture, struct d
         return NULL;
     }
     out->picture = *picture;
+    /* A film that nothing changes is borrowed as it is. */
     bool changes = by.denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
     if (!changes && is_whole(film, &part))
         return out;

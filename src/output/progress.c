@@ -56,8 +56,8 @@ static void add_estimate(struct progress *progress, struct state *state, const s
     state->left += last;
 }
 
-/* "43 %  2 min 8 s, about 2 min 46 s left", of a farm "12 of 300 tiles  2 min 8 s"; on a line "43 % after 2 min 8 s".
- */
+/* "43 %  2 min 8 s, about 2 min 46 s left", of a farm "12 of 300 tiles  2 min 8 s"; on a line "43 % after 2 min 8
+ * s". */
 static void describe(const struct state *state, bool line, char out[160]) {
     char elapsed[48], left[48], rest[64] = "";
     const char *after = line ? " after " : "  ";

@@ -152,6 +152,7 @@ static void sixel_run(FILE *stream, int bits, uint32_t length) {
 static void sixel_band(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t height, uint32_t top) {
     uint32_t rows = height - top < 6 ? height - top : 6;
     bool used[216] = {false};
+    /* Only colours of the band are printed. */
     for (uint32_t k = 0; k < rows; k++)
         for (uint32_t x = 0; x < width; x++)
             used[sixel_colour(rgb + ((size_t)(top + k) * width + x) * 3, x, top + k)] = true;
@@ -161,6 +162,7 @@ static void sixel_band(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_
         if (!used[colour])
             continue;
         (void)fprintf(stream, "#%d", colour);
+        /* Runs of equal columns; bit k is the pixel of row k. */
         for (uint32_t x = 0; x < width; x++) {
             int bits = 0;
             for (uint32_t k = 0; k < rows; k++)

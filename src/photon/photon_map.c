@@ -349,6 +349,8 @@ static void find_radii(void *context, uint32_t chunk, int worker) {
     for (uint32_t i = chunk * (CHUNK / 16); i < end && i < map->count && !pool_cancelled(b->pool); i++) {
         const float *at = map->spots[i].at;
         float bound = INFINITY;
+        /* Neighbours in the order of the map are near each other: the radius of the last one bounds that of this one.
+         */
         if (last_at) {
             float dx = at[0] - last_at[0], dy = at[1] - last_at[1], dz = at[2] - last_at[2];
             float distance = sqrtf(dx * dx + dy * dy + dz * dz);
@@ -568,6 +570,7 @@ struct vec3 photon_map_light(const struct photon_map *map, const struct world *w
     bool turned = vec3_dot(normal, hit->normal) < 0;
     g.side = turned ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     g.plain = normal.x == g.side.x && normal.y == g.side.y && normal.z == g.side.z;
+    /* Only classic lobes; if all of them are Lambert's, one sum of power is enough. */
     for (int i = 0; i < bsdf->count; i++) {
         const struct lobe *lobe = &bsdf->lobes[i];
         unsigned flags = lobe_flags(lobe->kind);
@@ -579,6 +582,7 @@ struct vec3 photon_map_light(const struct photon_map *map, const struct world *w
     }
     if (g.lobes == 0)
         return vec3_all(0);
+    /* In the units of the map, so that single precision suffices. */
     struct vec3 at = vec3_scale(vec3_sub(hit->point, map->origin), 1 / map->unit);
     g.at[0] = (float)at.x, g.at[1] = (float)at.y, g.at[2] = (float)at.z;
     g.up[0] = (float)g.side.x, g.up[1] = (float)g.side.y, g.up[2] = (float)g.side.z;

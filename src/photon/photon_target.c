@@ -88,6 +88,7 @@ static struct specular_object specular_object_make(const struct world *world, ui
 static bool find_specular_objects(struct specular_objects *out, const struct world *world, struct arena *arena) {
     *out = (struct specular_objects){.scene = box_empty()};
     uint32_t specular = 0;
+    /* First their number, and how large the scene is. */
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         specular += primitive_strength(world, i) > 0;
         if (is_finite(&world->boxes[i]))
@@ -98,6 +99,7 @@ static bool find_specular_objects(struct specular_objects *out, const struct wor
     out->list = arena_alloc_array(arena, specular, sizeof *out->list);
     if (!out->list)
         return false;
+    /* Infinite objects are cut at three times that size. */
     struct vec3 size = vec3_sub(out->scene.max, out->scene.min);
     struct box limit = {vec3_sub(out->scene.min, size), vec3_add(out->scene.max, size)};
     out->all = box_empty();
@@ -283,6 +285,7 @@ static void visit(struct search *s, struct target_square square, const uint32_t 
         return;
     if (!is_distant(target))
         pyramid_planes(target, face, level, i, j, &planes);
+    /* What the square meets is what its four parts can meet. */
     uint32_t met = 0;
     for (uint32_t k = 0; k < count; k++) {
         const struct specular_object *specular_object = &s->specular_objects->list[list[k]];

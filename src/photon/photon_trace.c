@@ -211,6 +211,7 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
                            .pool = pool,
                            .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
     *map = (struct photon_map){0};
+    /* Where photons are sent decides how many; each has its own place, so their order is fixed. */
     bool ok = find_targets(&s, &targets, &arena, error);
     if (ok && s.count > 0) {
         s.photons = mem_alloc((size_t)s.count * sizeof *s.photons);

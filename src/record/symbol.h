@@ -8,8 +8,8 @@
 struct recorder;
 
 /* The kind of a Lua value in a recording. The node of an integer is an integer; the node of the others is a float.
- * EITHER: math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says which.
- */
+ * EITHER: math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says
+ * which. */
 enum number_type { NUMBER_FLOAT, NUMBER_INTEGER, NUMBER_EITHER };
 struct number {
     enum number_type type;

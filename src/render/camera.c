@@ -29,11 +29,13 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
         return error_set(error, ERROR_SCENE, "a lens (aperture) works only with perspective and orthographic pictures");
     if (lens->stereo != STEREO_NONE && lens->projection != PROJECTION_PERSPECTIVE)
         return error_set(error, ERROR_SCENE, "stereo works only with perspective pictures");
+    /* Each picture of a pair has half of the width. */
     if (lens->stereo == STEREO_SIDE) {
         if (floor(out->width / 2) != out->width / 2)
             return error_set(error, ERROR_SCENE, "a stereo pair side by side needs an even width");
         out->width /= 2;
     }
+    /* The plane in focus is given by its distance or by a point of it. */
     out->focus = lens->focus > 0 ? lens->focus : vec3_dot(vec3_sub(lens->focus_point, camera->eye), out->forward);
     if (lens->aperture > 0 && !(out->focus > 0))
         return error_set(error, ERROR_SCENE, "the point in focus must be in front of the camera");
@@ -41,6 +43,7 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
         return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
     if (lens->stereo != STEREO_NONE && lens->screen < NUMBER_SMALLEST)
         return error_set(error, ERROR_SCENE, "screen is too small: %g", lens->screen);
+    /* How wide a pixel is, in the unit of the projection: a length, or an angle. */
     if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
         double pixel = lens->view_height / out->height;
         out->right = vec3_scale(out->unit_right, pixel);
@@ -156,6 +159,7 @@ static struct vec3 panorama_direction(const struct camera_frame *frame, double x
 bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position, int eye,
                         struct ray *out) {
     const struct lens *lens = &frame->lens;
+    /* The right half of a pair belongs to the right eye. */
     if (lens->stereo == STEREO_SIDE && eye == 0) {
         eye = x < frame->width ? -1 : 1;
         x = x < frame->width ? x : x - frame->width;
@@ -180,11 +184,13 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
         out->direction = panorama_direction(frame, x, y);
         return true;
     }
+    /* The rays of both eyes meet on the screen. */
     if (lens->stereo != STEREO_NONE) {
         struct vec3 offset = vec3_scale(frame->unit_right, 0.5 * eye * lens->eye_distance);
         out->origin = vec3_add(out->origin, offset);
         out->direction = vec3_add_scaled(out->direction, offset, -1 / lens->screen);
     }
+    /* Rays through all points of the lens meet in the plane in focus. */
     if (lens->aperture > 0) {
         struct sample2 p = point_on_lens(lens, position);
         struct vec3 offset = vec3_scale(frame->unit_right, lens->aperture * p.x);
@@ -200,6 +206,7 @@ bool camera_project(const struct camera_frame *frame, struct vec3 point, double 
     struct vec3 to = vec3_sub(point, frame->eye);
     double depth = vec3_dot(to, frame->forward), right = vec3_dot(to, frame->unit_right),
            down = vec3_dot(to, frame->unit_down), pixel = vec3_length(frame->right);
+    /* Cylindrical coordinates about the direction of view. */
     double across = sqrt(right * right + down * down), distance = sqrt(across * across + depth * depth);
     switch (lens->projection) {
     case PROJECTION_PERSPECTIVE:

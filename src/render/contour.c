@@ -131,12 +131,14 @@ bool contour_find(struct contour *contour, const struct renderer *renderer, stru
     contour->tile = *tile;
     for (int i = 0; i < FILM_TILE * FILM_TILE; i++)
         contour->squared[i] = INFINITY;
+    /* One sample for each pixel finds where edges may be. */
     for (int64_t y = area.y0; y < area.y1; y++) {
         if (renderer_stopped(renderer, worker))
             return false;
         for (int64_t x = area.x0; x < area.x1; x++)
             *coarse_at(contour, x, y) = sample_at(renderer, worker, (double)x + 0.5, (double)y + 0.5);
     }
+    /* Only pixels with an edge are sampled more finely. */
     for (int64_t y = near.y0; y < near.y1; y++) {
         if (renderer_stopped(renderer, worker))
             return false;

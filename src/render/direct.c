@@ -30,7 +30,8 @@ static bool is_free(struct integrator_state *state, const struct hit *hit, struc
     state->shadow_rays++;
     bool free = !world_any(state->job->world, &shadow, state->scratch);
     uint32_t blocker = world_blocker(state->scratch);
-    observe_shadow_rays(state->observer, 1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker);
+    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS,
+            .shadow = {1, free, blocker == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : blocker});
     return free;
 }
 
@@ -49,8 +50,7 @@ static struct sample_set samples_on_light(const struct integrator_state *state, 
     return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
-/* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front.
- */
+/* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front. */
 static struct occluder_candidates
 light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {
     struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
@@ -71,18 +71,21 @@ static double visible_share(struct integrator_state *state, const struct light *
     struct vec3 from = off_surface(hit);
     if (!light_context_make(light, hit->point, from, &context))
         return 0;
+    /* From here the lamp looks like a point. */
     if (context.single)
         return target_is_free(state, hit, from, middle);
     struct sample_set positions = samples_on_light(state, light, &context, number, key);
     uint32_t all = positions.side * positions.side, seen = 0, have = 0;
     struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit);
     state->shadow_rays += all;
+    /* Nothing lies between the point and the whole lamp. */
     if (occluder_candidates.known && occluder_candidates.count == 0) {
-        observe_shadow_rays(state->observer, all, all, OBSERVER_NO_BLOCKER);
+        OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {all, all, OBSERVER_NO_BLOCKER});
         return 1;
     }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
+        /* Shadow rays go in batches, which share the search for occluders. */
         targets[have++] = light_target_at(light, &context, sample_set_point(&positions, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
@@ -92,7 +95,7 @@ static double visible_share(struct integrator_state *state, const struct light *
         if (integrator_cancelled(state))
             return 0;
     }
-    observe_shadow_rays(state->observer, all, seen, OBSERVER_NO_BLOCKER);
+    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {all, seen, OBSERVER_NO_BLOCKER});
     return (double)seen / (double)all;
 }
 
@@ -103,8 +106,7 @@ struct shadow_targets {
     bool distant;
 };
 
-/* The visible targets. Lights on all sides have no shaft: rays are traced one by one.
- */
+/* The visible targets. Lights on all sides have no shaft: rays are traced one by one. */
 static void ask_targets(struct integrator_state *state, const struct light_context *context, const struct hit *hit,
                         const struct shadow_targets *targets, bool *visible) {
     uint32_t count = targets->count;
@@ -115,7 +117,7 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
             world_visible(world, &occluder_candidates,
                           &(struct shadow_rays){context->from, hit->time, targets->at, count}, state->scratch, visible);
         state->shadow_rays += count;
-        observe_shadow_rays(state->observer, count, seen, OBSERVER_NO_BLOCKER);
+        OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {count, seen, OBSERVER_NO_BLOCKER});
         return;
     }
     for (uint32_t i = 0; i < count; i++) {
@@ -132,8 +134,7 @@ static uint32_t without_highlight(const struct bsdf *bsdf) {
 }
 
 /* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot carry light are
- * not traced.
- */
+ * not traced. */
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
@@ -149,6 +150,7 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&positions, cell));
         struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
+        /* A sample whose light the surface does not reflect needs no shadow ray. */
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
@@ -173,7 +175,8 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
         return vec3_all(0);
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
     struct vec3 reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
-    observe_light_sample(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
+    OBSERVE(state->observer, OBSERVED_LIGHT_SAMPLE,
+            .position = {arrival.distance, arrival.strength, arrival.direction, reflected});
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);
@@ -193,17 +196,19 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
     uint64_t reached = 0;
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
+        /* The light has a list of what it lights. */
         if (light->lit && !light->lit[hit->primitive]) {
-            observe_light_skipped(state->observer, i, light);
+            OBSERVE(state->observer, OBSERVED_LIGHT_SKIPPED, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
             continue;
         }
         state->scratch->light = i % WORLD_SHADOW_CACHE;
-        observe_light_begin(state->observer, i, light);
+        OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
         struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);
         reached |= (uint64_t)(own.x != 0 || own.y != 0 || own.z != 0) << i % 64;
-        observe_light_end(state->observer, i, light, own);
+        OBSERVE(state->observer, OBSERVED_LIGHT_END, .light = {i, light, OBSERVER_NO_BLOCKER, own});
     }
+    /* Anti-aliasing compares which lights reach the first hits of neighbouring pixels. */
     if (state->camera_hit) {
         state->camera_hit->lights = reached;
         state->camera_hit = NULL;
@@ -214,8 +219,7 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         photons = photon_map_light(state->caustics, world, hit, bsdf);
         sum = vec3_add(sum, photons);
     }
-    observe_direct(state->observer,
-                   &(struct observed_direct){state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons,
-                                             sum, asked});
+    OBSERVE(state->observer, OBSERVED_DIRECT,
+            .direct = {state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons, sum, asked});
     return sum;
 }

@@ -125,110 +125,17 @@ struct observer {
     void *context;
 };
 
-static inline void observe(const struct observer *observer, const struct observation *what) {
-    observer->notice(observer->context, what);
-}
-
-static inline void observe_sample_begin(const struct observer *observer, const struct pixel_sample *position) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_SAMPLE_BEGIN, .sample.position = position});
-}
-
-static inline void observe_sample_end(const struct observer *observer, const struct pixel_sample *position,
-                                      struct vec3 colour) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_SAMPLE_END, .sample = {position, colour}});
-}
-
-static inline void observe_split(const struct observer *observer, double part) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_SPLIT, .part = part});
-}
-
-static inline void observe_ray_sent(const struct observer *observer, enum ray_kind kind, struct vec3 weight,
-                                    enum ray_cut cut) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_RAY_SENT, .sent = {kind, weight, cut}});
-}
-
-static inline void observe_ray_begin(const struct observer *observer, const struct ray *ray, const struct hit *hit,
-                                     const struct light *light, double distance, double share) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_RAY_BEGIN, .begin = {ray, hit, light, distance, share}});
-}
+/* Reports an event, as in OBSERVE(observer, OBSERVED_SPLIT, .part = 0.5); without an observer it computes nothing. */
+#define OBSERVE(who, ...)                                                                                              \
+    do {                                                                                                               \
+        if (who)                                                                                                       \
+            (who)->notice((who)->context, &(struct observation){__VA_ARGS__});                                         \
+    } while (0)
 
 /* For struct material_context. */
 static inline void observe_material(void *context, const struct material *link, const struct surface_inputs *inputs) {
-    observe(context, &(struct observation){OBSERVED_MATERIAL, .material = {link, inputs}});
-}
-
-static inline void observe_surface(const struct observer *observer, const struct bsdf *surface) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_SURFACE, .surface = surface});
-}
-
-static inline void observe_light_begin(const struct observer *observer, uint32_t number, const struct light *light) {
-    if (observer)
-        observe(observer,
-                &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, OBSERVER_NO_BLOCKER, {0, 0, 0}}});
-}
-
-/* Of a light that stands for a primitive. */
-static inline void observe_emitter_begin(const struct observer *observer, uint32_t number, const struct light *light,
-                                         uint32_t primitive) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, primitive, {0, 0, 0}}});
-}
-
-static inline void observe_light_sample(const struct observer *observer, double distance, double strength,
-                                        struct vec3 to_light, struct vec3 reflected) {
-    if (observer)
-        observe(observer,
-                &(struct observation){OBSERVED_LIGHT_SAMPLE, .position = {distance, strength, to_light, reflected}});
-}
-
-static inline void observe_shadow_rays(const struct observer *observer, uint32_t asked, uint32_t arrived,
-                                       uint32_t blocker) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_SHADOW_RAYS, .shadow = {asked, arrived, blocker}});
-}
-
-static inline void observe_light_end(const struct observer *observer, uint32_t number, const struct light *light,
-                                     struct vec3 colour) {
-    if (observer)
-        observe(observer,
-                &(struct observation){OBSERVED_LIGHT_END, .light = {number, light, OBSERVER_NO_BLOCKER, colour}});
-}
-
-static inline void observe_light_skipped(const struct observer *observer, uint32_t number, const struct light *light) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_LIGHT_SKIPPED,
-                                                .light = {number, light, OBSERVER_NO_BLOCKER, {0, 0, 0}}});
-}
-
-static inline void observe_direct(const struct observer *observer, const struct observed_direct *direct) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_DIRECT, .direct = *direct});
-}
-
-static inline void observe_vertex(const struct observer *observer, const struct observed_vertex *vertex) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_VERTEX, .vertex = *vertex});
-}
-
-static inline void observe_ray_end(const struct observer *observer, const struct observed_end *end) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_RAY_END, .end = *end});
-}
-
-static inline void observe_mark(const struct observer *observer, const struct observed_mark *mark) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_MARK, .mark = *mark});
-}
-
-static inline void observe_pixel(const struct observer *observer, const struct observed_pixel *pixel) {
-    if (observer)
-        observe(observer, &(struct observation){OBSERVED_PIXEL, .pixel = *pixel});
+    const struct observer *observer = context;
+    OBSERVE(observer, OBSERVED_MATERIAL, .material = {link, inputs});
 }
 
 #endif

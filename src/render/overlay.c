@@ -312,6 +312,7 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
     struct camera camera = job->camera;
     char warning[256];
     struct overlay_drawing drawing = {.job = job, .pool = pool, .request = request, .lines = lines};
+    /* Without lines the picture shows through everywhere. */
     for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
         lines[i][0] = lines[i][1] = lines[i][2] = 0;
         lines[i][3] = 1;
@@ -323,6 +324,7 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
     if (!camera_prepare(&camera, &job->settings, (struct picture_size){job->width, job->height}, &drawing.camera,
                         warning, error))
         return false;
+    /* What is linear in a projection: straight lines stay straight in planar ones. */
     enum projection projection = drawing.camera.lens.projection;
     drawing.inverse = projection == PROJECTION_PERSPECTIVE;
     drawing.planar = drawing.inverse || projection == PROJECTION_ORTHOGRAPHIC;

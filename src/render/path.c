@@ -90,15 +90,18 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->roulette_depth = settings->roulette_depth;
     tracer->noise = settings->noise;
     tracer->clamp = settings->clamp;
+    /* Samples are points of a Sobol sequence, whose footprint does not depend on their number. */
     filter_init(&tracer->filter, settings->filter);
     renderer->sampler = SAMPLER_SOBOL;
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
+    /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
         !make_contours(tracer, renderer))
         return error_no_memory(error, "the workers of a render");
+    /* The lights and, with --caustics, the photons that they send. */
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
     if (!tracer->built || settings->caustics.photons == 0)
@@ -135,10 +138,9 @@ static size_t pixel_index(const struct film *film, int64_t x, int64_t y) {
 static void finish_pixel(struct film *film, const struct worker *worker, int64_t x, int64_t y,
                          const struct path_pixel *pixel) {
     path_film_store(film, pixel_index(film, x, y), pixel);
-    observe_pixel(worker->state.observer,
-                  &(struct observed_pixel){.colour = path_pixel_below_line(pixel, path_pixel_mean(pixel)),
-                                           .full = true,
-                                           .first_counts = true});
+    OBSERVE(
+        worker->state.observer, OBSERVED_PIXEL,
+        .pixel = {.colour = path_pixel_below_line(pixel, path_pixel_mean(pixel)), .full = true, .first_counts = true});
 }
 
 /* The sums of the pixel before a pass: those of the film, or zero in the first pass. lines: of the part, or NULL. */
@@ -169,12 +171,14 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     uint64_t all = (uint64_t)(part->x1 - part->x0) * each, next = 0;
     struct path_pixel pixel = begin_pixel(film, lines, part->x0, y, begin);
     while (next < all) {
+        /* A batch is filled across the borders of pixels. */
         for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
             batch->positions[batch->count++] = sample_position(tracer, renderer, part->x0 + (int64_t)(next / each), y,
                                                                begin + (uint32_t)(next % each));
         renderer_sample_batch(renderer, worker);
         if (renderer_stopped(renderer, worker))
             return false;
+        /* Samples are added in their order, so the sums do not depend on the batches. */
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
             if (batch->parts)

@@ -84,7 +84,7 @@ static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_
     } else {
         radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow, state->scratch));
     }
-    observe_shadow_rays(state->observer, 1, !is_black(radiance), OBSERVER_NO_BLOCKER);
+    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {1, !is_black(radiance), OBSERVER_NO_BLOCKER});
     struct medium_effect effect;
     if (is_black(radiance) || shadow.media->count == 0 ||
         !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
@@ -199,10 +199,14 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
     if (!state->observer)
         return direct_of(tracer, state, vertex, draw, part, pmf);
     uint32_t primitive = lights->emitters[part.light].primitive;
-    observe_emitter_begin(state->observer, part.light, &lights->lights[part.light],
-                          primitive == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : primitive);
+    OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN,
+            .light = {part.light,
+                      &lights->lights[part.light],
+                      primitive == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : primitive,
+                      {0, 0, 0}});
     struct vec3 light = direct_of(tracer, state, vertex, draw, part, pmf);
-    observe_light_end(state->observer, part.light, &lights->lights[part.light], light);
+    OBSERVE(state->observer, OBSERVED_LIGHT_END,
+            .light = {part.light, &lights->lights[part.light], OBSERVER_NO_BLOCKER, light});
     return light;
 }
 

@@ -21,8 +21,8 @@
 
 static const double dark = 0.01; /* the square of a value that counts as black */
 
-/* One channel of a pixel: the absolute value of its mean, and the variance of its mean, from halves and from samples.
- */
+/* One channel of a pixel: the absolute value of its mean, and the variance of its mean, from halves and from
+ * samples. */
 struct channel {
     double mean, halves, samples;
 };

@@ -179,6 +179,7 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
                                          &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown,
                                                                 passed_of(path)},
                                          end));
+    /* Fog is only between the eye and what it sees; media weaken all rays. */
     const struct fog *fog = path->sight ? state->job->fog : NULL;
     if (!seen && !fog && path->media.count == 0)
         return true;
@@ -308,10 +309,12 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     if (!bsdf_sample(bsdf, vertex->lobes, BSDF_RADIANCE, hit->view, u, &sample))
         return end_path(path, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    /* A shading normal may reflect into the surface. */
     if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return end_path(path, PATH_IS_ABSORBED);
     if (tracer->photon_lights)
         count_shares(path, vertex, &sample);
+    /* The first scattering decides to which layers the light belongs. */
     if (path->parts && path->depth == 0) {
         if (delta)
             path_share_all(sample.flags, path->parts->shares);
@@ -322,11 +325,13 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->depth++;
     if (transmits)
         path->radiance_scale *= bsdf->eta * bsdf->eta;
+    /* Roulette, or a weight of 0, ends paths that bring nothing. */
     bool plays = path->depth > tracer->roulette_depth;
     if (plays ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
         return end_path(path, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
+    /* The last ray of a path finds only lights that rays can meet. */
     if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
         return end_path(path, PATH_REACHES_MAX_DEPTH);
     path->scatter = vertex->receiver;
@@ -362,7 +367,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         path->kind = RAY_HOLE;
         return path->holes++ < HOLE_LIMIT || end_path(path, PATH_IN_TOO_MANY_HOLES);
     }
-    observe_surface(state->observer, &bsdf);
+    OBSERVE(state->observer, OBSERVED_SURFACE, .surface = &bsdf);
     if (path->parts && path->sight)
         meet_features(path, hit, &bsdf);
     if (path->sight)
@@ -435,14 +440,16 @@ static void observe_next(struct observed_path *observed, const struct integrator
         return;
     double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
     if (observed->count > 0)
-        observe_ray_sent(state->observer, path->kind,
-                         quotient(path->weight, observed->rays[observed->count - 1].stages.weight), RAY_FOLLOWED);
+        OBSERVE(state->observer, OBSERVED_RAY_SENT,
+                .sent = {path->kind, quotient(path->weight, observed->rays[observed->count - 1].stages.weight),
+                         RAY_FOLLOWED});
     struct observed_ray *ray = &observed->rays[observed->count++];
     *ray = (struct observed_ray){path->weight, path->light, {.weight = path->weight}};
     path->stages = &ray->stages;
     note_arrival(path, 0);
     const struct ray sent = path->ray;
-    observe_ray_begin(state->observer, &sent, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1));
+    OBSERVE(state->observer, OBSERVED_RAY_BEGIN,
+            .begin = {&sent, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1)});
 }
 
 /* The end of the current ray: what its hit adds to the path. */
@@ -454,13 +461,13 @@ static void observe_hit(const struct observed_path *observed, const struct path_
     struct vec3 gains[STAGES];
     for (int i = STAGE_EMISSION; i < STAGES; i++)
         gains[i] = quotient(vec3_sub(stages->lights[i], stages->lights[i - 1]), stages->weight);
-    observe_vertex(state->observer,
-                   &(struct observed_vertex){.end = path->end,
-                                             .distance = stages->distance,
-                                             .emission = gains[STAGE_EMISSION],
-                                             .photons = gains[STAGE_PHOTONS],
-                                             .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
-                                             .has_photons = tracer->photon_lights != NULL});
+    OBSERVE(state->observer, OBSERVED_VERTEX,
+            .vertex = {.end = path->end,
+                       .distance = stages->distance,
+                       .emission = gains[STAGE_EMISSION],
+                       .photons = gains[STAGE_PHOTONS],
+                       .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
+                       .has_photons = tracer->photon_lights != NULL});
 }
 
 static void observe_end(const struct observed_path *observed, const struct integrator_state *state,
@@ -468,12 +475,12 @@ static void observe_end(const struct observed_path *observed, const struct integ
     for (int i = observed->count - 1; i >= 0; i--) {
         const struct observed_ray *ray = &observed->rays[i];
         struct vec3 before = ray->stages.lights[STAGE_BEFORE_HIT];
-        observe_ray_end(state->observer,
-                        &(struct observed_end){.evaluated = true,
-                                               .seen = quotient(vec3_sub(path->light, before), ray->stages.weight),
-                                               .left = quotient(ray->stages.weight, ray->weight),
-                                               .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
-                                               .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
+        OBSERVE(state->observer, OBSERVED_RAY_END,
+                .end = {.evaluated = true,
+                        .seen = quotient(vec3_sub(path->light, before), ray->stages.weight),
+                        .left = quotient(ray->stages.weight, ray->weight),
+                        .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
+                        .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
     }
 }
 
@@ -486,6 +493,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
     for (;;) {
         if (state->observer)
             observe_next(&observed, state, path, met ? hit : NULL);
+        /* The way to the hit, then the surface or the sky there. */
         bool goes_on = travel(tracer, state, path, met ? hit : NULL);
         if (goes_on && met) {
             note_arrival(path, 0);
@@ -502,6 +510,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
+    /* Limits come last: what is cut off is a property of the whole sample. */
     struct vec3 found = integrator_clamp_light(state, path->light, (double)FLT_MAX);
     struct vec3 light = limited(found, tracer->clamp);
     if (path->parts)

@@ -4,8 +4,7 @@
 
 #include "render/path_internal.h"
 
-/* The radiance along a camera ray, clamped to the range of float; key: the random key of the ray.
- */
+/* The radiance along a camera ray, clamped to the range of float; key: the random key of the ray. */
 struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                        uint64_t key);
 /* The same for a ray of a packet: its hit, or NULL. */

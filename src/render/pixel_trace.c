@@ -99,26 +99,27 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     const struct ray *ray = seen->ray;
     if (!pixel_trace->on)
         return;
-    struct pixel_trace_ray *is_recorded = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
-    if (!is_recorded) {
+    struct pixel_trace_ray *recorded = pixel_trace->mute == 0 ? add_ray(pixel_trace) : NULL;
+    /* Without room, or below a ray without room, rays are only counted. */
+    if (!recorded) {
         pixel_trace->omitted += pixel_trace->mute > 0;
         pixel_trace->mute++;
         return;
     }
-    is_recorded->begun = true;
-    is_recorded->origin = ray->origin;
-    is_recorded->direction = ray->direction;
-    is_recorded->time = ray->time;
-    is_recorded->share = seen->share;
-    is_recorded->media_count = ray->media ? ray->media->count : 0;
-    is_recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
-    is_recorded->area_light = seen->light;
-    is_recorded->met = seen->hit && !seen->light;
-    if (is_recorded->met)
-        is_recorded->hit = *seen->hit;
-    is_recorded->distance = seen->distance;
-    is_recorded->opacity = 1;
-    pixel_trace->ray = is_recorded;
+    recorded->begun = true;
+    recorded->origin = ray->origin;
+    recorded->direction = ray->direction;
+    recorded->time = ray->time;
+    recorded->share = seen->share;
+    recorded->media_count = ray->media ? ray->media->count : 0;
+    recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
+    recorded->area_light = seen->light;
+    recorded->met = seen->hit && !seen->light;
+    if (recorded->met)
+        recorded->hit = *seen->hit;
+    recorded->distance = seen->distance;
+    recorded->opacity = 1;
+    pixel_trace->ray = recorded;
 }
 
 static void end_ray(struct pixel_trace *pixel_trace, const struct observed_end *end) {
@@ -162,20 +163,20 @@ static void record_surface(struct pixel_trace *pixel_trace, const struct bsdf *s
 static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light,
                         uint32_t primitive) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
-    struct pixel_trace_light *is_recorded = ray ? take(pixel_trace, sizeof *is_recorded) : NULL;
-    pixel_trace->light = is_recorded;
-    if (!is_recorded)
+    struct pixel_trace_light *recorded = ray ? take(pixel_trace, sizeof *recorded) : NULL;
+    pixel_trace->light = recorded;
+    if (!recorded)
         return;
-    *is_recorded = (struct pixel_trace_light){.number = number,
-                                              .light = light,
-                                              .primitive = primitive,
-                                              .area_light = !light_is_delta(light),
-                                              .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
+    *recorded = (struct pixel_trace_light){.number = number,
+                                           .light = light,
+                                           .primitive = primitive,
+                                           .area_light = !light_is_delta(light),
+                                           .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
-        ray->last_light->next = is_recorded;
+        ray->last_light->next = recorded;
     else
-        ray->lights = is_recorded;
-    ray->last_light = is_recorded;
+        ray->lights = recorded;
+    ray->last_light = recorded;
 }
 
 static void record_light_position(struct pixel_trace *pixel_trace, const struct observed_light_sample *position) {
@@ -210,9 +211,9 @@ static void end_light(struct pixel_trace *pixel_trace, struct vec3 colour) {
 
 static void skip_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
     begin_light(pixel_trace, number, light, OBSERVER_NO_BLOCKER);
-    struct pixel_trace_light *is_recorded = light_of(pixel_trace);
-    if (is_recorded)
-        is_recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
+    struct pixel_trace_light *recorded = light_of(pixel_trace);
+    if (recorded)
+        recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
     pixel_trace->light = NULL;
 }
 
@@ -236,14 +237,6 @@ static void record_vertex(struct pixel_trace *pixel_trace, const struct observed
     ray->has_photons = vertex->has_photons;
     ray->photons = vertex->photons;
     ray->direct = vertex->direct;
-}
-
-static void record_mark(struct pixel_trace *pixel_trace, const struct observed_mark *mark) {
-    pixel_trace->mark_reason = mark->reason;
-    pixel_trace->mark_x = mark->x;
-    pixel_trace->mark_y = mark->y;
-    pixel_trace->mark_distance = mark->distance;
-    pixel_trace->mark_tolerance = mark->tolerance;
 }
 
 static void record_pixel(struct pixel_trace *pixel_trace, const struct observed_pixel *pixel) {
@@ -309,7 +302,7 @@ static void notice(void *context, const struct observation *what) {
         record_pixel(pixel_trace, &what->pixel);
         break;
     case OBSERVED_MARK:
-        record_mark(pixel_trace, &what->mark);
+        pixel_trace->mark = what->mark;
         break;
     }
 }

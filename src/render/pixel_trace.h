@@ -1,5 +1,5 @@
 /* The trace of a pixel: the computation of its colour, recorded by an observer (render/observer.h) of the integrator.
- * Nothing is computed a second time: a number in a trace is the number that went into the picture. * Everything is in
+ * Nothing is computed a second time: a number in a trace is the number that went into the picture. Everything is in
  * the arena of the trace. It has pointers into the world and must not outlive it. */
 #ifndef GRAY_RENDER_PIXEL_TRACE_H
 #define GRAY_RENDER_PIXEL_TRACE_H
@@ -90,17 +90,14 @@ struct pixel_trace {
     struct observer observer; /* of the integrator that makes the pixel */
     struct arena arena;
     uint32_t x, y; /* the pixel of the whole picture */
-    /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where known.
-     */
+    /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where
+     * known. */
     struct vec3 first[3][3];
     bool known[3][3];
-    bool full;   /* every pixel is sampled again */
-    bool marked; /* this one was */
-    /* By the neighbour at mark_x, mark_y from it (-1..1; both 0: by none): a squared distance above the tolerance. */
-    enum mark_reason mark_reason;
-    int mark_x, mark_y;
-    double mark_distance, mark_tolerance;
-    int samples; /* N of N x N */
+    bool full;                 /* every pixel is sampled again */
+    bool marked;               /* this one was */
+    struct observed_mark mark; /* why */
+    int samples;               /* N of N x N */
     struct pixel_trace_sample *sample, *last_sample;
     float rgb[3]; /* in the film */
     uint32_t rays, omitted;

@@ -204,6 +204,7 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
     char ignored[256];
     if (!renderer_prepare_at(job, 0, &frame, warning, error) || !renderer_prepare_at(job, 1, &frame, ignored, error))
         return false;
+    /* What the integrator cannot make. */
     if (!integrator_traits(s->integrator).has_light_parts && s->aov & AOV_PATH && s->aov != AOV_ALL)
         return error_set(error, ERROR_USAGE, "--aov %s is a layer of --integrator path only",
                          aov_name(path_layer(s->aov)));
@@ -214,6 +215,7 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
     *area = (struct render_area){0, 0, job->width, job->height};
     if (!s->cropped)
         return true;
+    /* Without sums, which could overflow. */
     if (s->crop_x < 0 || s->crop_y < 0 || s->crop_width < 1 || s->crop_height < 1 || s->crop_x >= (int64_t)job->width ||
         s->crop_width > (int64_t)job->width - s->crop_x || s->crop_y >= (int64_t)job->height ||
         s->crop_height > (int64_t)job->height - s->crop_y)

@@ -132,9 +132,9 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
 }
 
 struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
-    observe_sample_begin(worker->state.observer, position);
+    OBSERVE(worker->state.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = position);
     struct vec3 colour = sample_single(renderer, worker, position);
-    observe_sample_end(worker->state.observer, position, colour);
+    OBSERVE(worker->state.observer, OBSERVED_SAMPLE_END, .sample = {position, colour});
     return colour;
 }
 
@@ -149,6 +149,7 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         end_records(worker);
         return;
     }
+    /* The hits of all camera rays are found in one search. */
     struct ray_packet *packet = &batch->packet;
     packet->count = batch->count;
     packet->origin = renderer->camera.eye;
@@ -165,6 +166,7 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     ray_packet_pad(packet);
     uint64_t met = world_nearest_packet(renderer->job->world, packet, &worker->scratch, batch->answers);
     worker->camera_rays += batch->count;
+    /* Each sample goes on alone, with the footprint that belongs to it. */
     for (uint32_t i = 0; i < batch->count; i++) {
         const struct pixel_sample *position = &batch->positions[i];
         struct ray ray =

@@ -258,7 +258,7 @@ static bool is_marked(const struct part *part, int64_t x, int64_t y) {
         marked = true;
     }
     if (marked)
-        observe_mark(part->worker->state.observer, &mark);
+        OBSERVE(part->worker->state.observer, OBSERVED_MARK, .mark = mark);
     return marked;
 }
 
@@ -396,11 +396,11 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     film->marked[at] = marked;
     part->own->marked += marked;
     struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
-    observe_pixel(part->worker->state.observer,
-                  &(struct observed_pixel){.colour = colour,
-                                           .samples = marked ? part->renderer->job->settings.samples : 0,
-                                           .full = full,
-                                           .first_counts = !marked || pattern.first_counts});
+    OBSERVE(part->worker->state.observer, OBSERVED_PIXEL,
+            .pixel = {.colour = colour,
+                      .samples = marked ? part->renderer->job->settings.samples : 0,
+                      .full = full,
+                      .first_counts = !marked || pattern.first_counts});
 }
 
 /* The first samples of a small square go together. */

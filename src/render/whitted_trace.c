@@ -55,7 +55,7 @@ static struct path path_on(const struct path *path, double share) {
 static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
                         const struct path *path) {
     enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
-    observe_ray_sent(state->observer, kind, filter, cut);
+    OBSERVE(state->observer, OBSERVED_RAY_SENT, .sent = {kind, filter, cut});
     return cut != RAY_FOLLOWED;
 }
 
@@ -127,7 +127,7 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
     struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
     struct vec3 sum = {0, 0, 0};
-    observe_split(state->observer, 1 / ((double)n * (double)n));
+    OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
         struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
         struct path branch = path_on(path, 1);
@@ -243,7 +243,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     struct vec3 sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
-    observe_split(state->observer, 1 / rays);
+    OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
     struct candidates candidates;
     candidates.end = 0;
     while (candidates.end < cells) {
@@ -259,7 +259,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
 /* --- one hit --- */
 
 static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
-    observe_surface(state->observer, at->bsdf);
+    OBSERVE(state->observer, OBSERVED_SURFACE, .surface = at->bsdf);
     struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
     colour = vec3_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
@@ -317,7 +317,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     struct path dimmed;
     bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
     struct vec3 left = air.transmittance;
-    observe_ray_begin(state->observer, ray, hit, area_light, distance, path->weight);
+    OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
     if (affected) {
         dimmed = path_on(path, vec3_max_abs(left));
         path = &dimmed;
@@ -339,7 +339,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         colour = vec3_add(vec3_mul(colour, left), in_scattered);
     }
     colour = integrator_clamp_light(state, colour, light_limit);
-    observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
+    OBSERVE(state->observer, OBSERVED_RAY_END, .end = {looked, seen, left, in_scattered, colour});
     return colour;
 }
 

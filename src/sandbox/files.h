@@ -43,8 +43,8 @@ bool files_search(void *sandbox, const char *folder, const char *name, const cha
 bool files_on_path(const struct sandbox *sandbox, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
 const char *files_repair_number(struct sandbox *sandbox, const char *name);
-/* The policy for a Lua file; NULL for the scene and its dialect: the user named them, so they may be links to any file.
- */
+/* The policy for a Lua file; NULL for the scene and its dialect: the user named them, so they may be links to any
+ * file. */
 const struct path_policy *files_policy(const struct sandbox *sandbox, const char *path);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
 int files_load(lua_State *L, const char *path);

@@ -59,6 +59,7 @@ bool change_list_set(struct change_list *list, const struct change *change, bool
         list->items[at] = *change;
         return true;
     }
+    /* The list stays sorted by targets, so that the order of changes does not matter. */
     if (list->count == list->room) {
         uint32_t room = list->room ? 2 * list->room : 16;
         struct change *more = room <= CHANGE_LIMIT ? mem_resize_array(list->items, room, sizeof *more) : NULL;
@@ -121,6 +122,7 @@ static bool find_node(const struct scene *scene, struct node *root, uint32_t ser
             continue;
         }
         seen[node->index] = 1;
+        /* After an edit of the script serial numbers may differ: then the only node of that name. */
         if (node->serial == serial && named(node, name))
             exact = found_node(&t, root);
         if (name[0] != '\0' && named(node, name)) {
@@ -364,9 +366,11 @@ static const struct material *own_material(struct change_application *l, const s
         own->next = l->scene->own;
         l->scene->own = own;
     }
+    /* A serial number has one owner. */
     struct material *other = material_of(l, serial), *base = own->links[own->count - 1];
     if (other)
         other->serial = 0;
+    /* Made anew each time: the material that it copies may have changed. */
     const struct material *link = like;
     for (uint32_t i = 0; i < own->count; i++, link = link->base) {
         struct material *copy = own->links[i], *older = copy->older;

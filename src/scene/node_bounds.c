@@ -115,6 +115,7 @@ static bool measure(struct measuring *m, struct box *box) {
         }
         if (event == SCENE_ENTER && !enter(m))
             return false;
+        /* A box is complete when everything below the node has been joined into it. */
         if (event != SCENE_ENTER)
             end_operands(node, frame);
         if (event == SCENE_CHILDREN)

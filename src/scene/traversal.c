@@ -115,6 +115,7 @@ enum scene_event scene_traversal_next(struct scene_traversal *t) {
         t->root = NULL;
         return is_visited(t, root) ? enter(t, root, SCENE_CHILD) : SCENE_END;
     }
+    /* Operands first, then the children, once for each placement. */
     if (t->depth == 0)
         return SCENE_END;
     struct frame *frame = frame_at(t, t->depth - 1);

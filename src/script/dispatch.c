@@ -17,7 +17,6 @@
 #include <assert.h>
 #include <lauxlib.h>
 #include <limits.h>
-#include <stdio.h>
 #include <string.h>
 
 static void push_numbers(lua_State *L, const double numbers[3]) {
@@ -195,7 +194,7 @@ static int dispatch(lua_State *L) {
 }
 
 /* Pushes the function of that owner whose name has the same letters, as in addChild; false: there is none. */
-static bool push_alike(lua_State *L, enum owner owner, const char *name) {
+static bool push_alike(lua_State *L, enum function_owner owner, const char *name) {
     for (int k = 0; k < function_count(); k++) {
         const char *a = function_at(k)->name, *b = name;
         while (*a && *b) {
@@ -213,7 +212,7 @@ static bool push_alike(lua_State *L, enum owner owner, const char *name) {
 }
 
 /* With --lenient: pushes a function of almost that name, or a ghost, with a warning. */
-static void push_substitute(struct script_context *c, enum owner owner, const char *name) {
+static void push_substitute(struct script_context *c, enum function_owner owner, const char *name) {
     const char *before = owner_words(owner);
     c->sandbox.running.name = NULL;
     if (push_alike(c->sandbox.lua, owner, name)) {
@@ -224,7 +223,7 @@ static void push_substitute(struct script_context *c, enum owner owner, const ch
     lenient_push_ghost(c->sandbox.lua, name, owner == OWNER_NODE);
 }
 
-_Noreturn static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
+_Noreturn static void no_such_name(struct script_context *c, enum function_owner owner, const char *name) {
     const char *before = owner_words(owner);
     c->sandbox.running.name = NULL;
     const char *use = owner == OWNER_GR ? foreign_function(name) : foreign_method(name);
@@ -293,7 +292,7 @@ void dispatch_push(lua_State *L, const struct script_function *function) {
     lua_pushcclosure(L, dispatch, 1);
 }
 
-static void push_functions(lua_State *L, enum owner owner) {
+static void push_functions(lua_State *L, enum function_owner owner) {
     lua_createtable(L, 0, function_count());
     for (int k = 0; k < function_count(); k++) {
         if (function_at(k)->owner != owner)
@@ -311,40 +310,6 @@ static void set_index(lua_State *L, const void *metatable_key, lua_CFunction fun
     lua_pop(L, 1);
 }
 
-/* A function of numbers and vectors with --lenient (upvalues: itself, its name): 0 takes the place of an argument that
- * it refuses, or of its result. */
-static int call_leniently(lua_State *L) {
-    int refused = 0, count = lua_gettop(L);
-    const char *name = lua_tostring(L, lua_upvalueindex(2));
-    for (;;) {
-        lua_pushvalue(L, lua_upvalueindex(1));
-        for (int i = 1; i <= count; i++)
-            lua_pushvalue(L, i);
-        if (lua_pcall(L, count, LUA_MULTRET, 0) == LUA_OK)
-            return lua_gettop(L) - count;
-        /* luaL_argerror: "bad argument #3 to '?' (a number is needed)" */
-        const char *message = lua_tostring(L, -1), *why = message ? strchr(message, '(') : NULL;
-        int wrong = 0;
-        if (!why || sscanf(message, "bad argument #%d to", &wrong) != 1 || wrong < 1)
-            return lua_error(L);
-        bool again = wrong > refused;
-        struct sandbox *sandbox = &context_of(L)->sandbox;
-        const struct running_function outer = sandbox->running;
-        sandbox->lua = L;
-        sandbox->running = (struct running_function){.owner = "gr.", .name = name};
-        if (refused == 0 || !again)
-            lenient_warn(context_of(L), "argument %d: %.*s: %s 0", wrong, (int)strlen(why) - 2, why + 1,
-                         again ? "it is" : "the result is");
-        sandbox->running = outer;
-        count = wrong > count ? wrong : count;
-        lua_settop(L, count);
-        lua_pushinteger(L, 0);
-        if (!again)
-            return 1;
-        lua_replace(L, refused = wrong);
-    }
-}
-
 void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
@@ -356,10 +321,6 @@ void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_GR);
     for (size_t k = 0; value_function_at(k); k++) {
         lua_pushcfunction(L, value_function_at(k)->run);
-        if (context_of(L)->lenient) {
-            lua_pushstring(L, value_function_at(k)->name);
-            lua_pushcclosure(L, call_leniently, 2);
-        }
         lua_setfield(L, -2, value_function_at(k)->name);
     }
     lua_pushstring(L, GRAY_VERSION);

@@ -172,80 +172,22 @@ void script_each_name(void (*visit)(void *context, const char *owner, const char
             visit(context, "", function_at(f)->parameters[k].name, function_at(f)->parameters[k].help);
 }
 
+#define KIND_ANNOTATION(kind, name, words, annotation, like) [kind] = (annotation),
+
 static const char *annotation_kind(const struct script_parameter *p, char out[CHOICES_SIZE]) {
-    switch (p->kind) {
-    case KIND_NUMBER:
-        return "number";
-    case KIND_WHOLE:
-        return "integer";
-    case KIND_BOOLEAN:
-        return "boolean";
-    case KIND_TEXT:
-    case KIND_FILE:
-    case KIND_OUTPUT:
-        return "string";
-    case KIND_CHOICE:
-    case KIND_AXIS:
-        choices_words(p, "|", out, CHOICES_SIZE);
-        if (p->flags & OR_NUMBER)
-            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
-        if (p->flags & OR_CURVE)
-            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
-        return out;
-    case KIND_COLOUR:
-        return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";
-    case KIND_POINT:
-    case KIND_DIRECTION:
-    case KIND_TRIPLE:
-        return "gr.triple";
-    case KIND_INTERVAL:
-        return "number[]";
-    case KIND_SIZE:
-        return "number|gr.triple";
-    case KIND_QUATERNION:
-        return "number[]";
-    case KIND_PAIR:
-        return "number|number[]";
-    case KIND_NODE:
-        return "gr.node";
-    case KIND_MATERIALS:
-        return "table<string|integer, gr.material>";
-    case KIND_MATERIAL:
-        return "gr.material";
-    case KIND_IMAGE:
-        return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
-    case KIND_BACKGROUND:
-        return "gr.triple|string|gr.sky|gr.texture|function|'gradient'";
-    case KIND_FOG:
-        return "gr.fog";
-    case KIND_CAUSTICS:
-        return "integer|{photons?: integer, radius?: number}";
-    case KIND_STOPS:
-        return "number[][]";
-    case KIND_NODES:
-        return "gr.node[]";
-    case KIND_LIGHTS:
-        return "gr.light[]";
-    case KIND_POINTS:
-        return "gr.triple[]";
-    case KIND_PAIRS:
-        return "number[][]";
-    case KIND_FACES:
-        return "integer[][]";
-    case KIND_NUMBERS:
-        return "number|number[]";
-    case KIND_ROWS:
-        return "number[][]";
-    case KIND_CURVES:
-        return "number[][][]";
-    case KIND_FUNCTION:
-        return "function|gr.texture";
-    case KIND_CALLBACK:
-        return "function";
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
+    static const char *const annotations[] = {KIND_LIST(KIND_ANNOTATION)};
+    if (p->kind == KIND_COLOUR && (p->flags & (OR_PROFILE | OR_FUNCTION)))
+        return "gr.triple|string|gr.texture|function";
+    if (p->kind == KIND_IMAGE && (p->flags & OR_TEXTURE))
+        return "string|gr.texture|function";
+    if (annotations[p->kind])
+        return annotations[p->kind];
+    choices_words(p, "|", out, CHOICES_SIZE);
+    if (p->flags & OR_NUMBER)
+        (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
+    if (p->flags & OR_CURVE)
+        (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
+    return out;
 }
 
 static const char *annotation_type(const struct script_parameter *p, char out[CHOICES_SIZE]) {

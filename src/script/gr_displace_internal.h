@@ -6,8 +6,8 @@
 
 struct height_field_input;
 
-/* The heights of a grid, or 0 if it has none, plus those of a function; in the arena of the call. NULL with an error.
- */
+/* The heights of a grid, or 0 if it has none, plus those of a function; in the arena of the call. NULL with an
+ * error. */
 const double *gr_function_heights(struct script_context *context, const struct height_field_input *grid,
                                   const struct expr_program *program, struct error *error);
 

@@ -237,25 +237,23 @@ static void note_lone_fields(struct script_context *context, const struct script
     static const struct {
         int field, needs;
         int choice; /* that it must be; -1: any */
-    } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1},
-                 {RENDER_BLADE_ANGLE, RENDER_BLADES, -1},
-                 {RENDER_EYE_DISTANCE, RENDER_STEREO, -1},
-                 {RENDER_SCREEN, RENDER_STEREO, -1},
-                 {RENDER_MIRROR, RENDER_SKY, -1},
-                 {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC},
-                 {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE}};
-    static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
+        const char *words;
+    } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1, ""},
+                 {RENDER_BLADE_ANGLE, RENDER_BLADES, -1, ""},
+                 {RENDER_EYE_DISTANCE, RENDER_STEREO, -1, ""},
+                 {RENDER_SCREEN, RENDER_STEREO, -1, ""},
+                 {RENDER_MIRROR, RENDER_SKY, -1, ""},
+                 {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC, " = 'orthographic'"},
+                 {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE, " = 'fisheye'"}};
     char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
     for (size_t i = 0; i < COUNT(pairs); i++) {
         const struct script_value *needed = &args[pairs[i].needs];
         bool has = needed->given && (pairs[i].choice < 0 || needed->choice == pairs[i].choice);
         if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox, pairs))
             continue;
-        const char *word = pairs[i].choice < 0 ? NULL : projections[pairs[i].choice];
         sandbox_where(&context->sandbox, where, sizeof where);
-        (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s%s%s", where,
-                       render_parameters[pairs[i].field].name, render_parameters[pairs[i].needs].name,
-                       word ? " = '" : "", word ? word : "", word ? "'" : "");
+        (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s", where,
+                       render_parameters[pairs[i].field].name, render_parameters[pairs[i].needs].name, pairs[i].words);
         sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
         return;
     }

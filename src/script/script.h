@@ -1,6 +1,6 @@
 /* The script layer: runs one Lua scene. It reads arguments, raises script errors, and passes plain C values on. It does
- * not handle pixels and opens no file by itself (base/file.h does). The host is a set of functions of the application.
- */
+ * not handle pixels and opens no file by itself (base/file.h does). The host is a set of functions of the
+ * application. */
 #ifndef GRAY_SCRIPT_SCRIPT_H
 #define GRAY_SCRIPT_SCRIPT_H
 

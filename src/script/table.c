@@ -32,7 +32,7 @@ const struct script_function *function_at(int index) {
     return &parts[part]->rows[index];
 }
 
-const struct script_function *function_find(enum owner owner, const char *name) {
+const struct script_function *function_find(enum function_owner owner, const char *name) {
     for (int i = 0; i < function_count(); i++) {
         const struct script_function *function = function_at(i);
         if (function->owner == owner && strcmp(function->name, name) == 0)

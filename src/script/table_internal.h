@@ -15,7 +15,7 @@ int function_count(void);
 /* index: 0 to function_count() - 1. */
 const struct script_function *function_at(int index);
 /* The row of that name, or NULL. */
-const struct script_function *function_find(enum owner owner, const char *name);
+const struct script_function *function_find(enum function_owner owner, const char *name);
 /* The functions on numbers and vectors, which have no rows in the table. NULL after the last one. */
 const struct value_function *value_function_at(size_t index);
 

@@ -40,6 +40,7 @@ static bool settings_fit(const struct picture_request *request) {
 bool message_is_valid(const struct message *message) {
     size_t before_text = offsetof(struct message_line, text);
     const struct picture_request *request = &message->body.request;
+    /* The size of a body is that of its kind; what is used as an index, a size or a text is checked, too. */
     switch (message->kind) {
     case MESSAGE_LINE:
         return message->size > before_text && message->size <= sizeof message->body.line &&

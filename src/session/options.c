@@ -345,6 +345,7 @@ static bool read_value(const struct setting *option, const char *text, struct op
     void *base = option_base(option, options), *field = (char *)base + option->offset;
     long long integer = 0;
     bool ok = false;
+    /* The kind decides the type behind the pointer. */
     switch (option->kind) {
     case SETTING_FLAG:
         ok = !text || strcmp(text, "yes") == 0 || strcmp(text, "no") == 0;
@@ -494,7 +495,7 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 static const struct {
     const char *word, *options, *why;
 } actions[] = {
-    [ACTION_RENDER] = {NULL},
+    [ACTION_RENDER] = {NULL, NULL, NULL},
     [ACTION_MERGE] = {"merge",
                       "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
                       "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
@@ -645,7 +646,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if ((int)options->action < (int)ACTIONS_WITH_WORDS && unused[options->action])
-        return refuse_for_action(unused[options->action], options->action, error);
+        return refuse_for_action(unused[options->action], (int)options->action, error);
     return options_check(options, error);
 }
 

@@ -64,6 +64,7 @@ static bool take_word(const char **text, char *out, size_t size) {
 bool display_parse(const char *text, struct display_choice *out) {
     static const char *const graphics[] = {TERMINAL_GRAPHICS(LIST_WORD)};
     *out = (struct display_choice){.host = "127.0.0.1"};
+    /* tev, with a host, with a port. */
     memcpy(out->port, tev_port, sizeof tev_port);
     if (strncmp(text, "tev", 3) == 0 && (text[3] == '\0' || text[3] == ':')) {
         out->kind = DISPLAY_TEV;
@@ -79,6 +80,7 @@ bool display_parse(const char *text, struct display_choice *out) {
     }
     if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
         return false;
+    /* Without a word the terminal is asked what it can draw. */
     out->kind = DISPLAY_TERMINAL;
     for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
         if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {
@@ -102,6 +104,7 @@ static bool check_parts(struct options *options, struct error *error) {
         (options->window || options->check || options->shards || (pipe && display.kind == DISPLAY_TERMINAL)))
         return error_set(error, ERROR_USAGE,
                          "--display cannot be combined with -gui, --check or --shard, and term not with -o -");
+    /* --resume alone means the checkpoint with the name of the picture. */
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
@@ -178,6 +181,7 @@ static bool check_name(const struct options *options, struct error *error) {
 static bool check_animation(struct options *options, struct error *error) {
     const struct settings *settings = &options->settings;
     options->animation = animation_of(options->output);
+    /* Options that would have no effect without an animation. */
     if (options->animation == ANIMATION_NONE) {
         const char *only = options->keep_frames ? "--keep-frames" : options->contact_sheet ? "--contact-sheet" : NULL;
         if (options->action == ACTION_MERGE && !only)
@@ -192,6 +196,7 @@ static bool check_animation(struct options *options, struct error *error) {
                          "-o %.600s is an animation: it cannot be combined with -gui, --aov, -write-aa-targets or "
                          "-write-pre-aa",
                          options->output);
+    /* An interrupted animation continues: its frames are kept without an option. */
     bool questions = options->pixel_count > 0 || options->dump_scene || options->dump_expr;
     if (options->checkpoint || options->no_fork || options->watch || options->check || questions ||
         options->action != ACTION_RENDER || settings->time_limit > 0 || settings->overlay != OVERLAY_NONE)

@@ -201,6 +201,7 @@ void text_writer_put(struct text_writer *writer, const char *format, ...) {
             add(writer, at, 1);
             continue;
         }
+        /* The compiler does not check these arguments: each has the type that the header names. */
         switch (*++at) {
         case 's':
             text_writer_print(writer, "%s", va_arg(list, const char *));

@@ -157,6 +157,7 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
         error_no_memory(error, "a blob");
         return NULL;
     }
+    /* An element has no influence outside of its box. */
     for (uint32_t i = 0; i < in->count; i++) {
         const struct blob_element *e = &in->elements[i];
         elements[i] = *e;
@@ -209,10 +210,12 @@ static bool add_stretch(const struct line *line, const struct blob *blob, uint32
     const struct blob_element *e = &blob->elements[index];
     double lo = stretch.lo, hi = stretch.hi;
     struct vec3 p = arm(e, region, line->origin), d = line->direction;
+    /* In the body only the distance from the axis counts. */
     if (region == BODY) {
         struct vec3 axis = vec3_normalize(vec3_sub(e->b, e->a));
         d = vec3_add_scaled(d, axis, -vec3_dot(d, axis));
     }
+    /* Where the line is nearer than the radius; a line along the axis is so everywhere or nowhere. */
     double dd = vec3_dot(d, d);
     if (dd > 0x1p-100) {
         double foot = -vec3_dot(p, d) / dd, distance = vec3_length(vec3_add_scaled(p, d, foot));

@@ -84,6 +84,7 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
         error_no_memory(error, "a curve");
         return NULL;
     }
+    /* Places and widths are one curve in four dimensions. */
     for (uint32_t i = 0; i < in->count; i++) {
         for (int d = 0; d < 3; d++)
             points[i][d] = in->points[i][d];
@@ -104,6 +105,7 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
     if (!spline_build(arena, &spline, &segments, &segment_count, error))
         return NULL;
     curve->flat = in->flat;
+    /* Segments are cut into pieces that are nearly straight: counted first, then stored. */
     for (int write = 0; write < 2; write++) {
         curve->count = 0;
         for (uint32_t i = 0; i < segment_count; i++) {
@@ -121,6 +123,7 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
         error_no_memory(error, "a curve");
         return NULL;
     }
+    /* Control points contain the curve, and half of the width is around it. */
     curve->bounds = box_empty();
     for (uint32_t i = 0; i < curve->count; i++) {
         struct curve_piece *piece = &curve->pieces[i];

@@ -46,6 +46,7 @@ static bool build_levels(struct height_field *f, struct arena *arena) {
         *level = (struct level){columns, rows, arena_alloc_array(arena, (size_t)columns * rows, sizeof *level->ranges)};
         if (!level->ranges)
             return false;
+        /* The range of a cell is that of its four corners, or of the four cells below it. */
         for (uint32_t j = 0; j < rows; j++)
             for (uint32_t i = 0; i < columns; i++) {
                 struct range r = {INFINITY, -INFINITY};
@@ -102,6 +103,7 @@ const struct height_field *height_field_build(struct arena *arena, const struct 
         error_no_memory(error, "a height field");
         return NULL;
     }
+    /* The top level has one cell: the range of all heights. */
     struct range all = f->levels[f->level_count - 1].ranges[0];
     f->lo = all.lo;
     f->hi = all.hi;
@@ -497,6 +499,7 @@ void height_field_describe(const struct height_field *f, const struct ray *ray, 
         double tall = f->hi - f->floor;
         out->v = (p.y - f->floor) / tall;
         out->dpdv = vec3_make(0, tall, 0);
+        /* On the walls u runs along the border, against the clock, and v from the floor to the top. */
         switch (crossing->part) {
         case WALL_X0:
             p.x = 0, n.x = -1;

@@ -184,6 +184,7 @@ const struct implicit *implicit_build(struct arena *arena, const struct implicit
         struct vec3 radius = vec3_all(in->radius);
         solid->in.bounds = (struct box){vec3_sub(in->centre, radius), vec3_add(in->centre, radius)};
     }
+    /* Everything is measured in the size of the bounds. */
     for (int k = 0; k < 3; k++) {
         double lo = vec3_get(solid->in.bounds.min, k), hi = vec3_get(solid->in.bounds.max, k);
         if (!(lo < hi && hi - lo < HUGE_VAL)) {
@@ -192,6 +193,7 @@ const struct implicit *implicit_build(struct arena *arena, const struct implicit
         }
         solid->size = hi - lo > solid->size ? hi - lo : solid->size;
     }
+    /* At a point nothing else than the point is known. */
     for (int k = 0; k < in->program->input_count; k++)
         if (in->program->inputs[k].input > EXPR_POINT_Z) {
             (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid may depend only on p",
@@ -296,6 +298,7 @@ static void examine_node(const struct implicit *solid, uint32_t node, const stru
             examine_point(solid, middle, out);
         return;
     case REGION_SPLIT:
+        /* Bit k of a number is the half along axis k. */
         for (uint32_t k = 0; k < 8; k++) {
             struct box part = *box;
             *(k & 1 ? &part.min.x : &part.max.x) = middle.x;

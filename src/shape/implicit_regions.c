@@ -256,6 +256,7 @@ static bool decide(struct building *b, uint32_t node, const struct box *box, con
     solid->tight = box_join(solid->tight, *box);
     if (kind == REGION_INSIDE)
         return true;
+    /* In its part the function may be shorter; as long as that helps, the part is divided. */
     bool is_shorter = shorten(b, program, lane, &shorter);
     uint32_t before = program->count, after = is_shorter ? shorter.count : before;
     bool is_simple = is_flat(slopes) && (after < 32 || after > before - before / 8);
@@ -322,6 +323,7 @@ static bool decide_by_sphere(struct building *b, uint32_t node, double value, co
     const double lipschitz = solid->in.lipschitz;
     const double change = lipschitz * vec3_length(vec3_sub(box.max, box.min)) * 0.5 * (1 + 1e-9);
     enum region_kind kind = bounds ? kind_of_bounds(bounds, lane) : REGION_SURFACE;
+    /* The promise: within the box the function changes no more than this. */
     if (kind == REGION_SURFACE && fabs(value) > change && fabs(value) < INFINITY)
         kind = value < 0 ? REGION_INSIDE : REGION_OUTSIDE;
     if (solid->in.is_ball && !meets_ball(&solid->in, &box))
@@ -350,6 +352,7 @@ static bool decide_parts(struct building *b, uint32_t first) {
     const struct expr_program *program = &b->candidates[b->pending[first].candidate].program;
     for (uint32_t k = 0; k < EXPR_LANES; k++)
         boxes[k] = wider(b->solid, &b->pending[first + k].box);
+    /* Bounds beside the promise are computed while they still shorten the function. */
     if (b->solid->in.lipschitz > 0) {
         double values[EXPR_LANES];
         struct expr_bounds bounds;
@@ -385,6 +388,7 @@ static bool build(struct building *b) {
     size_t room = (size_t)program->count + 1;
     b->choices = mem_alloc_zero(room, sizeof *b->choices);
     b->code = mem_alloc_zero(room, sizeof *b->code);
+    /* One piece of memory for all evaluations. */
     size_t rows = expr_lanes_size(program);
     if (solid->in.lipschitz > 0) {
         const size_t points = expr_batch_size(program), boxes = expr_intervals_size(program);
@@ -403,6 +407,7 @@ static bool build(struct building *b) {
     solid->tight = box_empty();
     if (!add_parts(b, 0))
         return false;
+    /* Eight parts at once; parts of parts are added at the end. */
     for (uint32_t first = 1; first < b->node_count; first += EXPR_LANES)
         if (!decide_parts(b, first))
             return false;

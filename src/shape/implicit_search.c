@@ -157,6 +157,7 @@ static bool bound_eighths(struct search *search, const struct expr_program *prog
     struct expr_directions directions;
     if (!rows)
         return false;
+    /* Points of the line are off by rounding: the boxes are a little larger. */
     double margin = search->solid->size * 0x1p-50;
     directions.count = 1;
     inputs.are_cases = are_cases;
@@ -202,6 +203,7 @@ static double find_change(struct search *search, const struct expr_program *prog
             break;
         t = t > limit ? (t < 1 - limit ? t : 1 - limit) : t <= limit ? limit : 0.5;
         double x = a + t * (b - a), fx = evaluate(search, program, x);
+        /* The sign changes between a and b; c is the place before. */
         if ((fx < 0) == (fa < 0)) {
             c = a;
             fc = fa;
@@ -215,6 +217,7 @@ static double find_change(struct search *search, const struct expr_program *prog
         fa = fx;
         if (fa == 0)
             break;
+        /* Where three places lie on a smooth curve, its inverse is interpolated; else the part is halved. */
         double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
         bool is_smooth = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
         t = is_smooth ? fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
@@ -275,12 +278,25 @@ static void settle(struct search *search, bool inside, double s, uint32_t number
         cross(search, s, s > search->begin ? number : first_number);
 }
 
+/* Whether no later change of sides can have the t of the one in the part, and cancel it: the sign has changed at a
+ * place with a smaller t than that of the end. Few places are tried. */
+static bool cancels_nothing(struct search *search, const struct expr_program *program, const struct part *part) {
+    enum { TRIES = 3 };
+    double s = part->a;
+    for (int i = 0; i < TRIES; i++) {
+        s += (part->b - s) / 2;
+        if ((evaluate(search, program, s) < 0) != (part->fa < 0))
+            return line_t(&search->line, s) < line_t(&search->line, part->b);
+    }
+    return false;
+}
+
 /* A part with one crossing, or with an odd number of crossings close to each other. */
 static void pass_change(struct search *search, uint32_t number, const struct part *part) {
     const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
     double t = line_t(&search->line, part->a);
     if (search->is_any && t > search->ray->t_min && line_t(&search->line, part->b) < search->ray->t_max &&
-        !(search->has_waiting && search->waiting.t >= t)) {
+        !(search->has_waiting && search->waiting.t >= t) && cancels_nothing(search, program, part)) {
         search->has_found = search->is_done = true; /* wherever it is */
         return;
     }
@@ -318,6 +334,7 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
     for (int i = 0; i < EXPR_LANES && !search->is_done; i++) {
         enum side side = side_of_lane(&range, i);
         struct slope here = {range.slopes[0].low[i], range.slopes[0].high[i]};
+        /* A jump without a change of sign is no surface. */
         if (side == SIDE_UNKNOWN && !(here.low > -INFINITY && here.high < INFINITY))
             side = side_of_cases(search, program, ends[i], ends[i + 1]);
         if (search->is_full)
@@ -326,6 +343,7 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
             settle(search, side == SIDE_INSIDE, ends[i], number, number);
             continue;
         }
+        /* The bounds of the whole part hold, too. */
         here.low = here.low > slope.low ? here.low : slope.low;
         here.high = here.high < slope.high ? here.high : slope.high;
         struct part eighth = {.a = ends[i], .b = ends[i + 1]};
@@ -451,6 +469,7 @@ static void pass_region(struct search *search, uint32_t node, const struct node_
     if (is_before(search, s1)) {
         search->is_unknown = true;
     } else {
+        /* Bounds decide most regions without an evaluation. */
         enum region_kind kind = (enum region_kind)(value & 3);
         enum side side = kind == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
         const bool is_marched = search->solid->in.lipschitz > 0;
@@ -466,6 +485,7 @@ static void pass_region(struct search *search, uint32_t node, const struct node_
     }
     if (!search->ray || search->is_done)
         return;
+    /* Nothing behind this place can cancel the crossing that waits. */
     double t = line_t(&search->line, s1);
     if (search->has_waiting && search->waiting.t < t)
         give_out(search);

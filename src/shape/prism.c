@@ -28,6 +28,7 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
         error_set(error, ERROR_SCENE, "the height 'from' (%g) must be below 'to' (%g)", in->from, in->to);
         return NULL;
     }
+    /* Each curve becomes pieces without a turn. */
     uint32_t total = 0;
     for (uint32_t k = 0; k < in->curve_count; k++) {
         const double(*points)[2] = in->points + in->curve_starts[k];
@@ -39,6 +40,7 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
                           k + 1);
                 return NULL;
             }
+        /* A first point that is repeated at the end closes the curve, which is closed anyway. */
         if (count > 1 && points[0][0] == points[count - 1][0] && points[0][1] == points[count - 1][1] &&
             (in->kind != SPLINE_BEZIER || count % 3 == 1))
             count--;
@@ -59,6 +61,7 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
         error_no_memory(error, "a prism");
         return NULL;
     }
+    /* All pieces in one list, over which the tree is built. */
     uint32_t at = 0;
     for (uint32_t k = 0; k < in->curve_count; k++)
         for (uint32_t i = 0; i < curves[k].count; i++, at++) {
@@ -131,6 +134,7 @@ static bool outline_crossings(const struct prism *prism, double ox, double oz, d
             double b[4], roots[3];
             for (int k = 0; k < 4; k++)
                 b[k] = dx * (c->q[k] - oz) - dz * (c->p[k] - ox);
+            /* Where the piece crosses the line in the plane. */
             int count = 0;
             if (!c->straight) {
                 count = bernstein_roots(b, 3, roots);

@@ -118,6 +118,7 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
         error_no_memory(error, "a sweep");
         return NULL;
     }
+    /* Centres and radii are one curve in four dimensions. */
     double widest = 0;
     for (uint32_t i = 0; i < in->count; i++) {
         for (int d = 0; d < 3; d++)
@@ -144,6 +145,7 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
     uint32_t segment_count;
     if (!spline_build(arena, &spline, &segments, &segment_count, error))
         return NULL;
+    /* Segments are cut into pieces that are nearly straight: counted first, then stored. */
     for (int write = 0; write < 2; write++) {
         sweep->count = 0;
         for (uint32_t i = 0; i < segment_count; i++) {
@@ -162,6 +164,7 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
         error_no_memory(error, "a sweep");
         return NULL;
     }
+    /* A piece lies in the box around its spheres. */
     sweep->bounds = box_empty();
     for (uint32_t i = 0; i < sweep->count; i++) {
         struct sweep_piece *piece = &sweep->pieces[i];
@@ -426,6 +429,7 @@ bool sweep_contains(const struct sweep_path *sweep, struct vec3 point) {
             const struct sweep_piece *piece = &sweep->pieces[sweep->tree.order[node->first + i]];
             const double at[3] = {point.x, point.y, point.z};
             double d[7], square[7], q[4], roots[6];
+            /* Squared radius minus squared distance, as a polynomial of degree 6: positive inside of a sphere. */
             bernstein_multiply(piece->c[3], 3, piece->c[3], 3, d);
             for (int axis = 0; axis < 3; axis++) {
                 for (int k = 0; k < 4; k++)

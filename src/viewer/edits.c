@@ -156,6 +156,7 @@ bool edits_write_lua(const struct change_list *changes, const char *picture, con
         if (!put(context, line))
             return false;
     }
+    /* All digits, so that the file gives the same picture. */
     if (camera) {
         const struct camera *c = camera;
         (void)snprintf(line, sizeof line,

@@ -169,11 +169,13 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
         (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
         return true;
     }
+    /* Changes are laid over the script's scene anew, so their order does not matter. */
     changes_remove(&work->changed);
     if (!changes_lay_over((struct change_range){work->changes.items, work->changes.count},
                           &(struct change_target){request->scene, request->root, request->lights, request->light_count},
                           preview->warn, preview->context, &work->changed, error))
         return false;
+    /* Colours only change numbers; everything else needs a new world, after the last change of a row. */
     work->stale = work->stale || !change_keeps_world(&command->change);
     if (!command->more && !need_world(work, reply, error))
         return false;
@@ -274,6 +276,7 @@ static bool execute_command(struct preview_state *work, const struct preview_com
                             struct preview_reply *reply, struct error *error) {
     if (command->kind != COMMAND_CHANGE && (!need_world(work, reply, error) || reply->unbuilt))
         return reply->unbuilt;
+    /* The window learns of a new world before anything else. */
     if (command->kind != COMMAND_CHANGE && !work->reported) {
         describe_world(work, reply);
         return true;

@@ -152,6 +152,7 @@ static bool make_outline(const struct view_overlay_scene *scene, const struct vi
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &frame, ignored,
                         error))
         return false;
+    /* Which primitives belong to the node, and a box around them: only there rays are needed. */
     members.member = mem_alloc_zero((size_t)job->world->primitive_count + 1, 1);
     if (!members.member)
         return error_no_memory(error, "the outline of a node");

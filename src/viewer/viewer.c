@@ -248,6 +248,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
     viewer->pass.state = PASS_WAITING;
     viewer->display.hud_dirty = true;
     viewer->pass.unbuilt = reply->unbuilt;
+    /* The reply is to the last command; what it shows is drawn at the next step. */
     switch (reply->kind) {
     case REPLY_BUILT:
         fly_camera_measure(&viewer->fly_camera, &reply->report.bounds);

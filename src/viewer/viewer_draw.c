@@ -80,6 +80,7 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     const float *colour = viewer->pass.film.pixels[(size_t)y * viewer->pass.film.width + x].rgb;
     size_t first = 0;
     bool begun = false;
+    /* A pixel of a coarse pass covers a square; only lines over it make its pixels differ. */
     for (uint32_t v = y * divide; v < (y + 1) * divide && v < request->height; v++) {
         for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
             size_t pixel = (size_t)v * request->width + u;
@@ -111,6 +112,7 @@ void viewer_draw_tiles(struct viewer *viewer) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        /* Only what has changed since the last time. */
         if (shows ? viewer->window.drawn[tile] == state : !in_progress || !film->marked)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
@@ -159,6 +161,7 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
     uint32_t done = viewer->block ? film_tiles_in(&viewer->pass.film, FILM_TILE_DONE) : 0;
     uint32_t count = viewer->block ? film_tile_count(&viewer->pass.film) : 0;
     figures->share = count > 0 ? (double)done / count : viewer->pass.result == RESULT_COMPLETE ? 1 : 0;
+    /* From what the user has asked for to what the render process does. */
     if (viewer_plays(viewer)) {
         (void)snprintf(figures->state, sizeof figures->state, "playing");
     } else if (viewer->player.seeking) {
@@ -329,6 +332,7 @@ static void draw_work(struct viewer *viewer) {
     int scale = panel->canvas.scale, y = 17 * scale, wide = 10 * CANVAS_CELL * scale;
     bool used[LIST_COUNT(WORK)] = {false};
     panel_ground(panel, 0, 15 * scale, panel->canvas.width, 15 * scale);
+    /* The slider of the exposure comes behind the buttons, if there is room. */
     int x = panel_button_row(panel, y, words, LIST_COUNT(WORK), 0, used);
     if (used[WORK_UNDO] || used[WORK_REDO])
         viewer_undo(viewer, used[WORK_REDO]);
@@ -417,6 +421,7 @@ static void draw_hud(struct viewer *viewer, const struct figures *figures) {
     panel_begin(panel);
     int bottom = panel->canvas.height;
     if (!viewer->window.hides_hud) {
+        /* A low window has one row of buttons. From the picture outwards: what is drawn later lies above. */
         bool room = viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel);
         int top = (room && viewer->block ? 30 : 15) * viewer->window.panel.canvas.scale;
         if (viewer->block && viewer_camera_frame(viewer, &frame)) {

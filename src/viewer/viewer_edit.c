@@ -431,6 +431,7 @@ void viewer_make_own_material(struct viewer *viewer) {
                             .source = picked->material_serial};
     (void)snprintf(change.name, sizeof change.name, "%s", picked->name);
     viewer_make_edit(viewer, &change, true, false);
+    /* The changes of the shared material hold for the copy, too. */
     picked->material_serial = OWN_SERIAL - change.number;
     for (int i = 0; i < count; i++) {
         held[i].serial = picked->material_serial;

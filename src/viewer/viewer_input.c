@@ -83,6 +83,7 @@ static void handle_view_key(struct viewer *viewer, int key, bool control) {
         viewer_change_view(viewer);
         viewer->camera_moved = false;
         return;
+    /* A digit goes to the view that was saved under it. */
     default:
         if (key < '0' || key > '9' || !fly_camera_recall(fly_camera, key - '0'))
             return;
@@ -192,6 +193,7 @@ static bool handle_edit_key(struct viewer *viewer, const struct window_event *ev
         viewer->lights.listed = !viewer->lights.listed;
         viewer->display.hud_dirty = true;
         return true;
+    /* The list of a pixel scrolls; without one the selection goes down. */
     case WINDOW_PAGE_DOWN:
         if (viewer->trace.text[0] == '\0')
             viewer_select_up(viewer, true);
@@ -335,6 +337,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
     case WINDOW_RELEASE:
         handle_button(viewer, event, event->kind == WINDOW_PRESS);
         return;
+    /* What happens outside is not reported: keys count as released. */
     case WINDOW_LEAVE:
         memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
         viewer->input.pressed = false;

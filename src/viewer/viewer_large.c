@@ -124,6 +124,7 @@ void viewer_draw_large(struct viewer *viewer) {
     struct viewer_large *large = &viewer->window.large;
     const struct film *film = &viewer->pass.film;
     struct tone tone = picture_tone(&viewer->request);
+    /* The enlarged image of the display is below tiles that are not finished. */
     if (large->stale) {
         copy_picture(viewer);
         memset(large->drawn, 0, large->tiles);

@@ -283,6 +283,7 @@ static void draw_inputs(struct viewer *viewer, struct column *column) {
     if (viewer->edit.selection.picked.material_serial != 0) {
         choose_part(viewer, column);
         viewer_material_now(viewer, viewer->edit.part, numbers);
+        /* Three sliders for a colour, one for a number. */
         bool colour = material_part_count(viewer->edit.part) == 3, changed;
         struct vec3 c = {numbers[0], numbers[1], numbers[2]};
         double top = viewer->edit.part == MATERIAL_PART_KD || viewer->edit.part == MATERIAL_PART_KS ? 1 : 4;
@@ -333,6 +334,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
     draw_tools(viewer, column);
     if (viewer->edit.selection.kind != SELECTED_LIGHT)
         return;
+    /* Brightness first, since it keeps the colour. */
     double stops = viewer_light_stops_now(viewer);
     struct vec3 colour = viewer_light_colour_now(viewer);
     if (panel->pressed)

@@ -173,6 +173,7 @@ static bool show_frame(struct viewer *viewer, double now) {
     struct viewer_player *player = &viewer->player;
     uint32_t index = index_of(player, viewer->request.frame.number);
     double due = player->origin + ((double)index - player->origin_index) * period_of(viewer);
+    /* The clock begins anew where frames cannot keep to it. */
     if (player->restarts_clock || (player->forgives_delay && now > due) || now - due > delay_max ||
         due - now > 2 * period_of(viewer)) {
         player->restarts_clock = false;
@@ -181,6 +182,7 @@ static bool show_frame(struct viewer *viewer, double now) {
     }
     if (now < due)
         return false;
+    /* The rate is a mean that follows the last frames. */
     player->forgives_delay = false;
     if (player->played == 0)
         player->began = now;

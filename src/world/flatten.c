@@ -77,6 +77,7 @@ static bool count_nodes(struct flattening *f, const struct node *root, uint32_t 
     while (state && !cycle && (event = scene_traversal_next(&t)) < SCENE_END) {
         const struct node *node = scene_traversal_node(&t);
         uint32_t *children = scene_traversal_frame(&t, 0);
+        /* A node that is met again counts as before, or is above itself. */
         if (event == SCENE_ENTER && state[node->index] != UNSEEN) {
             cycle = state[node->index] == ON_PATH;
             if (cycle)
@@ -366,6 +367,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     struct transform parent_from_node = node_parent_from_node(node);
     *link = (struct moving_link){.above = parent->above, .above_from_node = parent->from_node};
     *out = (struct pose){world->link_count++, parent_from_node};
+    /* A motion that begins and ends in the same pose counts as none. The pose itself moves, so nothing is below it. */
     bool moves_on = node->moves_to && node->moves_to != node;
     if (!moves_on && node->spin) {
         link->motion = motion_of_spin(&parent_from_node, node->velocity, node->spin->axis, node->spin->degrees);
@@ -377,6 +379,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
         link->motion = motion_of_velocity(node->velocity);
         return true;
     }
+    /* From one pose to the other, as rotation, scale and translation. */
     struct transform end = node_parent_from_node(node->moves_to);
     if (!flatten_check_transform(f, node, &parent_from_node) || !flatten_check_transform(f, node->moves_to, &end))
         return false;
@@ -454,6 +457,7 @@ static bool instantiate_all(struct flattening *f, struct scene_traversal *t) {
                 (struct pose){frame->pose.above, scene_step_map(&t->steps[t->depth - 1], &frame->pose.from_node)};
         if (event != SCENE_ENTER)
             continue;
+        /* Operands stand in the space of their node, children in that of its placement. */
         const struct instance_frame *above = t->depth > 1 ? scene_traversal_frame(t, 1) : NULL;
         bool operand = above && scene_traversal_operand(t) != SCENE_CHILD;
         const struct pose *parent = !above ? &ground : operand ? &above->pose : &above->of_children;
@@ -572,6 +576,7 @@ bool flatten_map(struct flattening *f, const struct transform *world_from_object
     }
     out->shift = vec3_make(forward[0][3], forward[1][3], forward[2][3]);
     out->shift_back = vec3_make(inverse[0][3], inverse[1][3], inverse[2][3]);
+    /* Placements in a row often share the map of the one before. */
     out->linear = world->linear_count - 1;
     if (world->linear_count > 0 && same_map(&map, &world->linear_maps[out->linear]))
         return true;
@@ -649,6 +654,7 @@ static bool find_pose(const struct update *u, uint32_t record, struct transform 
     uint32_t path[NODE_DEPTH_MAX];
     int depth = 0;
     *out = transform_identity();
+    /* Upwards to a pose that is known, then down again in the order of flattening, which decides the bits. */
     for (uint32_t at = record; at != RECORD_NONE; at = records[at].above) {
         const struct transform *known = at == record ? NULL : known_pose(u, at);
         if (known) {

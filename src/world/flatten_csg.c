@@ -192,6 +192,7 @@ static bool enter_operand(struct flattening *f, struct csg_draft *draft, const s
     frame->limit = above->limit;
     if (above->nesting > CSG_NESTING)
         return error_set(f->error, ERROR_SCENE, "CSG solids are nested more than %d deep", CSG_NESTING);
+    /* What is scaled to nothing is nothing. */
     *skip = node->singular;
     if (*skip)
         return true;
@@ -199,6 +200,7 @@ static bool enter_operand(struct flattening *f, struct csg_draft *draft, const s
         return error_set(f->error, ERROR_SCENE,
                          "node '%.100s' moves inside of a combined solid; only the solid as a whole can move",
                          node->name);
+    /* Into the space of the whole solid. */
     struct transform parent_from_node = node_parent_from_node(node);
     frame->csg_from_node = transform_compose(&above->csg_from_parent, &parent_from_node);
     if (!flatten_check_transform(f, node, &frame->csg_from_node))

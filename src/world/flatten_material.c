@@ -205,6 +205,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     *count = by_slot ? node->slot_count : 1;
     const struct texture_image *texture = node->texture;
     const struct bump *bump = node->bump;
+    /* Under the studio light plain gray is what was meant. */
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i] && !f->scene->studio)
             warn_once(f, node,
@@ -223,6 +224,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
+    /* The same set of material, texture and bump has one number. */
     const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : plain_of(f);
     struct material_entry wanted = {
         .material = key, .texture = texture, .bump = bump, .shape = node->shape.kind, .used = true};
@@ -511,6 +513,7 @@ bool flatten_textures(struct flattening *f) {
     struct bump *bump_table = ok ? arena_alloc_array(arena, (size_t)bumps.count + 1, sizeof *bump_table) : NULL;
     ok = texture_table && bump_table;
     if (ok) {
+        /* References become indices when every texture has one. */
         fill_textures(&textures, texture_table);
         fill_bumps(&bumps, &textures, bump_table);
         world->textures = texture_table;

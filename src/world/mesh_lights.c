@@ -123,6 +123,7 @@ bool mesh_lights_estimate(const struct world *world, struct light *light, struct
         const struct light_triangle *t = &old->triangles[i];
         if ((i & 255) == 0 && pool_cancelled(pool))
             return error_set(error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
+        /* The mean over some points, with a small share of the bound: a place that no point met stays possible. */
         struct vec3 across = vec3_cross(t->edge1, t->edge2), sum = {0, 0, 0};
         double width = sqrt(vec3_length(across) / (2 * POINTS));
         for (int k = 0; k < POINTS; k++)

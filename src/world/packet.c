@@ -96,6 +96,7 @@ static const struct ray_packet *primitive_rays(const struct packet_search *s, ui
         memcpy(out->direction, rays->direction, sizeof out->direction);
         return out;
     }
+    /* The operations are those of primitive_ray, in their order: the bits are equal. */
     const struct linear_map *map = &s->world->linear_maps[primitive->linear];
     const double *x = map->inverse[0], *y = map->inverse[1], *z = map->inverse[2];
     struct vec3 o = rays->origin;
@@ -171,6 +172,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
         }
         return found;
     }
+    /* Too large to be zeroed: only what is read is set. */
     struct packet_search s;
     s.world = world;
     s.rays = rays;
@@ -188,6 +190,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
     double limit = farthest(&s);
     beam_traversal_begin(&traversal, tree, &beam);
     while (beam_traversal_next(&traversal, limit, &index)) {
+        /* The beam may meet a box that none of its rays meets. */
         uint64_t active = meet_box(&s, &world->boxes[index]);
         if (!active)
             continue;
@@ -271,6 +274,7 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
             visible[i] = true;
         return count;
     }
+    /* Too many candidates: every ray searches alone. */
     if (!occluder_candidates->known) {
         for (uint32_t i = 0; i < count; i++) {
             struct ray ray = {.origin = from,
@@ -294,6 +298,7 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
     rays.origin = from;
     rays.t_min = 0;
     rays.time = shadow_rays->time;
+    /* A packet asks one candidate after the other, until no ray is left. */
     for (uint32_t first = 0; first < count; first += PACKET_RAYS) {
         rays.count = count - first < PACKET_RAYS ? count - first : PACKET_RAYS;
         for (uint32_t i = 0; i < rays.count; i++) {

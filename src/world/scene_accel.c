@@ -201,6 +201,7 @@ static void visit_halves(const struct kd_tree *tree, uint32_t limit, scene_accel
                 return;
             continue;
         }
+        /* The lower half comes next, since it was pushed last. */
         double *high = node->axis == 0 ? &lower.max.x : node->axis == 1 ? &lower.max.y : &lower.max.z;
         double *low = node->axis == 0 ? &upper.min.x : node->axis == 1 ? &upper.min.y : &upper.min.z;
         *high = *low = node->split;

@@ -680,6 +680,7 @@ static bool make_materials(struct flattening *f) {
     if (!world->materials || !world->material_has_image || !world->material_has_tangents || !world->material_medium ||
         !world->media)
         return error_no_memory(f->error, "the materials of the scene");
+    /* Textures are numbered in the flat copies, so these come first. */
     for (uint32_t i = 0; i < count; i++)
         world->materials[i] = material_flatten(world->authored.materials[i]);
     if (!flatten_textures(f))
@@ -690,6 +691,7 @@ static bool make_materials(struct flattening *f) {
         world->material_has_image[i] = material_has_image(material);
         world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
         world->material_medium[i] = MEDIUM_NONE;
+        /* Only solids of transparent materials have a medium inside. */
         if (material_is_transparent(material, &medium.ior)) {
             world->material_medium[i] = world->medium_count;
             world->media[world->medium_count++] = medium;
@@ -713,6 +715,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
+    /* The lights of the world are its own: flattening changes them. */
     for (uint32_t i = 0; i < input->light_count; i++) {
         copied[i] = input->lights[i].light;
         if (input->linear_colours)
@@ -730,6 +733,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     bool reused;
     if (!kept_tables_reuse(&flattening, input, &reused) || (!reused && !flatten_scene(&flattening, input->root)))
         return false;
+    /* Lights and sky are made for each frame, in the arena of the job. */
     struct arena *of_tables = flattening.arena;
     flattening.arena = arena;
     world->lights = copied;
@@ -741,6 +745,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening)))
         return false;
     add_up_meshes(world, input->scene->assets);
+    /* The accelerator comes last, since it needs the boxes; that of the frame before fits if they are equal. */
     reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,
                                                world->primitive_count, &world->accel);
     if (!reused &&

@@ -69,10 +69,12 @@ bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bo
     else if (!cache->tables)
         cache->tables = mem_alloc_zero(1, sizeof *cache->tables);
     struct kept_tables *tables = cache->tables;
+    /* Nothing is kept: the next world sees all changes anew. */
     if (!tables) {
         scene_forget_changes(input->scene);
         return true;
     }
+    /* The world as it is if the tables do not fit. */
     const struct world begun = *f->world;
     f->log = &tables->log;
     bool ok = true;
@@ -88,6 +90,7 @@ bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bo
     cache->reused += *reused;
     if (*reused || !ok)
         return ok;
+    /* New tables, which the next frame may take over. */
     empty(tables);
     f->arena = &tables->arena;
     tables->epoch = input->scene->epoch;

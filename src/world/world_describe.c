@@ -90,6 +90,7 @@ static void surface_to_world(const struct surface *surface, const struct transfo
         hit->point = vec3_add(as_it_is(surface->point), zero);
         hit->normal_geometric = vec3_normalize(as_it_is(surface->normal));
     }
+    /* Most shapes have one normal, which is mapped once. */
     if (same_vector(&surface->normal, &surface->shading_normal))
         hit->normal = hit->normal_geometric;
     else
@@ -159,6 +160,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
                       c = {v[2][0], v[2][1], v[2][2]};
     double weight = 1 - crossing->u - crossing->v, length = vec3_length(ray->direction);
     struct vec3 point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, weight), b, crossing->u), c, crossing->v);
+    /* The same as of a mesh in a primitive, without the maps: the bits are equal. */
     hit->t = crossing->t;
     hit->point = vec3_add(point, zero);
     hit->view = vec3_scale(ray->direction, -1 / length);
@@ -182,6 +184,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
 
 void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                     struct hit *hit) {
+    /* Plain triangles need no map. */
     const struct mesh_group *group = &world->group;
     if (group->index && mesh_group_run(group, index).count > 0 &&
         group->facets[group->first[index] + crossing->part].plain) {
@@ -199,6 +202,7 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
         map = &world_from_object;
         own_ray = &ray_object;
     }
+    /* The surface in object space, then its material, then everything in the world. */
     struct surface surface;
     geometry_describe(&prototype->geometry, own_ray, crossing, &surface);
     double length = vec3_length(ray->direction);
@@ -216,6 +220,7 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->material = material;
     hit->convexity = convexity_of(prototype, leaf, crossing);
     hit->time = ray->time;
+    /* What costs more is computed only for materials that need it. */
     if (world->material_has_tangents[material]) {
         if (!map)
             world_from_object = transform_identity();

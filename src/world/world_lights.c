@@ -273,6 +273,7 @@ static bool take_light(struct building *b, uint32_t number) {
     struct emitter *emitter = &b->emitters[number];
     *emitter = (struct emitter){
         .primitive = WORLD_NOTHING, .owner = LIGHT_NONE, .unmet = light_is_delta(light), .emission = light->colour};
+    /* A light of a mesh is met by rays where its triangles are. */
     if (!light->mesh)
         return true;
     emitter->shown = light->mesh->shown;
@@ -292,6 +293,7 @@ static bool take_light(struct building *b, uint32_t number) {
         varies = varies || (!light->has_emission && b->of_prototype[world->primitives[primitive].prototype].varies);
         emitter->decided = emitter->decided || prototype->holes || prototype->cull != CULL_NONE || varies;
     }
+    /* All of its triangles move: each of them is a light of its own. */
     if (!rests)
         light->mesh = &no_triangles;
     return !emitter->decided || !varies || mesh_lights_estimate(world, light, b->arena, b->pool, b->error);
@@ -352,6 +354,7 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
                         .arena = b->arena,
                         .pool = b->pool,
                         .error = b->error};
+    /* Of a mesh light that moves, or of the material. */
     d.emitter.emission = vec3_all(1);
     if (owner != LIGHT_NONE)
         take_over(&d, &world->lights[owner], &b->emitters[owner]);
@@ -462,6 +465,7 @@ static bool build(struct building *b, struct world_lights_options options) {
     if (world->light_count > 0)
         memcpy(b->lights, world->lights, world->light_count * sizeof *b->lights);
     out->count = world->light_count;
+    /* The lights of the script first, so that they keep their numbers; then emissive surfaces. */
     for (uint32_t i = 0; i < world->light_count; i++)
         if (!take_light(b, i))
             return false;
@@ -471,6 +475,7 @@ static bool build(struct building *b, struct world_lights_options options) {
         if (!take_primitive(b, i))
             return false;
     }
+    /* The sampler needs all of them. */
     const struct light_sampler_options choice = {options.choice, b->pool};
     if ((options.background && !take_background(b)) || !build_area_lights(b))
         return false;

@@ -200,15 +200,15 @@ TEST(a_pixel_trace_that_is_too_long_counts_what_it_leaves_out) {
     struct pixel_sample position = {0, 0, 0.5, 0.5, 0, 1};
     struct ray ray = {.direction = {0, 0, -1}};
     struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
-    observe_sample_begin(&pixel_trace.observer, &position);
+    OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = &position);
     for (int i = 0; i < PIXEL_TRACE_RAYS + 10; i++) {
-        observe_ray_sent(&pixel_trace.observer, RAY_CAMERA, vec3_all(1), RAY_FOLLOWED);
-        observe_ray_begin(&pixel_trace.observer, &ray, NULL, NULL, INFINITY, 1);
-        observe_ray_sent(&pixel_trace.observer, RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED);
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_CAMERA, vec3_all(1), RAY_FOLLOWED});
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_BEGIN, .begin = {&ray, NULL, NULL, INFINITY, 1});
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED});
         CHECK_EQ_INT(pixel_trace.mute, i >= PIXEL_TRACE_RAYS);
-        observe_ray_end(&pixel_trace.observer, &end);
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_END, .end = end);
     }
-    observe_sample_end(&pixel_trace.observer, &position, vec3_all(1));
+    OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_END, .sample = {&position, vec3_all(1)});
     CHECK_EQ_INT(pixel_trace.rays, PIXEL_TRACE_RAYS);
     CHECK_EQ_INT(pixel_trace.omitted, 10);
     CHECK(!pixel_trace.failed);

@@ -147,6 +147,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
     struct arena arena = {0};
     const char *traceback = NULL;
     const char *path = test_path("scene.lua");
+    (void)remove(path); /* as in listen_to_text */
     test_write_text(path, text);
     gallery->pictures = 0;
     gallery->finite = true;
@@ -215,7 +216,7 @@ static const char *use_of(const struct script_function *function) {
     return strstr(function->name, "render") ? "" : "root:add_child(ball) show{} show{}";
 }
 
-static bool is_numeric(enum kind kind) {
+static bool is_numeric(enum argument_kind kind) {
     switch (kind) {
     case KIND_NUMBER:
     case KIND_WHOLE:
