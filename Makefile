@@ -273,22 +273,36 @@ bench: all
 format:
 	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/unit/*/*.[ch] tests/fuzz/*.[ch])
 
-# What install writes, below DESTDIR and PREFIX.
+# What install writes, below DESTDIR and PREFIX: trees of files, and files with the folder and name that others expect.
+TO = $(DESTDIR)$(PREFIX)
 PROGRAMS = gray $(if $(SDL_LIBS),gray-gui) $(if $(MPI_LIBS),gray-mpi)
-DOCUMENTS := README.md LICENSE CHANGELOG.md
-MODULES_OF_LUA := $(patsubst lua/%,%,$(wildcard lua/*.lua lua/dialects/*.lua))
-INSTALLED = $(PROGRAMS:%=bin/%) $(MODULES_OF_LUA:%=share/gray/lua/%) $(DOCUMENTS:%=share/doc/gray/%)
+SHARED = $(shell find lua data textures -type f 2>/dev/null)
+DOCUMENTS = $(shell find docs -type f 2>/dev/null) $(wildcard *.md) LICENSE
+COMPLETIONS = share/bash-completion/completions/gray share/zsh/site-functions/_gray share/fish/vendor_completions.d/gray.fish
+DESKTOP = $(if $(SDL_LIBS),share/applications/gray.desktop share/mime/packages/gray.xml)
+PAGES = share/man/man1/gray.1 share/man/man5/gray-scene.5
+INSTALLED = $(PROGRAMS:%=bin/%) $(SHARED:%=share/gray/%) $(DOCUMENTS:%=share/doc/gray/%) $(COMPLETIONS) $(DESKTOP) $(PAGES)
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua/dialects $(DESTDIR)$(PREFIX)/share/doc/gray
-	install -m 755 $(PROGRAMS:%=$(BUILD)/%) $(DESTDIR)$(PREFIX)/bin
-	install -m 644 $(wildcard lua/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua
-	install -m 644 $(wildcard lua/dialects/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua/dialects
-	install -m 644 $(DOCUMENTS) $(DESTDIR)$(PREFIX)/share/doc/gray
+	install -d $(sort $(dir $(INSTALLED:%=$(TO)/%)))
+	install -m 755 $(PROGRAMS:%=$(BUILD)/%) $(TO)/bin
+	@cp --parents $(SHARED) $(TO)/share/gray && chmod 644 $(SHARED:%=$(TO)/share/gray/%)
+	@cp --parents $(DOCUMENTS) $(TO)/share/doc/gray && chmod 644 $(DOCUMENTS:%=$(TO)/share/doc/gray/%)
+	@for page in $(PAGES); do name=$${page##*/}; $(BUILD)/gray --roff $${name%.*} >$(TO)/$$page || exit 1; done
+	install -m 644 tools/completion/gray.bash $(TO)/share/bash-completion/completions/gray
+	install -m 644 tools/completion/_gray $(TO)/share/zsh/site-functions
+	install -m 644 tools/completion/gray.fish $(TO)/share/fish/vendor_completions.d
+	$(if $(DESKTOP),install -m 644 tools/desktop/gray.desktop $(TO)/share/applications)
+	$(if $(DESKTOP),install -m 644 tools/desktop/gray.xml $(TO)/share/mime/packages)
+	@$(REFRESH)
 
-# Folders of gray alone go when nothing else is in them.
+# Folders go when nothing else is in them.
 uninstall:
-	rm -f $(INSTALLED:%=$(DESTDIR)$(PREFIX)/%)
-	for folder in gray/lua/dialects gray/lua gray doc/gray; do rmdir $(DESTDIR)$(PREFIX)/share/$$folder 2>/dev/null; done; true
+	@rm -f $(INSTALLED:%=$(TO)/%)
+	@find $(TO)/share/gray $(TO)/share/doc/gray -depth -type d -exec rmdir --ignore-fail-on-non-empty {} + 2>/dev/null; true
+	@rmdir --ignore-fail-on-non-empty $(sort $(dir $(COMPLETIONS:%=$(TO)/%) $(DESKTOP:%=$(TO)/%) $(PAGES:%=$(TO)/%))) 2>/dev/null; true
+	@$(REFRESH)
+# The database of file types knows the new one, if this machine keeps one there.
+REFRESH = [ -n "$(DESTDIR)" ] || [ ! -e $(TO)/share/mime/mime.cache ] || update-mime-database $(TO)/share/mime
 
 # A folder that the caller names may hold other files.
 BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags

@@ -5,7 +5,10 @@
 # A scene describes itself in comments of its first lines:
 #   -- TITLE: its name in the gallery           -- OPTIONS: words for the command line
 # A scene that takes far longer than its part of the plan is ended; GRAY_SCENE_LIMIT sets another limit, in seconds.
+# Usage: ./render_all.sh [--minimal]
+#   --minimal   installs only the packages that the build needs
 cd "$(dirname "$0")" || exit 1
+case $#${1:-} in 0 | 1--minimal) ;; *) sed -n '2,9s/^# \{0,1\}//p' render_all.sh >&2; exit 2 ;; esac
 gallery=gallery
 failed=""
 
@@ -48,10 +51,10 @@ building=""
 [ -x build/release/gray ] || building=", plus the build"
 echo "rendering $scenes scenes takes $(about_time "$total") with $processors processors$building"
 
-tools/setup.sh || exit 1
+tools/setup.sh "$@" || exit 1
 make -s -j2 || { echo "render_all.sh: the build failed" >&2; exit 1; }
 mkdir -p "$gallery" || exit 1
-rm -f "$gallery"/*.png "$gallery"/*.apng "$gallery"/*.txt "$gallery"/index.html
+rm -f "$gallery"/*.png "$gallery"/*.apng "$gallery"/*.txt "$gallery"/*.err "$gallery"/index.html
 
 # The rest of the first comment line that begins with the word.
 about() { # about SCRIPT WORD
@@ -62,6 +65,11 @@ as_html() {
     sed -e 's/&/\&amp;/g' -e 's/</\&lt;/g' -e 's/>/\&gt;/g' -e 's/"/\&quot;/g'
 }
 
+fail() { # fail SCRIPT WHY: also as the last line of what it said
+    echo "render_all.sh: $1 $2" | tee -a "$gallery/$name.err" >&2
+    failed="$failed $1"
+}
+
 # Renders a scene into gallery/NAME-01.png ...; a single picture is called gallery/NAME.png, and an animation
 # gallery/NAME.apng.
 render() { # render SCRIPT NAME COST
@@ -70,35 +78,43 @@ render() { # render SCRIPT NAME COST
     limit=$(limit_of "$3")
     options=$(about "$script" OPTIONS)
     case $name in
-    10demo | 14demo) options="$options --size 1280x960 -ss 4 -al-samples 8" ;;
+    10demo | 14demo) options="${options:+$options }--size 1280x960 -ss 4 -al-samples 8" ;;
     esac
     output="$gallery/$name-%02d.png"
     case $script in data/animation/*) output="$gallery/$name.apng" ;; esac
     # shellcheck disable=SC2086
     echo "scene $number of $scenes: $script" $options
+    options="${options:+$options }-o $output"
     begun=$(date +%s%N)
+    # What it says is seen at once, and kept for the page.
     # shellcheck disable=SC2086
-    timeout -k 10 "$limit" ./gray $options -o "$output" -- "$script" >"$gallery/$name.txt"
-    status=$?
+    {
+        timeout -k 10 "$limit" ./gray $options "$script" 2>&1 >"$gallery/$name.txt"
+        echo $? >"$gallery/status"
+    } | tee "$gallery/$name.err" >&2
+    read -r status <"$gallery/status"
     ended=$(date +%s%N)
     seconds=$(awk "BEGIN { printf \"%.1f\", ($ended - $begun) / 1e9 }")
     case $status in
     0) ;;
-    124 | 137)
-        echo "render_all.sh: $script was ended at its limit of $limit seconds; GRAY_SCENE_LIMIT=SECONDS sets another" >&2
-        failed="$failed $script"
-        ;;
-    *)
-        echo "render_all.sh: $script failed with status $status" >&2
-        failed="$failed $script"
-        ;;
+    124 | 137) fail "$script" "was ended at its limit of $limit seconds; GRAY_SCENE_LIMIT=SECONDS sets another" ;;
+    *) fail "$script" "failed with status $status" ;;
     esac
     set -- "$gallery/$name"-[0-9]*.png
     [ $# -eq 1 ] && [ -f "$1" ] && mv -- "$1" "$gallery/$name.png"
     [ -s "$gallery/$name.txt" ] || rm -f "$gallery/$name.txt"
 }
 
-# One entry of the page: pictures, title, script, time, and what the script printed.
+# "WIDTH HEIGHT" of a PNG file, "1 1" of another.
+size_of() {
+    od -An -tu1 -N24 -v -w24 "$1" | awk '{
+        w = ($17 * 256 + $18) * 65536 + $19 * 256 + $20
+        h = ($21 * 256 + $22) * 65536 + $23 * 256 + $24
+        print (w * h > 0 ? w " " h : "1 1")
+    }'
+}
+
+# One entry of the page: pictures, title, time, the command, and what the script printed.
 describe() { # describe SCRIPT NAME SECONDS
     title=$(about "$1" TITLE)
     title=$(printf '%s' "${title:-$2}" | as_html)
@@ -107,23 +123,24 @@ describe() { # describe SCRIPT NAME SECONDS
     name=$2
     taken=$3
     shift 3
-    echo "<figure>"
     shown=0
     for picture in "$@"; do
         [ -f "$picture" ] || continue
         shown=$((shown + 1))
-        [ $shown -ne 2 ] || echo "<div>"
         file=$(basename "$picture" | as_html)
-        echo "<a href=\"$file\"><img src=\"$file\" alt=\"$title\" loading=\"lazy\"></a>"
+        size=$(size_of "$picture")
+        [ $shown -ne 1 ] || echo "<figure style=\"--shape: $(echo "$size" | awk '{ print $1 / $2 }')\">"
+        [ $shown -ne 2 ] || echo "<div class=\"more\">"
+        echo "<a class=\"picture\" href=\"$file\"><img src=\"$file\" width=\"${size% *}\" height=\"${size#* }\" alt=\"$title\" loading=\"lazy\"></a>"
     done
     [ $shown -lt 2 ] || echo "</div>"
-    [ $shown -gt 0 ] || echo "<p class=\"none\">no picture</p>"
-    echo "<figcaption><b>$title</b><br><a href=\"../$script\">$script</a>, $taken s</figcaption>"
-    if [ -s "$gallery/$name.txt" ]; then
-        echo "<pre>"
-        head -c 4000 "$gallery/$name.txt" | as_html
-        echo "</pre>"
-    fi
+    why=$(sed -e '/ left$/d' -e '/^ /d' "$gallery/$name.err" | head -n 9 | as_html)
+    [ $shown -gt 0 ] || echo "<figure style=\"--shape: 1\"><p class=\"none\">no picture: ${why:-the script makes none}</p>"
+    command="./gray $(printf '%s' "$options" | as_html)"
+    echo "<figcaption><b>$title</b>, $taken s<br><code>$command <a href=\"../$script\">$script</a></code></figcaption>"
+    [ ! -s "$gallery/$name.txt" ] ||
+        printf '<details><summary>what it prints</summary><pre>%s</pre></details>\n' "$(head -c 4000 "$gallery/$name.txt" | as_html)"
+    rm -f "$gallery/$name.err" "$gallery/status"
     echo "</figure>"
 }
 
@@ -161,23 +178,7 @@ PLAN
 [ $open = no ] || echo "</div>" >>"$gallery/body.html"
 
 {
-    cat <<'HEAD'
-<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>gray: gallery</title>
-<meta name="viewport" content="width=device-width">
-<style>
-body { font: 16px/1.4 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; background: #222; color: #ddd }
-a { color: #9cf }
-.part { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(26em, 100%), 1fr)); gap: 1.5em; align-items: start }
-figure { margin: 0; min-width: 0 }
-figure img { width: 100%; aspect-ratio: 4 / 3; object-fit: scale-down; background: #191919; display: block; margin-bottom: .3em }
-figure div { display: grid; grid-template-columns: repeat(4, 1fr); gap: .3em }
-pre { white-space: pre-wrap; font-size: 12px; max-height: 12em; overflow: auto }
-.none { color: #f88 }
-</style></head><body>
-<h1>gray: gallery</h1>
-HEAD
-    cat "$gallery/body.html"
+    cat data/gallery.html "$gallery/body.html"
     echo "</body></html>"
 } >"$gallery/index.html"
 rm -f "$gallery/body.html"
@@ -192,8 +193,9 @@ for name in 10demo 14demo; do
     number=$((number + 1))
 done
 
+next="open $gallery/index.html in a browser; docs/start.md leads to your first scene"
 if [ -n "$failed" ]; then
-    echo "render_all.sh: these failed:$failed; the reasons are above, the other pictures in $gallery/index.html" >&2
+    echo "render_all.sh: these failed:$failed; the reasons are above and in the page: $next" >&2
     exit 1
 fi
-echo "done: open $gallery/index.html in a browser; screenshot01.png and screenshot02.png show 10demo and 14demo"
+echo "done: $next; screenshot01.png and screenshot02.png show 10demo and 14demo"

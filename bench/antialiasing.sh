@@ -45,25 +45,20 @@ EOF
     done
     echo "$name"
 done >"$work/names" || exit 1
-python3 - "$work" "$references" <<'EOF'
-import math, sys
-sys.path.insert(0, "tools")
-from picture_difference import read
+python3 - "$work" "$references" "$gray" <<'EOF'
+import math, re, subprocess, sys
 
-work, references = sys.argv[1:]
+work, references, gray = sys.argv[1:]
 names = open(work + "/names").read().split()
 patterns = ["grid", "rotated"]
 logs = {pattern: [0.0, 0.0, 0.0] for pattern in patterns}
 print("%-10s %8s %8s  %8s %8s  %7s %7s" % ("scene", "error", "rotated", "off %", "rotated", "seconds", "rotated"))
 for name in names:
-    reference = read("%s/%s.png" % (references, name))[2]
     row = []
     for pattern in patterns:
-        values = read("%s/%s.%s.png" % (work, name, pattern))[2]
-        differences = [abs(a - b) for a, b in zip(reference, values)]
-        pixels = len(differences) // 3
-        error = sum(differences) / len(differences)
-        off = 100 * sum(max(differences[3 * i : 3 * i + 3]) > 8 for i in range(pixels)) / pixels
+        pictures = ["%s/%s.%s.png" % (work, name, pattern), "%s/%s.png" % (references, name)]
+        said = subprocess.run([gray, "compare", "--threshold", "8"] + pictures, capture_output=True, text=True).stdout
+        error, off = map(float, re.search(r"mean difference +(\S+)\npixels beyond 8 +(\S+) %", said).groups())
         seconds = min(map(float, open("%s/%s.%s.seconds" % (work, name, pattern))))
         row.append((error, off, seconds))
         for i, x in enumerate(row[-1]):

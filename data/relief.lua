@@ -52,5 +52,5 @@ gr.render {
         gr.area_light({ -8, 8, 5 }, { 2, 0, 0 }, { 0, 1, 1.5 }, { .85, .82, .76 }, { 1, 0, 0 }),
         gr.light({ 9, 6, 8 }, { .20, .22, .28 }, { 1, 0, 0 }),
     },
-    background = 'gradient',
+    background = { .3, .34, .4 },
 }

@@ -1,3 +1,4 @@
+-- TITLE: Swept solids: turned, pressed and bent
 -- Shapes made of many parts: lathe, prism, sphere sweep, height field, blob, hair and patches, some of them carved.
 -- Run: ./gray data/swept.lua
 

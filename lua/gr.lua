@@ -1169,7 +1169,7 @@ function gr.glyphs(font, text) end
 ---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
 ---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not implemented.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
----@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
 
 ---A layered surface of metal, glass, glossy diffuse, clear coat and fuzz: OpenPBR Surface 1.1.
 ---@param base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; for metals the reflectance at normal incidence.
@@ -1183,7 +1183,7 @@ function gr.openpbr_material(base_color) end
 ---@field anisotropy? number|gr.texture|function anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
 ---@field tangent? gr.triple tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
 ---@field normal? string|gr.texture|function normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
----@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
 
 ---A metal with its measured reflectance.
 ---@param metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.

@@ -72,6 +72,8 @@ extern const uint8_t attack_png[95];
 const char *attack_binary(void); /* canonical */
 /* The statements of a row in the folder `in`; false after a failure that is reported. */
 bool attack_prepare(const char *in, const char *statements);
+/* A new folder, open to every user, with these files and a scene; its path is valid until the next one. */
+const char *attack_folder(const char *statements, const char *scene);
 /* Starts a program in a folder as the given user (0: as the caller). Standard output and error go to out.txt and
  * err.txt in the test's folder. Words are split at blanks. */
 pid_t attack_start(const char *in, const char *words, uid_t user);

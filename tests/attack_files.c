@@ -213,6 +213,19 @@ bool attack_prepare(const char *in, const char *all) {
     return attack_statements(NULL, in, all, false) && attack_statements(NULL, in, all, true);
 }
 
+const char *attack_folder(const char *statements, const char *scene) {
+    static char in[700];
+    static int number;
+    char path[1024], *text = NULL;
+    (void)snprintf(in, sizeof in, "%s/%d", test_folder(), ++number);
+    (void)snprintf(path, sizeof path, "%s/scene.lua", in);
+    CHECK(mkdir(in, 0777) == 0 && chmod(in, 0777) == 0 && attack_prepare(in, statements));
+    CHECK(asprintf(&text, "%s%s\n", attack_prelude, scene) > 0);
+    test_write_text(path, text);
+    free(text);
+    return in;
+}
+
 void attack_tree_free(struct attack_tree *tree) {
     for (size_t i = 0; i < tree->count; i++)
         free(tree->entries[i].bytes);

@@ -267,6 +267,23 @@ int test_status_of(pid_t child) {
     return shell_status(how);
 }
 
+pid_t test_child_of(pid_t process) {
+    char path[64];
+    (void)snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)process, (int)process);
+    char *text = test_read_file(path, NULL);
+    pid_t child = text ? (pid_t)atoi(text) : 0;
+    free(text);
+    return child;
+}
+
+struct test_use test_children_used(void) {
+    struct rusage used;
+    (void)getrusage(RUSAGE_CHILDREN, &used);
+    return (struct test_use){(double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                                 1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec),
+                             used.ru_maxrss};
+}
+
 const char *test_program(void) {
     const char *binary = getenv("GRAY_TEST_BINARY");
     if (!binary || access(binary, X_OK) != 0) {

@@ -38,6 +38,17 @@ bool test_is_named(const char *pattern);
 #define TEST(test_name) TEST_DEFINE(test_name, TEST_FAST)
 #define TEST_LONG(test_name) TEST_DEFINE(test_name, TEST_SLOW)
 #define TEST_EXAMPLE(test_name) TEST_DEFINE(test_name, TEST_EXAMPLE)
+/* A claim in two sizes: `times` is 1 in make test, and `factor` in make test-long, where the name ends in _many_times.
+ */
+#define TEST_TIMES(test_name, factor)                                                                                  \
+    static void test_name##_of_size(int times);                                                                        \
+    TEST(test_name) {                                                                                                  \
+        test_name##_of_size(1);                                                                                        \
+    }                                                                                                                  \
+    TEST_LONG(test_name##_many_times) {                                                                                \
+        test_name##_of_size(factor);                                                                                   \
+    }                                                                                                                  \
+    static void test_name##_of_size(int times)
 
 void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 1, 2))); /* ends this test as skipped */
@@ -104,6 +115,14 @@ const char *test_program(void);
 double test_clock(void);
 /* Waits for a child: its exit status, or 128 + signal. */
 int test_status_of(pid_t child);
+/* The one child of a process, or 0. */
+pid_t test_child_of(pid_t process);
+/* What the children that have ended used: processor time of all, and the largest memory of one. */
+struct test_use {
+    double seconds;
+    long kibibytes;
+};
+struct test_use test_children_used(void);
 /* Whether two files of test_folder() are there and have the same bytes. */
 bool test_same_files(const char *one, const char *other);
 

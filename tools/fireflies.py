@@ -8,7 +8,7 @@ tools/fireflies.py --scene SCRIPT...
 The reference is a picture of the same size with many samples. An outlier that is also one in the reference is no error.
 With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
 the outliers as a reference, without denoising, with SPP samples (default 4096). GRAY: the program (default ./gray);
-OPTIONS: more options for all renderings.
+OPTIONS: more options for all renderings. ffmpeg reads the pictures.
 Prints each outlier that is an error, and exits with 1 if there is one."""
 import os
 import re
@@ -16,7 +16,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
 CELL = 12  # pixels that share a reference
 
@@ -24,42 +23,10 @@ CELL = 12  # pixels that share a reference
 def read_png(name):
     """Width, height and rows of 8-bit RGB."""
     with open(name, 'rb') as file:
-        data = file.read()
-    at, packed = 8, b''
-    width = height = 0
-    while at < len(data):
-        size, kind = struct.unpack('>I4s', data[at:at + 8])
-        body = data[at + 8:at + 8 + size]
-        at += 12 + size
-        if kind == b'IHDR':
-            width, height, depth, colour = struct.unpack('>IIBB', body[:10])
-            if depth != 8 or colour != 2 or body[12] != 0:
-                sys.exit(f'{name}: not a PNG file of 8-bit RGB')
-        elif kind == b'IDAT':
-            packed += body
-    raw, stride = zlib.decompress(packed), 3 * width
-    rows, above = [], bytearray(stride)
-    for y in range(height):
-        kind = raw[y * (stride + 1)]
-        row = bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            left = row[i - 3] if i >= 3 else 0
-            corner = above[i - 3] if i >= 3 else 0
-            if kind == 1:
-                row[i] = row[i] + left & 255
-            elif kind == 2:
-                row[i] = row[i] + above[i] & 255
-            elif kind == 3:
-                row[i] = row[i] + (left + above[i]) // 2 & 255
-            elif kind == 4:
-                guess = left + above[i] - corner
-                to_left, to_above, to_corner = abs(guess - left), abs(guess - above[i]), abs(guess - corner)
-                best = left if to_left <= to_above and to_left <= to_corner else \
-                    above[i] if to_above <= to_corner else corner
-                row[i] = row[i] + best & 255
-        rows.append(row)
-        above = row
-    return width, height, rows
+        width, height = struct.unpack('>II', file.read(24)[16:])
+    raw = subprocess.run(['ffmpeg', '-v', 'error', '-i', name, '-f', 'rawvideo', '-pix_fmt', 'rgb24', '-'],
+                         stdout=subprocess.PIPE, check=True).stdout
+    return width, height, [raw[3 * width * y:3 * width * (y + 1)] for y in range(height)]
 
 
 def is_outlier(rows, x, y):

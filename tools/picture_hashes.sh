@@ -4,8 +4,8 @@
 #   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are any
 #   tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
 # WAYS="default j1 bvh base" selects variants; ONLY="word ..." selects scenes whose path contains one of the words.
-# The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
-# how many levels the pictures of two folders differ.
+# The hashes are of whole PNG files, so they hold for one version of zlib; gray compare shows by how many levels two
+# pictures differ.
 cd "$(dirname "$0")/.." || exit 1
 action=${1:-check}
 folder=${2:-build/pictures}

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs missing packages from the Debian archive of the machine, after a line for each group of them: those that the
-# build needs, and optional libraries (a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts). If an optional one
-# cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
+# build needs, the window (SDL2), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
+# does not need cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
 # install packages, it prints one line with the command. On systems not derived from Debian it lists the packages to
 # install by hand.
 # Usage: tools/setup.sh [--minimal | --check | --tests]
@@ -32,6 +32,10 @@ have_lua() {
         pkg-config --exists "$name" && return 0
     done
     return 1
+}
+
+have_ctags() {
+    ctags --version 2>/dev/null | grep -q '^Universal Ctags'
 }
 
 have_mpi() {
@@ -67,6 +71,10 @@ if [ "$mode" = --tests ]; then
     want machines openmpi-bin command -v mpirun
     want animations ffmpeg command -v ffmpeg
     want animations apngdis command -v apngdis
+    want shells zsh command -v zsh
+    want shells fish command -v fish
+    want pages man-db command -v man
+    want tools universal-ctags have_ctags
     want tools gzip command -v gzip
     want tools procps command -v pgrep
     want tools mount command -v mount
@@ -113,7 +121,7 @@ install() { # install SECONDS OPTION... PACKAGE...
 
 # The lists of a fresh machine may be absent or old: they are fetched when the first try fails.
 if [ -n "$missing" ]; then
-    echo "installing with apt-get:$missing" >&2
+    echo "installing with apt-get (build):$missing" >&2
     # shellcheck disable=SC2086
     install 3600 $missing || { as_installer apt-get update && install 3600 $missing; } ||
         { cat "$said" >&2; echo "the packages could not be installed:$missing" >&2; exit 1; }
@@ -139,15 +147,9 @@ install_optional() { # install_optional PACKAGE...
         install 240 $quick "$package" || echo "$package could not be installed: $without" >&2
     done
 }
-if [ "$mode" = --tests ]; then
-    for group in $(printf '%s' "$wanted" | awk '!seen[$1]++ { print $1 }'); do
-        echo "installing with apt-get for the tests ($group):$(packages_of "$group")" >&2
-        # shellcheck disable=SC2046
-        install_optional $(packages_of "$group") || echo "the archive does not answer: $without" >&2
-    done
-elif [ -n "$optional" ]; then
-    echo "installing with apt-get (optional):$optional" >&2
-    # shellcheck disable=SC2086
-    install_optional $optional || echo "the archive does not answer: $without" >&2
-fi
+for group in $(printf '%s' "$wanted" | awk '!seen[$1]++ { print $1 }'); do
+    echo "installing with apt-get ($group):$(packages_of "$group")" >&2
+    # shellcheck disable=SC2046
+    install_optional $(packages_of "$group") || { echo "the archive does not answer: $without" >&2; break; }
+done
 exit 0

@@ -121,9 +121,9 @@ build release
 build asan
 if [ $long = no ]; then
     run release
-    run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options \
+    run asan smoke errors_ test_script '*script*' allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options \
         window_survives_random window_outlines window_shows_and window_stops_b \
-        -hostile_no_script -smoke_every_demo_of_the_library -smoke_scenes_of_combined -progress_can_be_a_bar -any_word_of_a_gltf \
+        -hostile_no_script -smoke_every_demo_of_the_library -smoke_scenes_of_combined -smoke_path_traced -progress_can_be_a_bar -any_word_of_a_gltf \
         -may_fail_while_every_function -any_allocation_of_caustics -test_frame_writing -the_scene_of_the_readme -swept_shapes_survive
 else
     build tsan

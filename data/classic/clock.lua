@@ -52,7 +52,8 @@ local lights = { gr.light({-3, 4, 6}, {0.7, 0.7, 0.65}, {1, 0, 0}), gr.light({4,
 hours:rotate('z', -305)
 minutes:rotate('z', -60)
 for frame = 1, 6 do
-    gr.render(clock, name .. frame .. '.png', 160, 160, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 26, {0.3, 0.3, 0.3}, lights)
+    gr.render(clock, name .. frame .. '.png', 160, 160, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 26, {0.3, 0.3, 0.3}, lights,
+        {background = {0.2, 0.24, 0.3}})
     hours:rotate('z', -1.04)
     minutes:rotate('z', -12.5)
     seconds:rotate('z', -30)

@@ -1,7 +1,8 @@
 -- TITLE: Macho cows
 -- A herd on a hill, in the style of the old assignments: readobj returns vertices and faces together.
--- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (detected from readobj).
+-- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (as gray detects from readobj).
 
+gr.transform_order('old')
 require('readobj')
 
 brown = gr.material({0.5, 0.32, 0.2}, {0.2, 0.2, 0.2}, 12)
@@ -54,4 +55,5 @@ rock:translate(0, 0, 0)
 scene:add_child(rock)
 
 gr.render(scene, 'cows.png', 480, 320, {0, 4.2, 17}, {0, -0.18, -1}, {0, 1, 0}, 31, {0.35, 0.35, 0.38},
-    {gr.light({-12, 18, 14}, {0.75, 0.72, 0.62}, {1, 0, 0}), gr.light({15, 5, 10}, {0.15, 0.15, 0.2}, {1, 0, 0})})
+    {gr.light({-12, 18, 14}, {0.75, 0.72, 0.62}, {1, 0, 0}), gr.light({15, 5, 10}, {0.15, 0.15, 0.2}, {1, 0, 0})},
+    {background = {0.55, 0.68, 0.85}})

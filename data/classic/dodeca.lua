@@ -1,7 +1,8 @@
 -- TITLE: Dodecahedra
 -- Pentagons given as tables of vertices and faces; each smaller one stands in the eye of a bigger one.
--- Author: gray project. Dialect: classic, OLD order (detected from the vertex tables).
+-- Author: gray project. Dialect: classic, OLD order (as gray detects from the vertex tables).
 
+gr.transform_order('old')
 local g = (1 + math.sqrt(5)) / 2
 local h = 1 / g
 local verts = {
@@ -37,4 +38,5 @@ floor:scale(40, 1, 40)
 scene:add_child(floor)
 
 gr.render(scene, 'dodeca.png', 320, 320, {1.8, 3.4, 13}, {0, -0.14, -1}, {0, 1, 0}, 40, {0.3, 0.3, 0.33},
-    {gr.light({-8, 12, 10}, {0.7, 0.68, 0.6}, {1, 0, 0}), gr.light({10, 4, 8}, {0.25, 0.25, 0.32}, {1, 0, 0})})
+    {gr.light({-8, 12, 10}, {0.7, 0.68, 0.6}, {1, 0, 0}), gr.light({10, 4, 8}, {0.25, 0.25, 0.32}, {1, 0, 0})},
+    {background = {0.3, 0.34, 0.4}})

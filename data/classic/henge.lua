@@ -1,7 +1,8 @@
 -- TITLE: Henge
 -- Standing stones in a ring; one trilithon, nine nodes. Every transform is written from the outside in.
--- Author: gray project. Dialect: classic, OLD order (detected from the vertex tables of the lintel).
+-- Author: gray project. Dialect: classic, OLD order (as gray detects from the vertex tables of the lintel).
 
+gr.transform_order('old')
 stone = gr.material({0.55, 0.53, 0.5}, {0.08, 0.08, 0.08}, 4)
 moss = gr.material({0.38, 0.42, 0.3}, {0.05, 0.05, 0.05}, 4)
 grass = gr.material({0.28, 0.45, 0.2}, {0, 0, 0}, 1)
@@ -60,4 +61,5 @@ ground:set_material(grass)
 scene:add_child(ground)
 
 gr.render(scene, 'henge.png', 480, 320, {3, 6.5, 19}, {-0.15, -0.27, -1}, {0, 1, 0}, 40, {0.3, 0.3, 0.36},
-    {gr.light({-20, 14, 6}, {0.85, 0.7, 0.5}, {1, 0, 0}), gr.light({20, 20, 20}, {0.15, 0.17, 0.25}, {1, 0, 0})})
+    {gr.light({-20, 14, 6}, {0.85, 0.7, 0.5}, {1, 0, 0}), gr.light({20, 20, 20}, {0.15, 0.17, 0.25}, {1, 0, 0})},
+    {background = gr.sky_gradient{stops = {{-0.3, 0.85, 0.7, 0.55}, {0.4, 0.35, 0.45, 0.68}}}})

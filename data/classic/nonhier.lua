@@ -38,4 +38,4 @@ white_light = gr.light({-300, 500, 200}, {0.8, 0.8, 0.75}, {1, 0, 0})
 pink_light = gr.light({400, 200, 150}, {0.35, 0.25, 0.3}, {1, 0, 0})
 
 gr.render(scene, 'nonhier.png', 384, 384, {0, 180, 520}, {0, -0.25, -1}, {0, 1, 0}, 45,
-    {0.3, 0.3, 0.3}, {white_light, pink_light})
+    {0.3, 0.3, 0.3}, {white_light, pink_light}, {background = {0.3, 0.34, 0.4}})

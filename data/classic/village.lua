@@ -1,7 +1,8 @@
 -- TITLE: Village
 -- Houses around a green, written for Lua 5.0: unpack, table.getn, math.mod, and tables that shadow the library's.
--- Author: gray project. Dialect: classic, OLD order (detected from a bare unpack).
+-- Author: gray project. Dialect: classic, OLD order (as gray detects from a bare unpack).
 
+gr.transform_order('old')
 table_top = nil
 local colours = { {0.8, 0.75, 0.6}, {0.75, 0.5, 0.4}, {0.6, 0.65, 0.7}, {0.85, 0.8, 0.75} }
 local walls = {}
@@ -99,4 +100,5 @@ pond:scale(2, 0.05, 1.4)
 scene:add_child(pond)
 
 gr.render(scene, 'village.png', 480, 320, {0, 9, 17}, {0, -0.55, -1}, {0, 1, 0}, 42, {0.35, 0.35, 0.4},
-    {gr.light({-15, 20, 12}, {0.75, 0.7, 0.6}, {1, 0, 0})})
+    {gr.light({-15, 20, 12}, {0.75, 0.7, 0.6}, {1, 0, 0})},
+    {background = {0.55, 0.68, 0.85}})

@@ -6,7 +6,7 @@ local here = debug.getinfo(1, 'S').source:match('^@(.*/)') or './'
 package.path = here .. '../?.lua;' .. package.path
 local room = require 'room'
 local place = room.place
-room.textures = '../../textures/'
+room.textures = '' -- those that come with gray
 
 local function materials(m)
     local function glossy(r, g, b, roughness)
@@ -37,8 +37,8 @@ local panes = gr.area_light { corner = place { w.x0 + .05, w.y0 + .05, room.back
     colour = { 1, 1, 1 }, emission = { 4.2, 3.4, 2.8 }, visible = false }
 
 gr.render {
-    node = root, file = 'dining.png', width = 400, height = 300, integrator = 'path', spp = 256, denoise = true,
+    node = root, file = 'dining.png', width = 400, height = 300, integrator = 'path', denoise = true,
     eye = place(eye), target = place { eye[1] + .49, eye[2] - .155, eye[3] - 1 }, fov = 43,
-    background = gr.sky_cross { image = '../../textures/sky_dusk.png' }, lights = { panes },
+    background = gr.sky_cross { image = 'sky_dusk.png' }, lights = { panes },
     tone = 'filmic', exposure = 2, filter = 'gaussian',
 }

@@ -38,7 +38,7 @@ for i, radius in ipairs { .06, .2, .5, .95 } do
 end
 
 gr.render {
-    node = scene, file = 'plates.png', width = 480, height = 360, integrator = 'path', spp = 256, denoise = true,
+    node = scene, file = 'plates.png', width = 480, height = 360, integrator = 'path', denoise = true,
     eye = eye, target = { 0, .9, 0 }, fov = 38, background = { 0, 0, 0 }, tone = 'filmic',
     filter = 'gaussian',
 }

@@ -115,7 +115,7 @@ end
 print(count .. ' lamps')
 
 gr.render {
-    node = street, file = 'street.png', width = 480, height = 320, integrator = 'path', spp = 256, denoise = true,
+    node = street, file = 'street.png', width = 480, height = 320, integrator = 'path', denoise = true,
     eye = eye, target = { -.15, 2.7, -10 }, fov = 52, background = { .022, .04, .1 }, tone = 'filmic', filter = 'gaussian',
     exposure = -.3,
 }

@@ -95,7 +95,7 @@ for level = 0, 3 do
 end
 box(dark, { -.9, 1.15, -3.1 }, { .5, 2.05, -3.07 })
 room:add_child(gr.rectangle { corner = { -.85, 1.2, -3.065 }, along = { 1.3, 0, 0 }, up = { 0, .8, 0 },
-    material = gr.material { kd = gr.texture { file = '../../textures/painting.png' }, two_sided = true } })
+    material = gr.material { kd = gr.texture { file = 'painting.png' }, two_sided = true } })
 local cloth = gr.openpbr_material { base_color = { .3, .36, .3 }, fuzz_weight = .5, fuzz_color = { .6, .65, .6 },
     specular_weight = 0 }
 local function cushion(min, max)
@@ -114,7 +114,7 @@ cushion({ 1.3, .1, .2 }, { 2.35, .62, .42 })
 
 local sun = { -.62, .52, -.12 }
 gr.render {
-    node = room, file = 'sunlit.png', width = 400, height = 300, integrator = 'path', spp = 256, denoise = true,
+    node = room, file = 'sunlit.png', width = 400, height = 300, integrator = 'path', denoise = true,
     eye = { -1.2, 1.45, 2.9 }, target = { .25, .95, -2 }, fov = 52, tone = 'filmic', exposure = 1,
     background = gr.clear_sky { sun = sun, turbidity = 3 },
     lights = { gr.sun_light { sun = sun, colour = { 2.6, 2.3, 1.9 } } },

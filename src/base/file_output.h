@@ -60,7 +60,7 @@ struct file_rules {
     const struct file_interrupt *interrupt; /* or NULL */
 };
 
-enum { FILE_HEAD_SIZE = 16, FILE_NAME_SIZE = 4096 };
+enum { FILE_HEAD_SIZE = 80, FILE_NAME_SIZE = 4096 };
 
 /* A name, and the rules for it (NULL: the zero value). */
 struct file_target {

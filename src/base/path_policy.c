@@ -107,7 +107,7 @@ bool path_policy_add(struct path_policy *path_policy, const char *folder, enum p
 
 bool path_policy_add_scene(struct path_policy *path_policy, const char *scene, const char *library,
                            struct error *error) {
-    char folder[PATH_MAX + 4];
+    char folder[PATH_MAX + sizeof PATH_POLICY_TEXTURES];
     const char *slash = strrchr(scene, '/');
     int length = slash ? (int)(slash - scene) + 1 : 0;
     if (length >= PATH_MAX)
@@ -116,9 +116,12 @@ bool path_policy_add_scene(struct path_policy *path_policy, const char *scene, c
     if (!path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error))
         return false;
     (void)snprintf(folder, sizeof folder, "%.*s..", length, scene);
-    return path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error) &&
-           path_policy_add(path_policy, ".", PATH_POLICY_IMPLIED, error) &&
-           (!library || path_policy_add(path_policy, library, PATH_POLICY_READ, error));
+    if (!path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error) ||
+        !path_policy_add(path_policy, ".", PATH_POLICY_IMPLIED, error))
+        return false;
+    (void)snprintf(folder, sizeof folder, "%.*s%s", PATH_MAX - 1, library ? library : "", PATH_POLICY_TEXTURES);
+    return !library || (path_policy_add(path_policy, library, PATH_POLICY_READ, error) &&
+                        path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error));
 }
 
 void path_policy_destroy(struct path_policy *path_policy) {

@@ -38,7 +38,10 @@ struct path_policy {
 /* An implied folder that does not exist, or is "/", is left out; a requested one must exist. */
 bool path_policy_add(struct path_policy *path_policy, const char *folder, enum path_policy_kind kind,
                      struct error *error);
-/* The usual folders of a scene: its own, the one above it, the working directory, the library (may be NULL). */
+/* From the library to the pictures that come with the program. */
+#define PATH_POLICY_TEXTURES "/../textures"
+/* The usual folders of a scene: its own, the one above it, the working directory, the library (may be NULL) and the
+ * pictures beside it. */
 bool path_policy_add_scene(struct path_policy *path_policy, const char *scene, const char *library,
                            struct error *error);
 void path_policy_destroy(struct path_policy *path_policy);

@@ -34,7 +34,7 @@ void context_push_function(lua_State *L, const char *name);
 /* Whether a value is the table gr, as the first argument of gr:sphere(...) is. */
 bool context_is_gr(lua_State *L, int index);
 
-enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8, WARNED_RADIANS = 16 };
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8, WARNED_RADIANS = 16, WARNED_SLOW = 32 };
 /* Warns once for each function and bit. */
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

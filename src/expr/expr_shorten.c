@@ -1,4 +1,6 @@
-/* One pass backwards over the program. It keeps the new register of every old one that is still needed, and renames,
+/* A pass forwards folds: an operation on constants whose result is among the constants of the program is that constant,
+ * and x * 1, x / 1, x - 0 and x + -0 are x. So the rest of a smooth minimum beyond its width ends.
+ * A pass backwards follows. It keeps the new register of every old one that is still needed, and renames,
  * frees and drops at the same time. A min, max or selection that is decided disappears: its selected operand gets
  * its register. A copy remains only if another instruction needs that operand too, or if it is a constant. */
 #include "expr/expr_shorten.h"
@@ -31,8 +33,10 @@ static inline uint16_t want(struct renaming *r, uint16_t value) {
     return *to;
 }
 
+/* The memory of a shortening; the code comes first, because it is aligned most. */
 size_t expr_shorten_size(const struct expr_program *program) {
-    return ((size_t)program->register_count + 1) * 2 * sizeof(uint16_t);
+    return program->count * sizeof(struct expr_instruction) +
+           ((size_t)program->register_count + 1) * 3 * sizeof(uint16_t);
 }
 
 static bool is_selection(uint16_t operation) {
@@ -56,25 +60,101 @@ static struct expr_instruction copy_of(const struct expr_instruction *in, uint16
     return (struct expr_instruction){EXPR_COPY, in->out, from, in->out, in->out, 0};
 }
 
+/* --- folding --- */
+
+static uint16_t find_constant(const struct expr_program *program, union expr_value value) {
+    for (uint32_t k = 0; k < program->constant_count; k++)
+        if (program->constants[k].i == value.i)
+            return (uint16_t)k;
+    return UNWANTED;
+}
+
+/* The constant that an operation on constants is, or UNWANTED. */
+static uint16_t result_of_constants(const struct expr_program *program, const struct expr_instruction *in) {
+    const uint16_t operands[3] = {in->a, in->b, in->c};
+    union expr_value values[3] = {{.i = 0}, {.i = 0}, {.i = 0}};
+    if (in->operation >= EXPR_OPERATION_COUNT || in->operation == EXPR_TEXEL)
+        return UNWANTED;
+    for (int k = 0; k < 3; k++) {
+        if (reads[in->operation][k] && operands[k] >= program->constant_count)
+            return UNWANTED;
+        if (reads[in->operation][k])
+            values[k] = program->constants[operands[k]];
+    }
+    return find_constant(program, expr_apply((enum expr_operation)in->operation, values[0], values[1], values[2]));
+}
+
+static bool is_number(const struct expr_program *program, uint16_t value, double number) {
+    const union expr_value bits = {.f = number};
+    return value < program->constant_count && program->constants[value].i == bits.i;
+}
+
+/* The operand that the result is equal to, or UNWANTED. */
+static uint16_t equal_operand(const struct expr_program *program, const struct expr_instruction *in) {
+    switch (in->operation) { /* no list: few operations have such operands */
+    case EXPR_COPY:
+        return in->a;
+    case EXPR_ADD:
+        return is_number(program, in->b, -0.0) ? in->a : is_number(program, in->a, -0.0) ? in->b : UNWANTED;
+    case EXPR_SUBTRACT:
+        return is_number(program, in->b, 0) ? in->a : UNWANTED;
+    case EXPR_MULTIPLY:
+        return is_number(program, in->b, 1) ? in->a : is_number(program, in->a, 1) ? in->b : UNWANTED;
+    case EXPR_DIVIDE:
+        return is_number(program, in->b, 1) ? in->a : UNWANTED;
+    default:
+        return UNWANTED;
+    }
+}
+
+/* Copies the code; reads constants instead of the registers that contain them. known: room for one of each register;
+ * at the end the constant that it contains, or UNWANTED. */
+static void fold(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane, uint16_t *known,
+                 struct expr_instruction *code) {
+    const uint32_t first = program->constant_count;
+    memset(known, 0xff, program->register_count * sizeof *known); /* UNWANTED */
+    for (uint32_t n = 0; n < program->count; n++) {
+        struct expr_instruction in = program->code[n];
+        uint16_t *const operands[3] = {&in.a, &in.b, &in.c};
+        for (int k = 0; k < 3; k++)
+            if (reads[in.operation][k] && *operands[k] >= first && known[*operands[k] - first] != UNWANTED)
+                *operands[k] = known[*operands[k] - first];
+        bool takes_first = choices[n].first >> lane & 1, takes_second = choices[n].second >> lane & 1;
+        uint16_t equal = takes_first || takes_second ? taken_operand(&in, takes_first) : equal_operand(program, &in);
+        if (equal == UNWANTED)
+            equal = result_of_constants(program, &in);
+        else if (!takes_first && !takes_second)
+            in = (struct expr_instruction){EXPR_COPY, in.out, equal, in.out, in.out, 0};
+        known[in.out - first] = equal < first ? equal : UNWANTED;
+        code[n] = in;
+    }
+}
+
 bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
                   struct expr_stack *stack, void *scratch, struct expr_program *out) {
-    struct renaming r = {.renamed = scratch, .first = program->constant_count};
+    struct expr_instruction *code = scratch;
+    uint16_t *known = (uint16_t *)(void *)(code + program->count);
+    struct renaming r = {.renamed = known + program->register_count, .first = program->constant_count};
     r.unused = r.renamed + program->register_count;
+    fold(program, choices, lane, known, code);
     memset(r.renamed, 0xff, program->register_count * sizeof *r.renamed); /* UNWANTED */
     struct expr_program shorter = *program;
-    for (int i = 0; i < program->output_count; i++)
-        shorter.outputs[i] = want(&r, program->outputs[i]);
+    for (int i = 0; i < program->output_count; i++) {
+        const uint16_t from = program->outputs[i];
+        const bool is_known = from >= r.first && known[from - r.first] != UNWANTED;
+        shorter.outputs[i] = is_known ? known[from - r.first] : want(&r, from);
+    }
     struct expr_instruction *end = stack->code + stack->free, *to = end;
     struct expr_linker linker = {.constant_count = program->constant_count};
     for (uint32_t n = program->count; n-- > 0;) {
-        struct expr_instruction in = program->code[n];
+        struct expr_instruction in = code[n];
         uint16_t *renamed = &r.renamed[in.out - r.first], result = *renamed;
         if (result == UNWANTED)
             continue;
         *renamed = UNWANTED;
         bool first = choices[n].first >> lane & 1, second = choices[n].second >> lane & 1;
-        if (first || second) {
-            uint16_t from = taken_operand(&in, first);
+        if (first || second || in.operation == EXPR_COPY) {
+            uint16_t from = first || second ? taken_operand(&in, first) : in.a;
             if (from >= r.first && r.renamed[from - r.first] == UNWANTED) {
                 r.renamed[from - r.first] = result;
                 continue;

@@ -573,6 +573,9 @@ static inline __attribute__((always_inline)) void run_lanes(struct machine *run,
         struct expr_choice decided = {0, 0};
         switch (
             (unsigned)in->operation) { /* no list: every operation without vectors, new ones too, is right box by box */
+        case EXPR_COPY:
+            *out = *from[0];
+            break;
         case EXPR_ADD:
         case EXPR_SUBTRACT:
             run_sum(run, from[0], from[1], in->operation == EXPR_SUBTRACT, out);

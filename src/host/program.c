@@ -9,18 +9,22 @@
 #include "base/version.h"
 #include "formats/font.h"
 #include "formats/model.h"
+#include "host/completion.h"
+#include "host/first_scene.h"
 #include "host/in_process.h"
+#include "host/manual.h"
 #include "host/supervisor.h"
 #include "image/animation.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
+#include "output/compare.h"
 #include "output/merge.h"
 #include "output/picture_files.h"
-#include "script/document.h"
 #include "session/options.h"
 #include "session/options_table.h"
 #include "session/text.h"
 
+#include <errno.h>
 #include <lua.h>
 #include <png.h>
 #include <signal.h>
@@ -70,16 +74,6 @@ static void print_version(void) {
                  exr_library(), webp_library(), window, farm);
 }
 
-/* Prints text that the script layer makes of its table. */
-static int print_document(const char *text) {
-    if (!text) {
-        (void)fputs("gray: out of memory for the text\n", stderr);
-        return ERROR_MACHINE;
-    }
-    (void)fputs(text, stdout);
-    return 0;
-}
-
 /* If several processes render a picture, only the first one reports and writes files. */
 static void disable_output(struct options *options) {
     options->checkpoint = NULL;
@@ -108,27 +102,32 @@ static bool choose_isa(const struct options *options) {
 }
 
 static int perform(struct options *options, const struct program_parts *parts, struct arena *arena) {
+    options->script.library_folder = find_library(arena);
     switch (options->action) {
     case ACTION_HELP:
-        options_print_help(stdout);
-        return 0;
     case ACTION_MANUAL:
-        options_print_help(stdout);
-        (void)fputc('\n', stdout);
-        return print_document(script_manual(arena));
+        return manual_print(options, options->script.library_folder, arena);
+    case ACTION_ROFF:
+        return manual_print_page(options, arena);
     case ACTION_ANNOTATIONS:
-        return print_document(script_annotations(arena));
+        return manual_print_annotations(arena);
+    case ACTION_INIT:
+        return first_scene_write(options, options->script.library_folder);
+    case ACTION_COMPLETE:
+        completion_print(options);
+        return 0;
     case ACTION_VERSION:
         print_version();
         return 0;
     case ACTION_MERGE:
         return choose_isa(options) ? merge_run(options) : ERROR_USAGE;
+    case ACTION_COMPARE:
+        return compare_run(options);
     case ACTION_RENDER:
         break;
     }
     if (!choose_isa(options))
         return ERROR_USAGE;
-    options->script.library_folder = find_library(arena);
     return render(options, parts);
 }
 
@@ -159,7 +158,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     if (!options_parse(&options, argc, argv, &arena, &error) || !picture_files_check_output(&options, &error)) {
         char line[sizeof error.text + 16];
         (void)snprintf(line, sizeof line, "gray: %s", error.text);
-        text_print_line(stderr, line);
+        text_print_message(stderr, TEXT_ERROR, line);
         if (error.kind == ERROR_USAGE)
             (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help lists all options\n", stderr);
         status = (int)error.kind;
@@ -170,9 +169,10 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     } else {
         status = perform(&options, parts, &arena);
     }
-    /* Detects a full disk after text output; rendering has already checked it. */
+    /* Detects a full disk after text output; rendering has already checked it. A reader may have enough of a text. */
     if (options.action != ACTION_RENDER && (fflush(stdout) != 0 || ferror(stdout))) {
-        (void)fputs("gray: standard output cannot be written\n", stderr);
+        if (errno != EPIPE)
+            (void)fputs("gray: standard output cannot be written\n", stderr);
         status = ERROR_MACHINE;
     }
     arena_destroy(&arena);

@@ -359,6 +359,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
+    bool turns = process->options->script.frames.turntable > 0;
+    scene_set_time(work->request->scene, turns ? 0 : frame_time(&work->request->frame));
     work->shows = digest_of_frame(work);
     picture->repeats = repeats_frame(work);
     if (!settle(process, error))
@@ -709,7 +711,7 @@ void render_process_run(const struct options *options, const struct host_service
     scene_writer_init(&errors, &services->control->error_stream);
     const struct file_listener listener = {
         .searches = services->wait ? wait_for_files : NULL,
-        .log = options->checkpoint || options->shards || options->mpi ? &process.read_log : NULL,
+        .log = options->checkpoint || options->keeps_tiles || options->shards || options->mpi ? &process.read_log : NULL,
         .heard = services->read ? report_read : NULL,
         .wrote = services->read ? report_write : NULL,
         .contents = services->read && options->watch,

@@ -249,6 +249,18 @@ static bool tries_again(struct supervisor *supervisor, int how) {
     return true;
 }
 
+/* Files are written after the window is closed. */
+void supervisor_abandon_picture(struct supervisor *supervisor) {
+    struct picture *picture = &supervisor->output.current;
+    bool other = supervisor->window && picture->open && !viewer_has_tiles(&supervisor->viewer);
+    for (uint32_t tile = 0; other && !picture->request.check && tile < film_tile_count(&picture->film); tile++)
+        atomic_store(&picture->film.tiles[tile], FILM_TILE_WANTED);
+    viewer_detach(&supervisor->viewer);
+    if (supervisor->quit_at > 0)
+        viewer_end(&supervisor->viewer);
+    output_abandon(&supervisor->output);
+}
+
 /* What the end of the child means for the scripts that are left. */
 void supervisor_judge_end(struct supervisor *supervisor, int how) {
     bool all_ended = supervisor->next_script >= supervisor->options->script_count;
@@ -267,7 +279,6 @@ void supervisor_judge_end(struct supervisor *supervisor, int how) {
                   WIFSIGNALED(how) ? "signal" : "status", WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
         supervisor_note_error(supervisor, &error);
     }
-    viewer_detach(&supervisor->viewer);
-    output_abandon(&supervisor->output);
+    supervisor_abandon_picture(supervisor);
     supervisor->retry.kept = 0;
 }

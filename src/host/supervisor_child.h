@@ -9,6 +9,8 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error);
 int supervisor_reap_child(struct supervisor *supervisor);
 /* What the end of the child means for the scripts that are left. */
 void supervisor_judge_end(struct supervisor *supervisor, int how);
+/* The picture that is open, if any, will not be finished. */
+void supervisor_abandon_picture(struct supervisor *supervisor);
 void supervisor_stop_script_clock(struct supervisor *supervisor);
 void supervisor_start_script_clock(struct supervisor *supervisor);
 /* Milliseconds until the script could have used up its time; -1: no limit; 0: it has. */

@@ -142,7 +142,7 @@ static void end_picture(struct supervisor *supervisor, bool quit) {
     send_command(supervisor, &command);
 }
 
-/* Closing the window loses no picture: it is written already, or the user did not wait for it. */
+/* A picture that is not written yet is interrupted as by Ctrl-C. */
 static void quit_window(struct supervisor *supervisor) {
     supervisor->ended = true;
     supervisor->quit_at = clock_now();
@@ -351,8 +351,7 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
     case MESSAGE_ABANDON:
         if (!current->open || supervisor->retry.kept)
             break;
-        viewer_detach(&supervisor->viewer);
-        output_abandon(&supervisor->output);
+        supervisor_abandon_picture(supervisor);
         supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_SCRIPT:

@@ -32,13 +32,12 @@ bool supervisor_listen(struct supervisor *supervisor, struct error *error) {
     return true;
 }
 
-/* The first Ctrl-C, if tiles are kept (--checkpoint, --partial): tiles in progress are finished. */
+/* The first Ctrl-C with --checkpoint: tiles in progress are finished. */
 static bool finish_tiles(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
     const struct picture *picture = &supervisor->output.current;
-    bool wanted = (options->checkpoint || options->partial) && picture->open && !picture->request.check &&
-                  !supervisor->output.farm && !supervisor->window && !options->watch &&
-                  atomic_load(&supervisor->control->tiles) > 0;
+    bool wanted = options->checkpoint && picture->open && !picture->request.check && !supervisor->output.farm &&
+                  !supervisor->window && !options->watch && atomic_load(&supervisor->control->tiles) > 0;
     if (!wanted || supervisor->finishing || supervisor->deadline > 0)
         return false;
     supervisor->stop = supervisor->finishing = true;

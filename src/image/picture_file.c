@@ -63,7 +63,11 @@ bool picture_file_write(const struct file_target *target, const struct picture_s
     case PICTURE_OTHER:
         break;
     }
-    struct png_source png = {.width = width, .height = height, .context = source->context, .srgb = source->srgb};
+    struct png_source png = {.width = width,
+                             .height = height,
+                             .context = source->context,
+                             .srgb = source->srgb,
+                             .unfinished = source->unfinished};
     if (source->deep)
         png.words = source->words;
     else

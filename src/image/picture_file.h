@@ -36,8 +36,9 @@ struct picture_source {
     void (*words)(void *context, uint32_t y, uint16_t *line);
     void (*light)(void *context, uint32_t y, float *line); /* linear, without limits */
     void *context;
-    bool deep; /* 16 bits per channel, if the format has them */
-    bool srgb; /* bytes and words are encoded with the sRGB function */
+    bool deep;       /* 16 bits per channel, if the format has them */
+    bool srgb;       /* bytes and words are encoded with the sRGB function */
+    bool unfinished; /* see struct png_source */
 };
 
 /* Writes a file in the format of its name. With a pool, its threads may request rows at the same time. */

@@ -129,6 +129,14 @@ static bool write_small(struct text_writer *writer, const char *kind, const uint
     return write_chunk(writer, kind, bytes, size, crc, error);
 }
 
+/* A text chunk (keyword, zero, text), the first one after the header of 33 bytes. */
+static const char unfinished[] = "Comment\0unfinished picture of gray";
+
+bool png_is_unfinished(const uint8_t *head, size_t size) {
+    return size >= 41 + sizeof unfinished - 1 && memcmp(head + 37, "tEXt", 4) == 0 &&
+           memcmp(head + 41, unfinished, sizeof unfinished - 1) == 0;
+}
+
 static bool write_head(struct text_writer *writer, struct error *error) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t stream_head[2] = {0x78, 0x5e}; /* deflate, a window of 32 kB, a fast level (RFC 1950) */
@@ -138,6 +146,8 @@ static bool write_head(struct text_writer *writer, struct error *error) {
     put_word(header + 4, writer->rows->height);
     return file_output_write(&writer->output, signature, sizeof signature, error) &&
            write_small(writer, "IHDR", header, sizeof header, error) &&
+           (!writer->rows->unfinished ||
+            write_small(writer, "tEXt", (const uint8_t *)unfinished, sizeof unfinished - 1, error)) &&
            (!writer->rows->srgb || write_small(writer, "sRGB", &intent, 1, error)) &&
            write_small(writer, "IDAT", stream_head, sizeof stream_head, error);
 }

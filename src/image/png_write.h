@@ -16,13 +16,16 @@ struct png_source {
     void (*bytes)(void *context, uint32_t y, uint8_t *line);
     void (*words)(void *context, uint32_t y, uint16_t *line);
     void *context;
-    bool srgb; /* the numbers are encoded with the sRGB function: the file states it */
+    bool srgb;       /* the numbers are encoded with the sRGB function: the file states it */
+    bool unfinished; /* the file states that, too: png_is_unfinished */
 };
 
 /* Creates missing folders of the target. The bytes of the file depend only on the pixels. With a pool, its threads
  * request rows at the same time; without one, each row is requested once, from the top. */
 bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,
                     struct error *error);
+/* Whether a file that begins so (FILE_HEAD_SIZE bytes) was written as unfinished. */
+bool png_is_unfinished(const uint8_t *head, size_t size);
 /* The number of stripes of a picture of that size: more threads have no work. Sides from 1. */
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 

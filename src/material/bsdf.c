@@ -527,6 +527,8 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
         out[count].weight = lobe->weight;
         out[count].expected = expected_share(bsdf, lobe);
         out[count].lobe = i;
+        const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+        out[count].is_known = lobe->kind == LOBE_GLOSS && facets->kind == FACETS_BOUNDARY && facets->eta < 1;
         out[count++].rough = !(flags & BSDF_DELTA);
     }
     for (int i = 0; i < count; i++) {
@@ -543,12 +545,9 @@ static bool rough_branch_sample(const struct bsdf *bsdf, const struct bsdf_branc
     const struct lobe *lobe = &bsdf->lobes[branch->lobe];
     if (!rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits))
         return false;
-    double pdf = rough_lobe_pdf(bsdf, lobe, wo, out->direction);
-    if (!(pdf > 0))
-        return false;
-    out->weight = vec3_scale(rough_lobe_weight(bsdf, lobe, wo, out->direction),
-                             rough_lobe_eval(bsdf, lobe, wo, out->direction) / pdf);
-    return true;
+    double share = rough_lobe_share(bsdf, lobe, wo, out->direction);
+    out->weight = vec3_scale(rough_lobe_weight(bsdf, lobe, wo, out->direction), share);
+    return share > 0;
 }
 
 bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,

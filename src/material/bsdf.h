@@ -148,9 +148,9 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
  * mirror. */
 struct bsdf_branch {
     struct vec3 weight; /* not black */
-    double expected;    /* approximately the mean weight of samples, above 0: for the choice of a branch */
+    double expected;    /* approximately the mean share of `weight` in samples, above 0: for the choice of a branch */
     int lobe;
-    bool rough;
+    bool rough, is_known; /* is_known: `expected` is the mean, from a table */
 };
 /* The number of branches. */
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);

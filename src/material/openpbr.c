@@ -267,7 +267,7 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
             add_smooth_passage(l, hit, vec3_scale(tinted, 1 - reflected));
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
-        bsdf_facets_boundary(facets, eta);
+        (clear > 0 ? bsdf_facets_glass : bsdf_facets_boundary)(facets, eta);
         reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
         if (clear > 0) {

@@ -78,6 +78,11 @@ static double mean_lack(const struct bsdf_facets *facets, double mean_albedo, do
 void bsdf_facets_boundary(struct bsdf_facets *facets, double eta) {
     facets->kind = FACETS_BOUNDARY;
     facets->eta = eta;
+    facets->lack = facets->lack_behind = facets->through = 0;
+}
+
+void bsdf_facets_glass(struct bsdf_facets *facets, double eta) {
+    bsdf_facets_boundary(facets, eta);
     facets->lack = mean_lack(facets, albedo_boundary_average(facets->roughness, eta), eta);
     facets->lack_behind = mean_lack(facets, albedo_boundary_average(facets->roughness, 1 / eta), 1 / eta);
     double min = facets->lack < facets->lack_behind ? facets->lack : facets->lack_behind;
@@ -213,24 +218,25 @@ static double reflected_share(const struct bsdf_facets *facets, double towards) 
     return 1;
 }
 
-/* The density of a direction that one facet reflects or refracts, and its factor from Fresnel and masking. */
+/* How one facet reflects or refracts a direction: its normal, the factor of its density, and that from Fresnel and
+ * masking. */
 struct facet_path {
-    double pdf, share;
+    struct vec3 half;
+    double jacobian, share;
 };
+static const struct facet_path no_facet = {{0, 0, 0}, 0, 0};
 
 static struct facet_path path_by(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi, struct vec3 half,
                                  double jacobian, double share) {
     share *= facet_distribution_escape(&facets->distribution, wo, wi);
-    if (!(share > 0))
-        return (struct facet_path){0, 0};
-    return (struct facet_path){facet_distribution_pdf(&facets->distribution, wo, half) * jacobian, share};
+    return share > 0 ? (struct facet_path){half, jacobian, share} : no_facet;
 }
 
 static struct facet_path mirrored(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add(wo, wi));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
-        return (struct facet_path){0, 0};
+        return no_facet;
     return path_by(facets, wo, wi, half, 1 / (4 * v_h), reflected_share(facets, v_h));
 }
 
@@ -240,20 +246,20 @@ static struct facet_path through_pane(const struct bsdf *bsdf, const struct bsdf
     struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
-        return (struct facet_path){0, 0};
+        return no_facet;
     return path_by(facets, wo, above, half, 1 / (4 * v_h), 1 - reflected_share(facets, v_h));
 }
 
 /* Walter et al. 2007, sections 5.2 and 5.3. */
 static struct facet_path refracted(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
     if (facets->eta == 1)
-        return (struct facet_path){0, 0};
+        return no_facet;
     struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, facets->eta));
     if (!(vec3_dot(half, facets->distribution.normal) > 0))
         half = vec3_negate(half);
     double v_h = vec3_dot(wo, half), l_h = vec3_dot(wi, half), sum = facets->eta * v_h + l_h;
     if (!(v_h > 0 && l_h < 0 && sum != 0))
-        return (struct facet_path){0, 0};
+        return no_facet;
     return path_by(facets, wo, wi, half, -l_h / (sum * sum), 1 - reflected_share(facets, v_h));
 }
 
@@ -261,10 +267,14 @@ static struct facet_path path_of(const struct bsdf *bsdf, const struct lobe *lob
     const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
     bool behind = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
     if (!(cosine_on(bsdf, behind, wi) > 0))
-        return (struct facet_path){0, 0};
+        return no_facet;
     if (!behind)
         return mirrored(facets, wo, wi);
     return lobe->kind == LOBE_PANE ? through_pane(bsdf, facets, wo, wi) : refracted(facets, wo, wi);
+}
+
+static double path_pdf(const struct bsdf_facets *facets, struct vec3 wo, const struct facet_path *path) {
+    return path->share > 0 ? facet_distribution_pdf(&facets->distribution, wo, path->half) * path->jacobian : 0;
 }
 
 static bool facet_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
@@ -330,7 +340,7 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GLASS:
     case LOBE_PANE: {
         struct facet_path path = path_of(bsdf, lobe, wo, wi);
-        return path.pdf * path.share;
+        return path_pdf(&bsdf->facets[lobe->facets], wo, &path) * path.share;
     }
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
@@ -363,12 +373,18 @@ double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct v
     case LOBE_GLOSS:
     case LOBE_METAL:
     case LOBE_GLASS:
-    case LOBE_PANE:
-        return path_of(bsdf, lobe, wo, wi).pdf;
+    case LOBE_PANE: {
+        struct facet_path path = path_of(bsdf, lobe, wo, wi);
+        return path_pdf(&bsdf->facets[lobe->facets], wo, &path);
+    }
         SIMPLE_LOBES(LIST_LABEL)
         break;
     }
     return 0;
+}
+
+double rough_lobe_share(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+    return path_of(bsdf, lobe, wo, wi).share;
 }
 
 bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,

@@ -10,16 +10,19 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
 /* The weight, with the colour that facets of metal give to this pair of directions. */
 struct vec3 rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
+/* Of a lobe of facets: eval / pdf for its samples. */
+double rough_lobe_share(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
 /* False: lost, below the surface or in it. */
 bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
                        struct vec3 *direction, bool *transmits);
 
 /* Facets of a roughness between 0 and 1 (not 0) and an anisotropy in [0, 1] (0: none; OpenPBR Surface 1.1) about a
- * frame; `along` has any length and is turned into the surface: 0 for any tangent. One of the three functions below
- * then sets how they reflect and transmit. */
+ * frame; `along` has any length and is turned into the surface: 0 for any tangent. One of the four functions below
+ * then sets how they reflect and transmit; those of a boundary alone are for opaque surfaces. */
 void bsdf_facets_shape(struct bsdf_facets *facets, struct vec3 normal, struct vec3 along, double roughness,
                        double anisotropy);
 void bsdf_facets_boundary(struct bsdf_facets *facets, double eta);
+void bsdf_facets_glass(struct bsdf_facets *facets, double eta);
 void bsdf_facets_pane(struct bsdf_facets *facets, double eta);
 /* f0: reflectance head on; tint: the reflectance at the cosine 1/7 over that of Schlick's formula. */
 void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint);

@@ -163,7 +163,8 @@ struct transform motion_at(const struct motion *motion, double time) {
     if (motion->spins) {
         struct motion still = *motion;
         still.spins = false;
-        struct transform spin = transform_rotate_about(motion->spin_axis, fmod(motion->spin * time, 360));
+        struct transform spin =
+            transform_rotate_about(motion->spin_axis, fmod(motion->spin_start + motion->spin * time, 360));
         struct transform pose = motion->has_end ? motion_at(&still, time) : transform_compose(&moved, &motion->rest);
         return transform_compose(&pose, &spin);
     }
@@ -214,8 +215,8 @@ struct box motion_bounds(const struct motion *motion, const struct box *box, str
     if ((motion->has_end || motion->spins) && !is_finite(box)) {
         out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
     } else if (motion->spins) {
-        double length = vec3_length(motion->spin_axis), from = motion->spin * shutter.open;
-        double to = motion->spin * shutter.close;
+        double length = vec3_length(motion->spin_axis), from = motion->spin_start + motion->spin * shutter.open;
+        double to = motion->spin_start + motion->spin * shutter.close;
         bool whole = fabs(to - from) >= 360;
         spun = turned_bounds(box, vec3_scale(motion->spin_axis, 1 / length), whole ? 0 : from, whole ? 360 : to);
         if (motion->has_end) {

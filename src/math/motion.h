@@ -29,6 +29,7 @@ struct motion {
     bool spins;            /* a rotation about an axis through the origin of the node's own space */
     struct vec3 spin_axis; /* its length does not matter */
     double spin;           /* degrees per unit of time */
+    double spin_start;     /* degrees at time 0 */
 };
 
 struct motion motion_of_velocity(struct vec3 velocity);

@@ -1,6 +1,9 @@
 /* The file is written anew each time, beside the old one, which is kept until the new one is complete: after a kill at
  * any moment one of the two exists. To limit the cost, the pause between two writes is at least twenty times the
- * duration of the last one. */
+ * duration of the last one.
+ *
+ * A checkpoint that was not requested (`late`) replaces only one of the same options, as of a scene that was changed
+ * after an interruption: tiles of other options may be those of a larger picture, and could go on. */
 #include "output/checkpoint.h"
 
 #include "base/clock.h"
@@ -10,10 +13,12 @@
 #include <string.h>
 
 static const double pause_factor = 20;
+static const double long_run = 60; /* seconds */
 
 void checkpoint_init(struct checkpoint *checkpoint, const struct options *options, const struct picture_files *files) {
     memset(checkpoint, 0, sizeof *checkpoint); /* no temporary of this size on the stack, as elsewhere */
     checkpoint->on = options->checkpoint && !options->check;
+    checkpoint->late = options->keeps_tiles;
     checkpoint->resume = options->resume;
     checkpoint->every = options->checkpoint_every;
     checkpoint->files = files;
@@ -31,12 +36,17 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
         *error = checkpoint->refused;
         return false;
     }
-    if (!checkpoint->on || checkpoint->opened)
+    if (checkpoint->opened || (checkpoint->late ? checkpoint->path[0] != '\0' : !checkpoint->on))
         return true;
     if (!choose_path(checkpoint, picture_name, error))
-        return false;
+        return checkpoint->late;
     checkpoint->written_at = clock_now();
     bool there = file_is_regular(checkpoint->path);
+    if (checkpoint->late) {
+        checkpoint->opened = true;
+        checkpoint->has_old = there;
+        return true;
+    }
     if (there && !checkpoint->resume && checkpoint->files->options->checkpoint_implied)
         there = false; /* its frames are made again, and it is replaced */
     if (there && !checkpoint->resume)
@@ -103,10 +113,32 @@ bool checkpoint_has_written(struct checkpoint *checkpoint, uint32_t number, cons
     return true;
 }
 
+/* The file of an earlier run that this one does not go on with; key: of its first picture. */
+static void judge_old(struct checkpoint *checkpoint, const struct tile_key *key, char notice[256]) {
+    struct tile_file *old = &checkpoint->old;
+    struct error ignored;
+    if (!tile_file_read(checkpoint->path, old, &ignored))
+        return;
+    const struct tile_key *had = old->done_count > 0 ? &old->done[0].key : &old->picture.key;
+    checkpoint->opened = digest_equal(had->options, key->options);
+    if (!checkpoint->opened)
+        (void)snprintf(notice, 256, "gray: notice: %.150s is of a run with other options, and stays", checkpoint->path);
+    else if (!tile_key_difference(had, key))
+        (void)snprintf(notice, 256, "gray: notice: %.150s is of this picture: --resume would go on with it",
+                       checkpoint->path);
+    if (checkpoint->opened)
+        (void)file_identity_of(checkpoint->path, &checkpoint->file);
+    tile_file_close(old);
+}
+
 bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture *picture, struct film *film,
                         char notice[256], struct error *error) {
     notice[0] = '\0';
     checkpoint->tiles_kept = 0;
+    if (checkpoint->late && checkpoint->has_old) {
+        judge_old(checkpoint, &picture->key, notice);
+        checkpoint->has_old = false;
+    }
     if (!checkpoint->has_old || !checkpoint->old.has_picture || checkpoint->old.picture.number != picture->number)
         return true;
     const char *difference = tile_picture_difference(&checkpoint->old.picture, picture);
@@ -125,7 +157,7 @@ bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture
 
 static struct file_target target_of(struct checkpoint *checkpoint) {
     const struct picture_files *files = checkpoint->files;
-    bool named = strcmp(files->options->checkpoint, "auto") != 0;
+    bool named = files->options->checkpoint && strcmp(files->options->checkpoint, "auto") != 0;
     return (struct file_target){checkpoint->path, named ? &files->named_checkpoint : &files->checkpoint,
                                 &checkpoint->file};
 }
@@ -143,6 +175,9 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
     if (!now && clock - checkpoint->written_at < (checkpoint->every > pause ? checkpoint->every : pause))
         return true;
     struct checkpoint_tiles have = {film ? film_tiles_in(film, FILM_TILE_DONE) : 0, film ? film_tiles_begun(film) : 0};
+    bool empty = have.done + have.begun == 0 && checkpoint->done_count == 0;
+    if (checkpoint->late && (!now || empty || clock - checkpoint->written_at < long_run))
+        return true;
     if (!now && !checkpoint->pending && have.done == checkpoint->tiles_kept && have.begun == 0)
         return true;
     const struct file_target target = target_of(checkpoint);

@@ -10,6 +10,7 @@
 /* Zero value: no checkpoint is requested, and every call does nothing. */
 struct checkpoint {
     bool on, opened, resume;
+    bool late; /* it is not requested: written only when a run of more than a minute is interrupted */
     const struct picture_files *files; /* not owned */
     struct error refused;              /* why pictures must not be rendered: reported for every picture */
     uint32_t number;                   /* of the current picture */

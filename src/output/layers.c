@@ -101,7 +101,8 @@ bool layers_write(const struct file_target *picture, const struct film *film, co
                                         layer_row_linear,
                                         &rows,
                                         deep_picture || rows.aov == AOV_DEPTH,
-                                        rows.aov == AOV_RAW && tone->srgb};
+                                        rows.aov == AOV_RAW && tone->srgb,
+                                        false};
         if (!picture_file_write(&target, &source, NULL, error))
             return false;
     }

@@ -11,7 +11,6 @@
 #include "base/version.h"
 #include "image/exr.h"
 #include "image/picture_file.h"
-#include "output/layers_internal.h"
 #include "output/statistics_internal.h"
 #include "session/text.h"
 
@@ -250,12 +249,18 @@ static bool count_picture(struct output_session *output, const struct picture_re
     return true;
 }
 
+/* Of an earlier run. True. */
+static bool remove_partial(struct output_session *output, const struct picture *picture) {
+    picture_files_remove_partial(&output->files, picture->name);
+    return true;
+}
+
 static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
     if (animation_streams(&output->animation, &picture->request))
         return animation_put(&output->animation, picture, error);
     return picture_files_written(&output->files, picture->name, name, error) &&
-           picture_write_files(&output->files, picture, name, error) &&
+           picture_write_files(&output->files, picture, name, error) && remove_partial(output, picture) &&
            (output->options->shards || animation_add(&output->animation, name, error)) &&
            checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
 }
@@ -389,7 +394,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
 /* The picture whose tiles a checkpoint would hold, or NULL. */
 static const struct picture *kept_picture(const struct output_session *output) {
     const struct picture *current = &output->current;
-    if (current->open && !current->request.check)
+    if (current->open && !current->request.check && !current->written)
         return current;
     return output->held.open ? &output->held : NULL;
 }
@@ -433,18 +438,18 @@ void output_write_checkpoint(struct output_session *output) {
         report_checkpoint(output, tiles);
 }
 
-/* --partial: writes the finished part of an interrupted picture under a separate name. */
-static void write_partial(struct output_session *output, struct picture *picture) {
+/* Writes the finished part of an interrupted picture under a separate name. */
+static void write_partial(struct output_session *output, struct picture *picture, bool keeps_tiles) {
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE), begun = film_tiles_begun(&picture->film);
     struct error error;
     char name[NAME_LIMIT], of_begun[48];
-    const struct file_target target = {.path = name, .rules = &output->files.beside};
-    if (done + begun == 0)
+    const struct file_target target = {.path = name, .rules = &output->files.partial};
+    if (done + begun == 0 || !picture_files_partial(&output->files, picture->name, name))
         return;
     film_clear_unfinished(&picture->film);
     struct picture_shown *shown = NULL;
-    bool ok = layers_name(picture->name, "partial", name, &error) &&
-              (shown = picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error)) &&
+    picture->unfinished = true;
+    bool ok = (shown = picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error)) &&
               picture_write_view(&shown->picture, &target, FILM_FINAL, NULL, &error);
     picture_shown_destroy(shown);
     if (!ok) {
@@ -452,34 +457,36 @@ static void write_partial(struct output_session *output, struct picture *picture
         return;
     }
     describe_begun(begun, of_begun);
-    output_say(output, LINE_NOTICE, "gray: notice: %s holds %u of %u tiles%s", name, done,
-               film_tile_count(&picture->film), of_begun);
+    output_say(output, LINE_NOTICE, "gray: notice: %s holds %u of %u tiles%s%s", name, done,
+               film_tile_count(&picture->film), of_begun,
+               output->options->keeps_tiles && !keeps_tiles ? " (--checkpoint auto keeps them for --resume)" : "");
+}
+
+/* A picture that is not written: its tiles go into the checkpoint and the partial picture. */
+static void keep_tiles(struct output_session *output, struct picture *picture) {
+    struct checkpoint_tiles tiles;
+    bool kept = update_checkpoint(output, true, &tiles);
+    if (kept)
+        report_checkpoint(output, tiles);
+    write_partial(output, picture, kept);
 }
 
 void output_abandon(struct output_session *output) {
-    struct checkpoint_tiles tiles;
-    const struct film *film = &output->current.film;
+    const struct picture *current = &output->current;
     display_forget(&output->display);
     progress_end(&output->progress, PROGRESS_GIVEN_UP);
     if (output->farm)
         farm_end(output->farm, true);
-    if (output->current.open && !output->current.request.check &&
-        film_tiles_in(film, FILM_TILE_DONE) + film_tiles_begun(film) > 0 && update_checkpoint(output, true, &tiles))
-        report_checkpoint(output, tiles);
-    if (output->options->partial && output->current.open && !output->current.request.check)
-        write_partial(output, &output->current);
+    if (current->open && !current->request.check && !current->written &&
+        film_tiles_in(&current->film, FILM_TILE_DONE) + film_tiles_begun(&current->film) > 0)
+        keep_tiles(output, &output->current);
     close_picture(&output->current);
 }
 
 /* A picture is complete, but was not written. After an interrupt its tiles are kept, as those of an unfinished one. */
 static void keep_unwritten(struct output_session *output, struct picture *picture, const struct error *error) {
-    struct checkpoint_tiles tiles;
-    if (error->kind != ERROR_CANCELLED)
-        return;
-    if (update_checkpoint(output, true, &tiles))
-        report_checkpoint(output, tiles);
-    if (output->options->partial)
-        write_partial(output, picture);
+    if (error->kind == ERROR_CANCELLED)
+        keep_tiles(output, picture);
 }
 
 static void report_statistics(struct output_session *output, const struct picture *picture,
@@ -617,10 +624,14 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
     if (!shown || !begin_report(output))
         return;
     progress_hide(&output->progress);
-    if (kind == LINE_ERROR)
-        text_print_lines(stderr, text);
-    else
+    if (kind == LINE_DETAIL)
         text_print_line(stderr, text);
+    else
+        text_print_message(stderr,
+                           kind == LINE_ERROR     ? TEXT_ERROR
+                           : kind == LINE_WARNING ? TEXT_WARNING
+                                                  : TEXT_NOTICE,
+                           text);
     end_report(output);
 }
 
@@ -682,13 +693,15 @@ static void close_animation(struct output_session *output) {
     animation_destroy(&output->animation, &left);
     if (left == 0 || kept || output->options->action != ACTION_RENDER)
         return;
-    output_say(output, LINE_NOTICE, "gray: notice: %.3800s.frames holds %u frame%s", output->options->output, left,
-               left > 1 ? "s" : "");
+    output_say(output, LINE_NOTICE, "gray: notice: %.3800s.frames holds %u frame%s%s", output->options->output, left,
+               left > 1 ? "s" : "", output->options->checkpoint ? " (--resume continues)" : "");
 }
 
 bool output_finish(struct output_session *output, bool all_well, struct error *error) {
     struct error kept;
     bool ok = output_write_held(output, error) && (!all_well || output_assemble(output, error));
+    if (output->checkpoint.late && !output->interrupted) /* a changed scene could not go on with it */
+        output->checkpoint.pending = false;
     if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept))
         output_say(output, LINE_WARNING, "gray: warning: the checkpoint: %s", kept.text);
     close_animation(output);

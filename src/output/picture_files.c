@@ -7,13 +7,14 @@
 #include "film/tile_file.h"
 #include "image/animation.h"
 #include "image/picture_file.h"
+#include "image/png_write.h"
 #include "output/layers_internal.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Picture or part, two debug pictures, --partial, all layers. */
-enum { PARTIAL_FILE = 3, FILES_LIMIT = 4 + AOV_COUNT };
+/* Picture or part, two debug pictures, all layers. */
+enum { FIRST_LAYER = 3, FILES_LIMIT = FIRST_LAYER + AOV_COUNT };
 
 void picture_files_init(struct picture_files *files, const struct options *options) {
     static const char advice[] = " (-o FILE chooses another file)";
@@ -46,6 +47,11 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->beside = files->picture;
     files->beside.is_direct = false;
     files->beside.role = FILE_ROLE_BESIDE;
+    files->partial = files->beside;
+    files->partial.may_replace = png_is_unfinished;
+    files->partial.expected = "an unfinished picture";
+    files->partial.advice = NULL;
+    files->partial.force = files->partial.named_by_user = false;
     files->animation = files->picture;
     files->animation.may_replace = animation_is;
     files->animation.expected = "an animation";
@@ -118,17 +124,17 @@ static bool is_there(const char *name) {
     return file_identity_of(name, &identity);
 }
 
-/* Something that is no picture, which later checks refuse by its contents or write to. */
-static bool is_no_picture(const char *name) {
-    uint8_t head[64];
+/* Whether this is a regular file that begins as `is` decides. */
+static bool begins(const char *name, bool (*is)(const uint8_t *head, size_t size)) {
+    uint8_t head[FILE_HEAD_SIZE];
     struct file_source source;
     struct error ignored;
-    if (!is_there(name) || !file_is_regular(name) || !file_source_open(&source, name, &ignored))
-        return is_there(name);
+    if (!file_is_regular(name) || !file_source_open(&source, name, &ignored))
+        return false;
     size_t size = source.size < sizeof head ? (size_t)source.size : sizeof head;
-    bool is_picture = file_source_read(&source, 0, head, size) && picture_file_is(head, size);
+    bool begins = file_source_read(&source, 0, head, size) && is(head, size);
     file_source_close(&source);
-    return !is_picture;
+    return begins;
 }
 
 bool picture_files_check_output(const struct options *options, struct error *error) {
@@ -136,7 +142,9 @@ bool picture_files_check_output(const struct options *options, struct error *err
     char name[NAME_LIMIT], extensions[PICTURE_EXTENSIONS_SIZE], moving[128] = "";
     bool free_name = !options->output || strcmp(options->output, "-") == 0 || options->force;
     if (free_name || options->animation != ANIMATION_NONE || !output_name(options->output, 1, name, NAME_LIMIT) ||
-        ending_of(name) != ENDING_OTHER || is_no_picture(name))
+        ending_of(name) != ENDING_OTHER ||
+        /* Later checks refuse it by its contents, or write to it. */
+        (is_there(name) && !begins(name, picture_file_is)))
         return true;
     for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++)
         snprintf(moving + strlen(moving), sizeof moving - strlen(moving), "%s%s", moving[0] ? ", " : "", animations[i]);
@@ -196,10 +204,32 @@ bool animation_folder(const char *animation, char out[NAME_LIMIT]) {
     return snprintf(out, NAME_LIMIT, "%s.frames", animation) < NAME_LIMIT;
 }
 
+/* dir/foo.gif with the word X is dir/foo.X.png. */
+static bool name_beside(const char *name, const char *word, char out[NAME_LIMIT]) {
+    const char *last = last_part(name), *dot = strrchr(last, '.');
+    int length = dot ? (int)(dot - name) : (int)strlen(name);
+    return snprintf(out, NAME_LIMIT, "%.*s.%s.png", length, name, word) < NAME_LIMIT;
+}
+
 bool animation_sheet_name(const char *animation, char out[NAME_LIMIT], struct error *error) {
-    const char *last = last_part(animation), *dot = strrchr(last, '.');
-    int length = dot ? (int)(dot - animation) : (int)strlen(animation);
-    return snprintf(out, NAME_LIMIT, "%.*s.sheet.png", length, animation) < NAME_LIMIT || name_is_too_long(error);
+    return name_beside(animation, "sheet", out) || name_is_too_long(error);
+}
+
+bool picture_files_partial(const struct picture_files *files, const char *name, char out[NAME_LIMIT]) {
+    const struct options *options = files->options;
+    bool is_file = !is_there(name) || file_is_regular(name);
+    return options->keeps_picture && is_file &&
+           name_beside(options->animation != ANIMATION_NONE ? options->output : name, "partial", out);
+}
+
+void picture_files_remove_partial(const struct picture_files *files, const char *name) {
+    char partial[NAME_LIMIT];
+    struct file_identity identity;
+    struct error ignored; /* another file of this name */
+    const struct file_target target = {.path = partial, .rules = &files->partial};
+    if (picture_files_partial(files, name, partial) && begins(partial, png_is_unfinished) &&
+        file_identity_of(partial, &identity))
+        (void)file_output_remove(&target, identity, &ignored);
 }
 
 static bool name_in_folder(const char *animation, unsigned number, char name[NAME_LIMIT], struct error *error) {
@@ -263,7 +293,7 @@ bool picture_files_written(const struct picture_files *files, const char *name, 
 bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                               struct error *error) {
     const struct options *options = files->options;
-    bool named = strcmp(options->checkpoint, "auto") != 0;
+    bool named = options->checkpoint && strcmp(options->checkpoint, "auto") != 0;
     char folder[NAME_LIMIT], shard[64] = "";
     int length;
     if (named) {
@@ -304,10 +334,9 @@ static bool name_file(const struct picture_files *files, const char *name, uint3
     file->rules = &files->beside;
     if (number <= 2 && prefixes[number - 1])
         return picture_files_prefixed(name, prefixes[number - 1], file->path, error);
-    if (number == PARTIAL_FILE && options->partial)
-        return layers_name(name, "partial", file->path, error);
-    if (number >= 4 && picture_format(name) != PICTURE_EXR && (layers >> (number - 4) & 1))
-        return layers_name(name, aov_name((enum aov)(number - 4)), file->path, error);
+    int layer = number - FIRST_LAYER;
+    if (layer >= 0 && picture_format(name) != PICTURE_EXR && (layers >> layer & 1))
+        return layers_name(name, aov_name((enum aov)layer), file->path, error);
     file->rules = NULL;
     return true;
 }

@@ -21,7 +21,8 @@ struct picture_files {
     struct file_interrupt interrupt; /* descriptor -1: none */
     struct file_quota quota;         /* --picture-bytes: of all files of pictures */
     struct file_rules picture;       /* the picture itself */
-    struct file_rules beside;        /* layers, -write-*, --partial: as the picture, but never written in place */
+    struct file_rules beside;        /* layers, -write-*: as the picture, but never written in place */
+    struct file_rules partial;       /* an unfinished picture: replaces only such pictures */
     struct file_rules animation;     /* an animation, such as -o x.gif */
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
@@ -60,6 +61,11 @@ bool animation_sheet_name(const char *animation, char out[NAME_LIMIT], struct er
 /* The name of its main file: the picture, or with --shard its part. */
 bool picture_files_written(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                            struct error *error);
+/* dir/foo.partial.png of dir/foo.exr or of a frame of the animation dir/foo.gif. False: there is none, since the
+ * picture is no file. */
+bool picture_files_partial(const struct picture_files *files, const char *name, char out[NAME_LIMIT]);
+/* Removes that file, if it is an unfinished picture. */
+void picture_files_remove_partial(const struct picture_files *files, const char *name);
 /* dir/foo.png with prefix X is dir/Xfoo.png. */
 bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error);
 /* The name of the checkpoint; with --checkpoint auto it is that of the first picture. */

@@ -61,8 +61,9 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither};
-    struct picture_source source = {request->width, request->height,        row,      row_16, row_linear,
-                                    &rows,          request->settings.deep, tone.srgb};
+    struct picture_source source = {
+        request->width, request->height,    row, row_16, row_linear, &rows, request->settings.deep,
+        tone.srgb,      picture->unfinished};
     if (view == FILM_FINAL && picture->film.layer_mask && picture_format(target->path) == PICTURE_EXR)
         return layers_write_exr(target, &picture->film, error);
     return picture_file_write(target, &source, pool, error);

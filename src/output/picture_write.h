@@ -18,6 +18,7 @@ struct picture {
     char name[NAME_LIMIT];
     struct picture_request request;
     bool written;                                  /* an incomplete picture, for a window */
+    bool unfinished;                               /* what is written is an unfinished picture */
     double write_seconds, write_processor_seconds; /* of its files; 0: not written yet */
     struct tile_picture tiles;                     /* the key of its tiles in a tile file */
     struct share memory;

@@ -7,9 +7,11 @@
 
 #include "base/mem.h"
 #include "denoise/film_denoise.h"
+#include "expr/expr_field.h"
 #include "film/aov.h"
 #include "film/film.h"
 #include "film/path_film.h"
+#include "material/fog_field.h"
 #include "render/path_noise_internal.h"
 #include "render/pixel_trace.h"
 #include "render/sample_internal.h"
@@ -285,10 +287,24 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
     return !renderer->workers[0].scratch.failed;
 }
 
+/* Whether a function of a script does. */
+static bool reads_time(const struct render_job *job) {
+    const struct fog_field *field = job->fog ? job->fog->field : NULL;
+    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
+    const struct world *world = job->world;
+    bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
+                           (colour && expr_field_reads(colour, EXPR_TIME)));
+    for (uint32_t i = 0; !reads && i < world->texture_count; i++)
+        reads = world->textures[i].kind == TEXTURE_FUNCTION &&
+                expr_field_reads(world->textures[i].recorded.program, EXPR_TIME);
+    return reads;
+}
+
 static bool prepare_rendering(struct renderer *renderer, const struct camera_frame *at_close) {
     const struct render_job *job = renderer->job;
     const struct shutter *shutter = &job->settings.shutter;
-    renderer->timed = shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves);
+    renderer->timed =
+        shutter->close > shutter->open && (job->world->moves || job->settings.motion.moves || reads_time(job));
     struct box origins = box_join(camera_origins(&renderer->camera), camera_origins(at_close));
     return find_eye_medium_stack(renderer, &origins, renderer->timed || camera_spreads(&renderer->camera));
 }

@@ -64,7 +64,7 @@ struct renderer {
     struct pool *pool;
     struct camera_frame camera;
     struct medium_stack eye_medium_stack;
-    bool timed;               /* something moves while the shutter is open */
+    bool timed;               /* while the shutter is open, something moves or a function reads the time */
     bool roams;               /* the film is one pixel that moves over the picture (render_pixels) */
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */

@@ -1,10 +1,11 @@
 /* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
  * and the position in the tree of rays. */
-
 #include "material/medium.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
 #include "world/world_describe.h"
+
+#include <math.h>
 
 /* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
 static const double light_limit = 1e200;
@@ -65,22 +66,17 @@ struct surface_point {
     const struct bsdf *bsdf;
 };
 
-/* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
- * followed. */
-static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
-                                 const struct path *from) {
+/* The radiance from a direction, times its weight. What cannot change the pixel by the cut-off is not followed. */
+static struct vec3 follow(struct integrator_state *state, const struct surface_point *at,
+                          const struct bsdf_branch_direction *towards, const struct path *from) {
     const struct settings *settings = &state->job->settings;
-    struct bsdf_branch_direction sampled;
-    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
-        return vec3_all(0);
-    struct vec3 filter = sampled.weight;
-    bool transmits = sampled.transmits;
+    struct vec3 filter = towards->weight;
+    bool transmits = towards->transmits;
     struct path path = path_on(from, vec3_max_abs(filter));
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
-    struct ray onward = hit_ray(at->hit, at->ray, sampled.direction, at->ray->media);
+    struct ray onward = hit_ray(at->hit, at->ray, towards->direction, at->ray->media);
     struct medium_stack behind;
     if (transmits) {
         medium_stack_copy(&behind, at->ray->media);
@@ -95,6 +91,15 @@ static struct vec3 follow_branch(struct integrator_state *state, const struct su
         path.reflections++;
     }
     return vec3_mul(filter, trace(state, &onward, &path));
+}
+
+static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
+                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
+                                 const struct path *from) {
+    struct bsdf_branch_direction sampled;
+    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
+        return vec3_all(0);
+    return follow(state, at, &sampled, from);
 }
 
 /* The light through the holes of a surface (an opacity texture of leaves): the ray continues
@@ -136,6 +141,121 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
     return vec3_scale(sum, 1 / ((double)n * (double)n));
 }
 
+/* --- layered materials --- */
+
+/* A direction that a facet sends light to. */
+struct candidate {
+    struct bsdf_branch_direction towards;
+    double weight; /* its largest component */
+    int branch;
+    uint64_t key;
+};
+
+enum { CANDIDATE_CELLS = 16 };
+struct candidates {
+    uint32_t begin, end; /* of the cells */
+    int count;
+    double weight; /* the sum */
+    struct candidate all[CANDIDATE_CELLS * BSDF_LOBES];
+};
+
+/* The facets in these cells of the square, for all rough branches. The mean share of a branch is known for some: then
+ * its candidates share that in the proportions of their weights, and their mean has no noise. */
+static void find_candidates(const struct surface_point *at, const struct bsdf_branch *branches, int count,
+                            const struct sample_set *facets, struct candidates *out) {
+    const double cells = out->end - out->begin, part = 1 / ((double)facets->side * (double)facets->side);
+    double sums[BSDF_LOBES] = {0};
+    out->count = 0;
+    out->weight = 0;
+    for (uint32_t cell = out->begin; cell < out->end; cell++) {
+        const struct bsdf_draw position = {.u = sample_set_point(facets, cell)};
+        for (int i = 0; i < count; i++) {
+            struct candidate *found = &out->all[out->count];
+            if (!branches[i].rough ||
+                !bsdf_branch_sample(at->bsdf, &branches[i], at->hit->view, &position, &found->towards))
+                continue;
+            found->weight = vec3_max_abs(found->towards.weight);
+            found->branch = i;
+            found->key = sampler_facet(facets->key, cell);
+            sums[i] += found->weight;
+            out->count += found->weight > 0;
+        }
+    }
+    for (int i = 0; i < out->count; i++) {
+        struct candidate *found = &out->all[i];
+        const struct bsdf_branch *branch = &branches[found->branch];
+        double all = branch->is_known ? branch->expected * vec3_max_abs(branch->weight) * cells : sums[found->branch];
+        double scale = part * all / sums[found->branch];
+        found->towards.weight = vec3_scale(found->towards.weight, scale);
+        found->weight *= scale;
+        out->weight += found->weight;
+    }
+}
+
+/* Of `rays` places at equal distances in the sum of all weights, the candidates that are there, by their weight over
+ * their chance. The mean over all first places is the sum of all candidates (J. Talbot, D. Cline and P. Egbert,
+ * "Importance Resampling for Global Illumination", EGSR 2005). */
+static struct vec3 follow_candidates(struct integrator_state *state, const struct surface_point *at,
+                                     const struct candidates *from, uint32_t rays, const struct path *path) {
+    struct vec3 sum = {0, 0, 0};
+    uint32_t sent = 0; /* the step may underflow */
+    double step = from->weight / rays, next = step * random_unit(random_mix(path->key)), passed = 0;
+    for (int i = 0; i < from->count; i++) {
+        struct bsdf_branch_direction towards = from->all[i].towards;
+        towards.weight = vec3_scale(towards.weight, from->weight / from->all[i].weight);
+        passed += from->all[i].weight;
+        for (uint64_t k = 0; next < passed && sent < rays; next += step, k++, sent++) {
+            struct path branch = path_on(path, 1);
+            branch.key = random_combine(from->all[i].key, k);
+            branch.rough = true;
+            sum = vec3_add(sum, follow(state, at, &towards, &branch));
+        }
+    }
+    return vec3_scale(sum, 1.0 / rays);
+}
+
+/* The share of light in the rough branches. */
+static double rough_share(const struct bsdf_branch *branches, int count) {
+    double share = 0;
+    for (int i = 0; i < count; i++)
+        share += branches[i].rough ? branches[i].expected * vec3_max_abs(branches[i].weight) : 0;
+    return share;
+}
+
+/* Whether the rough branches share their rays. After a rough surface, glass sends one ray to each side. */
+static bool is_divided(const struct bsdf *bsdf, const struct path *path) {
+    return bsdf_lobes_with(bsdf, BSDF_ROUGH) && !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
+}
+
+/* All rough branches of a layered material: as many rays as their share of light justifies. The samples of a pixel
+ * divide them among each other. After a rough surface there is one ray, with a chance (Russian roulette: J. Arvo and D.
+ * Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990). */
+static struct vec3 follow_layers(struct integrator_state *state, const struct surface_point *at,
+                                 const struct bsdf_branch *branches, int count, const struct path *path) {
+    const double side = at->bsdf->glossy_samples ? at->bsdf->glossy_samples : GLOSSY_SAMPLES, all = side * side;
+    const double share = rough_share(branches, count);
+    const bool is_coarse = path->rough || state->job->settings.coarse;
+    const double chance = is_coarse ? fmin(4 * share, 1) : 1;
+    const double rays = is_coarse ? 1 : fmin(all, fmax(1, ceil(2 * all * share / state->sampler.side)));
+    const uint32_t n = (uint32_t)fmax(2, ceil(sqrt(rays))), cells = n * n;
+    uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
+    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
+    struct vec3 sum = {0, 0, 0};
+    if (chance < 1 && random_unit(random_mix(key)) >= chance)
+        return sum;
+    OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
+    struct candidates candidates;
+    candidates.end = 0;
+    while (candidates.end < cells) {
+        candidates.begin = candidates.end;
+        candidates.end = cells - candidates.begin < CANDIDATE_CELLS ? cells : candidates.begin + CANDIDATE_CELLS;
+        find_candidates(at, branches, count, &facets, &candidates);
+        double here = fmax(1, floor(rays * (candidates.end - candidates.begin) / cells));
+        sum = vec3_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
+    }
+    return vec3_scale(sum, 1 / chance);
+}
+
 /* --- one hit --- */
 
 static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
@@ -152,7 +272,10 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
         else
             colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
     }
-    return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
+    if (!rough)
+        return colour;
+    return vec3_add(colour,
+                    (is_divided(at->bsdf, path) ? follow_layers : follow_rough)(state, at, branches, count, path));
 }
 
 static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,

@@ -1,7 +1,7 @@
 /* Files a script names: Lua files through require, dofile and loadfile, meshes and images. Everything is read through
  * base/file.h. A relative name is looked for in (docs/language.md 12.3): the scene's folder, the working directory,
  * Assets/ beside and above the scene, and the bare file name in the scene's folder; then below these folders
- * (search.c). */
+ * (search.c), and at last among the pictures that come with the program. */
 #include "sandbox/files.h"
 
 #include "base/file.h"
@@ -160,6 +160,9 @@ bool files_require(struct sandbox *sandbox, const char *name, char out[PATH_SIZE
         memcpy(out, found, strlen(found) + 1);
         return true;
     }
+    const char *library = sandbox->options->library_folder;
+    if (library && !strchr(name, '/') && try_file(sandbox, out, library, PATH_POLICY_TEXTURES "/", name))
+        return true;
     if (path_policy_is_outside(sandbox->path_policy, name))
         return outside(name, error);
     return not_found(sandbox, name, error);

@@ -151,6 +151,8 @@ struct scene {
     struct scene_changes changes;
     enum transform_order order;
     bool studio;      /* the studio light acts: shapes without a material are light gray, without a warning */
+    bool spins;       /* some node does */
+    double time;      /* seconds since the first frame, for spins; scene_set_time */
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */
     uint32_t line;
 };
@@ -177,6 +179,12 @@ void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot);
  * scene/change.h are never part of a world that is kept.) */
 static inline void scene_note_change(struct scene *scene) {
     scene->changes.other = true;
+}
+/* Before a frame. Its spins differ from those of the frame before. */
+static inline void scene_set_time(struct scene *scene, double time) {
+    if (scene->spins && scene->time != time)
+        scene_note_change(scene);
+    scene->time = time;
 }
 /* Whether something has changed since scene_forget_changes; not if transforms were set and are as before. */
 bool scene_has_changes(const struct scene *scene);

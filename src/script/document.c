@@ -1,73 +1,15 @@
-/* The table as documents: the manual page's list of functions (plain text, 100 columns) and the annotation file for
- * editors (LuaLS, `---@meta`). Text grows in the caller's arena; NULL without memory. */
+/* The table as documents: entries of the manual, and the annotation file for editors (LuaLS, `---@meta`). */
 #include "script/document.h"
 
-#include "base/arena.h"
+#include "base/document.h"
 #include "base/unreachable.h"
 #include "script/table_internal.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { COLUMNS = 100, LINE_SIZE = 1024, CHOICES_SIZE = 256 };
-
-/* Text that grows by doubling; abandoned blocks stay in the arena, at most as much again. */
-struct document {
-    struct arena *arena;
-    char *text;
-    size_t used, capacity;
-    bool failed;
-};
-
-__attribute__((format(printf, 2, 3))) static void add(struct document *document, const char *format, ...) {
-    char line[LINE_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    size_t size = (size_t)vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    assert(size < sizeof line); /* the texts of the table are constant, and tests write all of them */
-    if (document->used + size + 1 > document->capacity) {
-        size_t capacity = 2 * document->capacity + LINE_SIZE;
-        char *grown = arena_alloc(document->arena, capacity);
-        if (!grown) {
-            document->failed = true;
-            document->used = document->capacity = 0;
-            return;
-        }
-        if (document->used > 0)
-            memcpy(grown, document->text, document->used);
-        document->text = grown;
-        document->capacity = capacity;
-    }
-    memcpy(document->text + document->used, line, size + 1);
-    document->used += size;
-}
-
-/* Breaks words into lines of COLUMNS characters, every line but the first indented; `column` is the start of the first
- * one. */
-static void add_filled(struct document *document, int indent, int column, const char *text) {
-    bool first = true;
-    while (*text) {
-        int length = (int)strcspn(text, " ");
-        if (!first && column + 1 + length > COLUMNS) {
-            add(document, "\n%*s", indent, "");
-            column = indent;
-        } else if (!first) {
-            add(document, " ");
-            column++;
-        }
-        first = false;
-        add(document, "%.*s", length, text);
-        column += length;
-        text += length;
-        while (*text == ' ')
-            text++;
-    }
-    add(document, "\n");
-}
+enum { CHOICES_SIZE = 256 };
 
 /* "> 0 and < 180", or "". */
 static void range_words(const struct script_parameter *p, char *out, size_t size) {
@@ -97,27 +39,27 @@ static void choices_words(const struct script_parameter *p, const char *separato
 }
 
 /* "radius (a number, > 0; default 1): Radius." */
-static void describe_parameter(const struct script_parameter *p, char out[LINE_SIZE]) {
+static void describe_parameter(const struct script_parameter *p, char out[DOCUMENT_LINE]) {
     char range[96], choices[CHOICES_SIZE];
     bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
     choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
     bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
-    size_t used =
-        (size_t)snprintf(out, LINE_SIZE, "%s (%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
-                         or_texture            ? " or a texture"
-                         : p->flags & OR_CURVE ? " or a function"
-                                               : "");
+    size_t used = (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s", p->name,
+                                   p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
+                                   or_texture            ? " or a texture"
+                                   : p->flags & OR_CURVE ? " or a function"
+                                                         : "");
     if (range[0])
-        used += (size_t)snprintf(out + used, LINE_SIZE - used, ", %s", range);
+        used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, ", %s", range);
     if (p->unit)
-        used += (size_t)snprintf(out + used, LINE_SIZE - used, ", in %s", p->unit);
+        used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, ", in %s", p->unit);
     if (p->fallback)
-        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; default %.*s", (int)strcspn(p->fallback, "|"),
+        used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, "; default %.*s", (int)strcspn(p->fallback, "|"),
                                  p->fallback);
     else if (p->flags & OPTIONAL)
-        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; optional");
-    snprintf(out + used, LINE_SIZE - used, "): %s", p->help);
+        used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, "; optional");
+    snprintf(out + used, DOCUMENT_LINE - used, "): %s", p->help);
 }
 
 /* A form may continue with any number of nodes. */
@@ -128,44 +70,106 @@ static bool takes_more(const struct script_function *function) {
     return false;
 }
 
-static void write_function(struct document *document, const struct script_function *function) {
+/* "gr.sphere(centre, radius, material?)", a line for each form, the table form last. */
+static void function_forms(const struct script_function *function, struct document *out) {
     char title[96];
     function_title(function, title);
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
         const char *form = function->forms[k], *separator = "";
         int index;
         bool optional;
-        add(document, "%s(", title);
+        document_add(out, "%s%s(", k > 0 ? "\n" : "", title);
         while (form_next(function, &form, &index, &optional)) {
-            add(document, "%s%s%s", separator, function->parameters[index].name, optional ? "?" : "");
+            document_add(out, "%s%s%s", separator, function->parameters[index].name, optional ? "?" : "");
             separator = ", ";
         }
-        add(document, "%s)\n", takes_more(function) ? ", ..." : function_renders(function) ? ", fields?" : "");
+        document_add(out, "%s)", takes_more(function) ? ", ..." : function_renders(function) ? ", fields?" : "");
     }
     if (function_takes_names(function))
-        add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
-    add(document, "    ");
-    add_filled(document, 4, 4, function->help);
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        char line[LINE_SIZE];
-        describe_parameter(&function->parameters[k], line);
-        add(document, "      ");
-        add_filled(document, 10, 6, line);
-    }
-    add(document, "\n");
+        document_add(out, "\n%s{%s = ..., ...}", title, function->parameters[function->owner == OWNER_NODE].name);
 }
 
-const char *script_manual(struct arena *arena) {
-    struct document document = {.arena = arena};
-    for (int k = 0; k < function_count(); k++)
-        write_function(&document, function_at(k));
-    for (size_t k = 0; value_function_at(k); k++) {
-        const struct value_function *function = value_function_at(k);
-        add(&document, "gr.%s(%s)\n    ", function->name, function->parameters);
-        add_filled(&document, 4, 4, function->help);
-        add(&document, "\n");
+/* An entry for the parameter: "(a number, > 0; default 1): Radius." */
+static void add_parameter(struct document *document, const struct script_parameter *p) {
+    char line[DOCUMENT_LINE];
+    describe_parameter(p, line);
+    document_entry(document, DOCUMENT_ARGUMENT, p->name, line + strlen(p->name) + 1);
+}
+
+static void describe_function(struct document *document, const struct script_function *function) {
+    struct document forms = {.arena = document->arena};
+    function_forms(function, &forms);
+    document_entry(document, DOCUMENT_FUNCTION, forms.text ? forms.text : "", function->help);
+    document->failed = document->failed || forms.failed;
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++)
+        add_parameter(document, &function->parameters[k]);
+    document_gap(document);
+}
+
+static void describe_value_function(struct document *document, const struct value_function *function) {
+    char term[256];
+    (void)snprintf(term, sizeof term, "gr.%s(%s)", function->name, function->parameters);
+    document_entry(document, DOCUMENT_FUNCTION, term, function->help);
+    document_gap(document);
+}
+
+void script_describe_function(struct document *document, const char *name) {
+    for (int f = 0; f < function_count(); f++)
+        if (!name || strcmp(function_at(f)->name, name) == 0)
+            describe_function(document, function_at(f));
+    for (size_t k = 0; value_function_at(k); k++)
+        if (!name || strcmp(value_function_at(k)->name, name) == 0)
+            describe_value_function(document, value_function_at(k));
+}
+
+/* Adds the functions that have this parameter with the same description; false if an earlier one has it. */
+static bool add_owners(struct document *out, const struct script_function *owner, const struct script_parameter *p) {
+    char line[DOCUMENT_LINE], other[DOCUMENT_LINE], title[96];
+    const char *separator = " Of ";
+    bool found = false;
+    describe_parameter(p, line);
+    document_add(out, "%s", line + strlen(p->name) + 1);
+    for (int f = 0; f < function_count(); f++) {
+        const struct script_function *function = function_at(f);
+        found = found || function == owner;
+        for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+            if (strcmp(function->parameters[k].name, p->name) != 0)
+                continue;
+            describe_parameter(&function->parameters[k], other);
+            if (strcmp(line, other) != 0)
+                continue;
+            if (!found)
+                return false;
+            function_title(function, title);
+            document_add(out, "%s%s", separator, title);
+            separator = ", ";
+        }
     }
-    return document.failed ? NULL : document.text;
+    return true;
+}
+
+void script_describe_field(struct document *document, const char *name) {
+    for (int f = 0; f < function_count(); f++) {
+        const struct script_function *function = function_at(f);
+        for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+            struct document text = {.arena = document->arena};
+            if (strcmp(function->parameters[k].name, name) == 0 &&
+                add_owners(&text, function, &function->parameters[k]))
+                document_entry(document, DOCUMENT_ARGUMENT, name, text.text ? text.text : "");
+            document->failed = document->failed || text.failed;
+        }
+    }
+}
+
+void script_each_name(void (*visit)(void *context, const char *owner, const char *name, const char *help),
+                      void *context) {
+    for (int f = 0; f < function_count(); f++)
+        visit(context, function_at(f)->owner == OWNER_GR ? "gr." : "node:", function_at(f)->name, function_at(f)->help);
+    for (size_t k = 0; value_function_at(k); k++)
+        visit(context, "gr.", value_function_at(k)->name, value_function_at(k)->help);
+    for (int f = 0; f < function_count(); f++)
+        for (int k = function_at(f)->owner == OWNER_NODE; k < function_at(f)->parameter_count; k++)
+            visit(context, "", function_at(f)->parameters[k].name, function_at(f)->parameters[k].help);
 }
 
 static const char *annotation_kind(const struct script_parameter *p, char out[CHOICES_SIZE]) {
@@ -282,49 +286,49 @@ static const char *annotation_result(const struct script_function *function) {
 
 static void annotate_fields(struct document *document, const struct script_function *function) {
     const char *owner = function->owner == OWNER_NODE ? "node." : "";
-    add(document, "---@class gr.%s%s.fields\n", owner, function->name);
+    document_add(document, "---@class gr.%s%s.fields\n", owner, function->name);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
-        char type[CHOICES_SIZE], line[LINE_SIZE];
+        char type[CHOICES_SIZE], line[DOCUMENT_LINE];
         describe_parameter(p, line);
-        add(document, "---@field %s%s %s %s\n", p->name, p->flags & OPTIONAL ? "?" : "", annotation_type(p, type),
-            line);
+        document_add(document, "---@field %s%s %s %s\n", p->name, p->flags & OPTIONAL ? "?" : "",
+                     annotation_type(p, type), line);
     }
-    add(document, "\n");
+    document_add(document, "\n");
 }
 
 /* ": gr.node", if a function returns a value. */
 static void add_result(struct document *document, const struct script_function *function) {
     const char *result = annotation_result(function);
     if (result)
-        add(document, ": %s", result);
+        document_add(document, ": %s", result);
 }
 
 static void annotate_overload(struct document *document, const struct script_function *function, const char *form) {
     const char *separator = "";
     int index;
     bool optional;
-    add(document, "---@overload fun(");
+    document_add(document, "---@overload fun(");
     if (function->owner == OWNER_NODE) {
-        add(document, "self: gr.node");
+        document_add(document, "self: gr.node");
         separator = ", ";
     }
     while (form_next(function, &form, &index, &optional)) {
         char type[CHOICES_SIZE];
         const struct script_parameter *p = &function->parameters[index];
-        add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
+        document_add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
         separator = ", ";
     }
-    add(document, "%s)", takes_more(function) ? ", ...: gr.node" : "");
+    document_add(document, "%s)", takes_more(function) ? ", ...: gr.node" : "");
     add_result(document, function);
-    add(document, "\n");
+    document_add(document, "\n");
 }
 
 /* One line for each result: LuaLS numbers them. */
 static void annotate_results(struct document *document, const char *results) {
     while (*results) {
         size_t length = strcspn(results, ",");
-        add(document, "---@return %.*s\n", (int)length, results);
+        document_add(document, "---@return %.*s\n", (int)length, results);
         results += length;
         results += strspn(results, ", ");
     }
@@ -334,26 +338,26 @@ static void annotate_function(struct document *document, const struct script_fun
     const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
     bool table_form = function_takes_names(function), optional;
     int index;
-    char names[LINE_SIZE] = "";
-    add(document, "---%s\n", function->help);
+    char names[DOCUMENT_LINE] = "";
+    document_add(document, "---%s\n", function->help);
     while (form_next(function, &form, &index, &optional)) {
-        char type[CHOICES_SIZE], line[LINE_SIZE];
+        char type[CHOICES_SIZE], line[DOCUMENT_LINE];
         const struct script_parameter *p = &function->parameters[index];
         describe_parameter(p, line);
-        add(document, "---@param %s%s %s %s\n", p->name, optional ? "?" : "", annotation_type(p, type), line);
+        document_add(document, "---@param %s%s %s %s\n", p->name, optional ? "?" : "", annotation_type(p, type), line);
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", separator, p->name);
         separator = ", ";
     }
     if (takes_more(function)) {
         size_t used = strlen(names);
-        add(document, "---@param ... gr.node\n");
+        document_add(document, "---@param ... gr.node\n");
         snprintf(names + used, sizeof names - used, ", ...");
     }
     if (function_renders(function)) {
         size_t used = strlen(names);
-        add(document, "---@param fields? gr.%s%s.fields Fields that are no arguments before it\n",
-            function->owner == OWNER_NODE ? "node." : "", function->name);
+        document_add(document, "---@param fields? gr.%s%s.fields Fields that are no arguments before it\n",
+                     function->owner == OWNER_NODE ? "node." : "", function->name);
         (void)snprintf(names + used, sizeof names - used, ", fields");
     }
     if (result)
@@ -362,16 +366,18 @@ static void annotate_function(struct document *document, const struct script_fun
         annotate_overload(document, function, function->forms[k]);
     if (table_form) {
         const char *self = function->owner == OWNER_NODE ? "self: gr.node, " : "";
-        add(document, "---@overload fun(%sfields: gr.%s%s.fields)", self, self[0] ? "node." : "", function->name);
+        document_add(document, "---@overload fun(%sfields: gr.%s%s.fields)", self, self[0] ? "node." : "",
+                     function->name);
         add_result(document, function);
-        add(document, "\n");
+        document_add(document, "\n");
     }
-    add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name, names);
+    document_add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name,
+                 names);
 }
 
-const char *script_annotations(struct arena *arena) {
-    struct document document = {.arena = arena};
-    add(&document,
+void script_annotations(struct document *document) {
+    document_add(
+        document,
         "---@meta\n\n"
         "-- The gr functions for editors that understand LuaLS annotations. Written by `gray --annotations` from\n"
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
@@ -379,7 +385,8 @@ const char *script_annotations(struct arena *arena) {
         "---@class gr.material\n---@class gr.light\n---@class gr.texture\n"
         "---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number\n---@class gr.fog\n---@class "
         "gr.sky\n");
-    add(&document,
+    document_add(
+        document,
         "---@class gr.vector: number[]\n---@field x number\n---@field y number\n---@field z number\n"
         "---@field dot fun(self: gr.vector, b: gr.triple): number\n"
         "---@field cross fun(self: gr.vector, b: gr.triple): gr.vector\n"
@@ -388,26 +395,25 @@ const char *script_annotations(struct arena *arena) {
         "---@field clamp fun(self: gr.vector, low: any, high: any): gr.vector\n"
         "---@operator add(any): gr.vector\n---@operator sub(any): gr.vector\n---@operator mul(any): gr.vector\n"
         "---@operator div(any): gr.vector\n---@operator unm: gr.vector\n");
-    add(&document, "---@class gr.glyph\n---@field code integer\n---@field x number\n---@field advance number\n"
-                   "---@field missing boolean\n---@field contours number[][][]\n"
-                   "---@class gr.glyphs: gr.glyph[]\n---@field width number\n---@field ascender number\n"
-                   "---@field descender number\n---@field line number\n"
-                   "---@class gr.node\n"
-                   "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n"
-                   "---In an animation: the seconds since its first frame, else 0.\ngr.time = 0.0\n"
-                   "---Its argument t, from 0 to 1.\ngr.clock = 0.0\n"
-                   "---The number of the frame, from 1; 0 outside of animations.\ngr.frame = 0\n\n");
+    document_add(document, "---@class gr.glyph\n---@field code integer\n---@field x number\n---@field advance number\n"
+                           "---@field missing boolean\n---@field contours number[][][]\n"
+                           "---@class gr.glyphs: gr.glyph[]\n---@field width number\n---@field ascender number\n"
+                           "---@field descender number\n---@field line number\n"
+                           "---@class gr.node\n"
+                           "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n"
+                           "---In an animation: the seconds since its first frame, else 0.\ngr.time = 0.0\n"
+                           "---Its argument t, from 0 to 1.\ngr.clock = 0.0\n"
+                           "---The number of the frame, from 1; 0 outside of animations.\ngr.frame = 0\n\n");
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
         if (function_takes_names(function))
-            annotate_fields(&document, function);
-        annotate_function(&document, function);
+            annotate_fields(document, function);
+        annotate_function(document, function);
     }
     for (size_t k = 0; value_function_at(k); k++) {
         const struct value_function *function = value_function_at(k);
-        add(&document, "---%s\n", function->help);
-        annotate_results(&document, function->result);
-        add(&document, "function gr.%s(%s) end\n\n", function->name, function->parameters);
+        document_add(document, "---%s\n", function->help);
+        annotate_results(document, function->result);
+        document_add(document, "function gr.%s(%s) end\n\n", function->name, function->parameters);
     }
-    return document.failed ? NULL : document.text;
 }

@@ -183,6 +183,7 @@ static bool gr_spin(struct script_context *context, const struct script_value *a
     *spin = (struct node_spin){about, args[SPIN_DEGREES].number};
     scene_note_reference(&context->scene, args[SELF].node->index);
     args[SELF].node->spin = spin;
+    context->scene.spins = true;
     return true;
 }
 

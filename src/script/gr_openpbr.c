@@ -67,7 +67,7 @@ enum {
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
-            "N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray."         \
+            "At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies." \
     }
 #define NORMAL_HELP "A normal map or bump map: a result of gr.bump, or the file of a normal map."
 #define TANGENT_HELP "Direction along which the facets of an anisotropic surface are smooth, in the world."

@@ -180,7 +180,12 @@ static bool examine_implicit(struct script_context *context, const struct implic
         return error_set(
             error, ERROR_SCENE,
             "the bounds of f are too wide to find its surface in reasonable time, as of fractals: " ADVICE);
-    if (found.line_work > slow_line)
+    if (found.marched_work > 0 && 2 * found.marched_work < found.line_work)
+        context_warn_once(context, WARNED_SLOW,
+                          "rays need %.0f operations each, and %.0f with lipschitz = %.4g, which the slopes of f at "
+                          "%u points support",
+                          found.line_work, found.marched_work, found.lipschitz, found.points);
+    else if (found.line_work > slow_line)
         sandbox_warn(&context->sandbox, "the bounds of f are wide, so that rays need %.0f operations each: " ADVICE,
                      found.line_work);
     if (found.is_empty)

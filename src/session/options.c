@@ -67,6 +67,10 @@ static const struct setting *find_option(struct piece name) {
     return NULL;
 }
 
+const struct setting *option_named(const char *word) {
+    return find_option(without_dashes((struct piece){word, strcspn(word, "=")}));
+}
+
 /* The spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
 static struct piece nearest_name(struct piece name) {
     char word[NAME_LIMIT_OF_OPTIONS], bare[NAME_LIMIT_OF_OPTIONS];
@@ -487,21 +491,31 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
                      near.text[0] == '-' ? "" : "--", (int)near.length, near.text);
 }
 
-/* What gray merge uses: the parts contain the results of all other options. */
-static bool serves_merge(const struct setting *option) {
-    static const char names[] = "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
-                                "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress";
+/* Actions whose first argument is their name, and what they use. Parts contain the results of all other options. */
+static const struct {
+    const char *word, *options, *why;
+} actions[] = {
+    [ACTION_RENDER] = {NULL},
+    [ACTION_MERGE] = {"merge",
+                      "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
+                      "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
+                      "it only joins parts that are rendered"},
+    [ACTION_COMPARE] = {"compare", "o|force|threshold|q", "it only compares two pictures"},
+};
+enum { ACTIONS_WITH_WORDS = sizeof actions / sizeof *actions };
+
+static bool serves(const struct setting *option, int action) {
     struct piece first = without_dashes(shown_name(option));
-    for (const char *rest = names; *rest;) {
+    for (const char *rest = actions[action].options; *rest;) {
         if (same_name(first, option_next_piece(&rest)))
             return true;
     }
     return false;
 }
 
-static bool refuse_for_merge(const struct setting *option, struct error *error) {
-    return error_set(error, ERROR_USAGE, "merge cannot be combined with %.*s: it only joins parts that are rendered",
-                     (int)shown_name(option).length, option->option);
+static bool refuse_for_action(const struct setting *option, int action, struct error *error) {
+    return error_set(error, ERROR_USAGE, "%s cannot be combined with %.*s: %s", actions[action].word,
+                     (int)shown_name(option).length, option->option, actions[action].why);
 }
 
 /* Options that change a picture without being settings. A dialect counts as a file that is read. */
@@ -558,8 +572,8 @@ uint64_t options_picture_bytes(const struct options *options) {
 }
 
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
-    *options =
-        (struct options){.settings = settings_default(), .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
+    *options = (struct options){
+        .settings = settings_default(), .partial = true, .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
@@ -576,15 +590,17 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
-    const struct setting *not_of_merge = NULL; /* the first option that gray merge does not use */
+    const struct setting *unused[ACTIONS_WITH_WORDS] = {NULL}; /* the first option that an action does not use */
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
         /* The first word that is no option; `gray -- merge` is a scene of that name. */
-        if (!only_scripts && options->action == ACTION_RENDER && options->script_count == 0 &&
-            strcmp(word, "merge") == 0) {
-            options->action = ACTION_MERGE;
-            continue;
+        bool is_first = !only_scripts && options->action == ACTION_RENDER && options->script_count == 0;
+        for (int action = ACTION_MERGE; is_first && action < ACTIONS_WITH_WORDS; action++) {
+            if (strcmp(word, actions[action].word) == 0)
+                options->action = (enum options_action)action;
         }
+        if (is_first && options->action != ACTION_RENDER)
+            continue;
         if (only_scripts || word[0] != '-' || word[1] == '\0') {
             scripts[options->script_count++] = word;
             continue;
@@ -602,9 +618,11 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             option = find_attached(word, &text);
         if (!option)
             return unknown_option(word, name, error);
-        if (!not_of_merge && !serves_merge(option))
-            not_of_merge = option;
-        bool has_value = option_value(option) != NULL;
+        for (int action = ACTION_MERGE; action < ACTIONS_WITH_WORDS; action++) {
+            if (!unused[action] && !serves(option, action))
+                unused[action] = option;
+        }
+        bool has_value = option_value(option) != NULL && option->kind != SETTING_ACTION;
         if (!has_value && text && option->kind != SETTING_FLAG)
             return value_error(option, shown_name(option), text, error);
         if (!text && option_may_lack_value(option))
@@ -616,14 +634,15 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        only_scripts = options->action >= ACTION_MANUAL;
         /* --denoise=auto leaves the field to the scene. */
         bool leaves = option->kind == SETTING_DENOISE && options->settings.denoise == DENOISER_AUTO;
         if (option_is_setting(option))
             lists.given[option - setting_table] = leaves ? NULL : text ? text : "";
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
-    if (options->action == ACTION_MERGE && not_of_merge)
-        return refuse_for_merge(not_of_merge, error);
+    if ((int)options->action < (int)ACTIONS_WITH_WORDS && unused[options->action])
+        return refuse_for_action(unused[options->action], options->action, error);
     return options_check(options, error);
 }
 

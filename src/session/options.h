@@ -16,10 +16,15 @@
 enum options_action {
     ACTION_RENDER,
     ACTION_MERGE /* the arguments are parts of pictures */,
+    ACTION_COMPARE /* two pictures */,
     ACTION_HELP,
-    ACTION_MANUAL,
     ACTION_VERSION,
-    ACTION_ANNOTATIONS
+    ACTION_ANNOTATIONS,
+    /* The words after these are no scripts but a topic, a page, a folder, a command line. */
+    ACTION_MANUAL,
+    ACTION_ROFF,
+    ACTION_INIT,
+    ACTION_COMPLETE
 };
 #define PROGRESS_MODES(X)                                                                                              \
     X(PROGRESS_AUTO, "auto")                                                                                           \
@@ -59,13 +64,14 @@ struct options {
     enum options_action action;
     struct settings settings;
     struct script_options script; /* library_folder is filled in by main */
-    const char *const *scripts;
+    const char *const *scripts;   /* or the words after ACTION_MANUAL and the like */
     int script_count;
     const char *output;              /* -o, or NULL: the names that the scripts choose */
     enum animation_format animation; /* of `output` */
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
+    double threshold;                /* --threshold, of gray compare */
     bool force;                      /* --force: -o may replace a file that is no picture */
     int width, height;               /* --size, or 0: the sizes that the scripts choose */
     const char *targets_prefix;      /* -write-aa-targets, or NULL */
@@ -90,7 +96,10 @@ struct options {
     double farm_silence; /* seconds without a message after which a rank is regarded as lost; 0: never */
     const char *display; /* --display, or NULL */
     bool partial;        /* --partial: an interrupted picture is written beside the complete one */
-    bool resume;         /* continue from the checkpoint */
+    /* What follows from them: what an interruption leaves. */
+    bool keeps_picture;     /* an unfinished picture */
+    bool keeps_tiles;       /* without --checkpoint: after a minute the checkpoint */
+    bool resume;            /* continue from the checkpoint */
     uint32_t shard, shards; /* --shard: the number of this shard, from 1, and the number of shards; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;
@@ -99,6 +108,9 @@ struct options {
     enum statistics_mode statistics;
 };
 
+struct setting;
+/* The option that a word of a command line begins with, with or without its dashes, or NULL. */
+const struct setting *option_named(const char *word);
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,

@@ -9,6 +9,10 @@
 
 static bool check_together(const struct options *options, struct error *error) {
     bool merge = options->action == ACTION_MERGE;
+    if (options->action == ACTION_COMPARE)
+        return options->script_count == 2 || error_set(error, ERROR_USAGE, "compare needs two pictures");
+    if (options->threshold > 0)
+        return error_set(error, ERROR_USAGE, "--threshold is for gray compare; the noise of a picture is --noise X");
     if (options->action != ACTION_RENDER && !merge)
         return true;
     if (options->script_count == 0)
@@ -100,9 +104,6 @@ static bool check_parts(struct options *options, struct error *error) {
         (options->window || options->check || options->shards || (pipe && display.kind == DISPLAY_TERMINAL)))
         return error_set(error, ERROR_USAGE,
                          "--display cannot be combined with -gui, --check or --shard, and term not with -o -");
-    if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe))
-        return error_set(error, ERROR_USAGE,
-                         "--partial cannot be combined with -gui, --shard, --mpi, --no-fork or -o -");
     /* --resume alone means the checkpoint with the name of the picture. */
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
@@ -190,10 +191,10 @@ static bool check_animation(struct options *options, struct error *error) {
                                                    : NULL;
         return !only || error_set(error, ERROR_USAGE, "%s is only for animations, such as -o x.gif", only);
     }
-    if (options->window || settings->aov || options->targets_prefix || options->first_pass_prefix || options->partial)
+    if (options->window || settings->aov || options->targets_prefix || options->first_pass_prefix)
         return error_set(error, ERROR_USAGE,
-                         "-o %.600s is an animation: it cannot be combined with -gui, --aov, -write-aa-targets, "
-                         "-write-pre-aa or --partial",
+                         "-o %.600s is an animation: it cannot be combined with -gui, --aov, -write-aa-targets or "
+                         "-write-pre-aa",
                          options->output);
     /* An interrupted animation continues: its frames are kept without an option. */
     bool questions = options->pixel_count > 0 || options->dump_scene || options->dump_expr;
@@ -205,7 +206,21 @@ static bool check_animation(struct options *options, struct error *error) {
     return true;
 }
 
+/* What an interruption leaves. */
+static void choose_kept(struct options *options) {
+    const struct settings *settings = &options->settings;
+    bool questions = options->pixel_count > 0 || options->dump_scene || options->dump_expr;
+    bool others = options->shards || options->mpi || options->no_fork || options->watch || options->check;
+    options->keeps_picture = options->partial && options->action == ACTION_RENDER && !questions && !others &&
+                             !options_output_is_stream(options);
+    options->keeps_tiles = options->keeps_picture && !options->checkpoint && settings->time_limit <= 0 &&
+                           !settings->aov && settings->overlay == OVERLAY_NONE;
+}
+
 bool options_check(struct options *options, struct error *error) {
-    return check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
-           check_time(options, error) && check_name(options, error) && check_animation(options, error);
+    bool ok = check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
+              check_time(options, error) && check_name(options, error) && check_animation(options, error);
+    if (ok)
+        choose_kept(options);
+    return ok;
 }

@@ -1,6 +1,7 @@
 /* The options that are no settings of a picture, and --help, which prints all options by group: settings first. */
 #include "session/options_internal.h"
 
+#include "base/document.h"
 #include "base/isa.h"
 #include "image/picture_file.h"
 #include "session/options_table.h"
@@ -47,6 +48,11 @@ static const struct setting options_table[] = {
      ".webp, .y4m, .mp4 or .webm."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,
      "Let -o FILE replace a file that is not a picture, and write a PNG file under a name with any ending."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_FILES, "--threshold", "LEVEL", "", NULL, FIELD(threshold), 0, 0, 1e9,
+     NULL,
+     "With gray compare: the largest difference of a pixel with which the status is 0, in levels of 255, or in light "
+     "of "
+     "PFM, HDR and EXR."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-aa-targets", "X", "", NULL, FIELD(targets_prefix), 0, 0, 0,
      NULL, "For dir/foo.png also write dir/Xfoo.png: the first pass with the marked pixels in red."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-write-pre-aa", "X", "", NULL, FIELD(first_pass_prefix), 0, 0, 0,
@@ -125,8 +131,9 @@ static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--resume", NULL, "", NULL, FIELD(resume), 0, 0, 0, NULL,
      "Continue from the checkpoint (--checkpoint auto unless another file is given); an error if the scene has "
      "changed; with --shard, skip a part that exists already."},
-    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, NULL,
-     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others."},
+    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, "yes",
+     "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others; "
+     "after a minute also the checkpoint for --resume."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard", "I/N", "", NULL, FIELD(shard), 0, 0, 0, NULL,
      "Render part I of N of every picture into a file of tiles beside it; `gray merge PART ...` joins the parts."},
     {SETTING_SHARD, CHANGES_RUN, OPTION_GROUP_MACHINES, "--shard-pictures", "I/N", "", NULL, FIELD(shard_of_pictures),
@@ -171,10 +178,19 @@ static const struct setting options_table[] = {
      "Print --pixel, --dump-scene and --dump-expr as JSON, one line per picture."},
     {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--help|h", NULL, "", NULL, FIELD(action), 0, ACTION_HELP, 0,
      NULL, "Print this text."},
-    {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--man", NULL, "", NULL, FIELD(action), 0, ACTION_MANUAL, 0,
-     NULL, "Print this text and all functions of the scene language."},
+    {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--man", "[TOPIC ...]", "", NULL, FIELD(action), 0,
+     ACTION_MANUAL, 0, NULL,
+     "Print what is known of a function, method, option, field, module of the library or word; without TOPIC, this "
+     "text and all functions of the scene language."},
+    {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--init", "[FOLDER]", "", NULL, FIELD(action), 0, ACTION_INIT,
+     0, NULL, "Write a first scene and the settings of editors (.luarc.json) into FOLDER; replaces no file."},
     {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--annotations", NULL, "", NULL, FIELD(action), 0,
      ACTION_ANNOTATIONS, 0, NULL, "Print the functions as an annotation file for editors (lua/gr.lua)."},
+    {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--roff", "gray|gray-scene", "", NULL, FIELD(action), 0,
+     ACTION_ROFF, 0, NULL, "Print a manual page for man: of the program, or of the scene language."},
+    {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--complete", "WORD ...", "", NULL, FIELD(action), 0,
+     ACTION_COMPLETE, 0, NULL,
+     "For shells: print which kind of file may be the last WORD of a command line, and then the words that it may be."},
     {SETTING_ACTION, CHANGES_RUN, OPTION_GROUP_REPORTS, "--version", NULL, "", NULL, FIELD(action), 0, ACTION_VERSION,
      0, NULL, "Print the versions of the program and of its libraries."},
 };
@@ -217,63 +233,49 @@ _Static_assert(offsetof(struct options, height) == offsetof(struct options, widt
 
 /* --help */
 
-/* Prints words from `column` on, broken so that no line is longer than 100 columns. */
-static void print_wrapped(FILE *stream, const char *text, int column) {
-    enum { INDENT = 36, WIDTH = 100 };
-    if (column >= INDENT) {
-        (void)fputc('\n', stream);
-        column = 0;
-    }
-    (void)fprintf(stream, "%*s", INDENT - column, "");
-    column = INDENT;
-    while (*text) {
-        size_t length = strcspn(text, " ");
-        if (column > INDENT && column + 1 + (int)length > WIDTH) {
-            (void)fprintf(stream, "\n%*s", INDENT, "");
-            column = INDENT;
-        }
-        column += fprintf(stream, "%s%.*s", column > INDENT ? " " : "", (int)length, text);
-        text += length + (text[length] == ' ');
-    }
-    (void)fputc('\n', stream);
-}
-
-static void print_option(FILE *stream, const struct setting *option) {
-    int column = fprintf(stream, "  ");
+void option_describe(const struct setting *option, struct document *document) {
+    char names[256], help[512], word[64];
+    const char *initial = option_initial(option, word);
+    size_t used = 0;
     for (const char *rest = option->option; *rest;) {
-        bool first = rest == option->option;
         struct piece name = option_next_piece(&rest);
-        column += fprintf(stream, "%s%.*s", first ? "" : name.length > 1 ? ", --" : ", -", (int)name.length, name.text);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%.*s",
+                                 used == 0         ? ""
+                                 : name.length > 1 ? ", --"
+                                                   : ", -",
+                                 (int)name.length, name.text);
     }
     if (option_may_lack_value(option))
-        column += fprintf(stream, "[=%s]", option->words);
+        (void)snprintf(names + used, sizeof names - used, "[=%s]", option->words);
     else if (option_value(option))
-        column += fprintf(stream, " %s", option_value(option));
-    char help[512], word[64];
-    const char *initial = option_initial(option, word);
+        (void)snprintf(names + used, sizeof names - used, " %s", option_value(option));
     (void)snprintf(help, sizeof help, "%s%s%s%s", option->help, initial ? " (default: " : "", initial ? initial : "",
                    initial ? ")" : "");
-    print_wrapped(stream, help, column);
+    document_entry(document, DOCUMENT_OPTION, names, help);
 }
 
-void options_print_help(FILE *stream) {
-    (void)fputs("gray renders scenes that are written as Lua scripts.\n"
-                "usage: gray [options] [--] scene.lua ...\n"
-                "       gray merge [-o FILE] [options] PART ...\n"
-                "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n"
-                "Options without a value take =yes and =no. Options have priority over fields of gr.render, except\n"
-                "--seed; --default sets what a script leaves open.\n",
-                stream);
+void options_describe(struct document *document) {
+    document_paragraph(document,
+                       "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the "
+                       "value. Options without a value take =yes and =no. Options have priority over fields of "
+                       "gr.render, except --seed; --default sets what a script leaves open.");
     for (int group = 0; group < OPTION_GROUP_COUNT; group++) {
-        (void)fprintf(stream, "\n%s\n", group_titles[group]);
+        document_subsection(document, group_titles[group]);
         for (int i = 0; i < option_count(); i++) {
             if (option_at(i)->option && option_at(i)->group == (enum option_group)group)
-                print_option(stream, option_at(i));
+                option_describe(option_at(i), document);
         }
     }
-    (void)fputs("\nExit status: 0 all pictures written; 1 error in a scene or a file; 2 wrong usage; 3 error of the\n"
-                "machine (disk full, out of memory, a crash); 130 interrupted. gray runs every script and returns the\n"
-                "highest status. Wrong usage and an interruption end the run at once.\n"
-                "Environment: GRAY_LUA is the folder of the Lua library, which require searches last.\n",
-                stream);
+    document_section(document, "Exit status");
+    document_paragraph(document,
+                       "0 all pictures written; 1 error in a scene or a file; 2 wrong usage; 3 error of the "
+                       "machine (disk full, out of memory, a crash); 130 interrupted. gray runs every script "
+                       "and returns the highest status. Wrong usage and an interruption end the run at once.");
+    document_section(document, "Environment");
+    document_entry(document, DOCUMENT_OPTION, "GRAY_LUA",
+                   "The folder of the Lua library, which require searches last.");
+    document_entry(document, DOCUMENT_OPTION, "PAGER", "The program that shows --man on a terminal; else less.");
+    document_entry(document, DOCUMENT_OPTION, "NO_COLOR, CLICOLOR, CLICOLOR_FORCE",
+                   "Messages on a terminal are in colour unless NO_COLOR is set or CLICOLOR is 0; CLICOLOR_FORCE=1: "
+                   "everywhere.");
 }

@@ -5,9 +5,13 @@
 #include "session/options.h"
 #include "settings/setting.h"
 
+struct document;
 /* All options in one row: the settings, some of which have no option, and then the others. */
 int option_count(void);
 const struct setting *option_at(int index);
+/* One option; and all in groups, with their defaults, the exit status and the environment. */
+void option_describe(const struct setting *option, struct document *document);
+void options_describe(struct document *document);
 bool option_is_setting(const struct setting *option);
 /* The struct that has the value of the option: the settings, or the options. */
 void *option_base(const struct setting *option, struct options *options);

@@ -1,11 +1,13 @@
 /* The printing functions process one character after the other and write at once, so they need no memory and have no
  * limit. A text_writer passes its piece on if the next word does not fit. */
+#define _GNU_SOURCE
 #include "session/text.h"
 
 #include "base/terminal_text.h"
 
 #include <poll.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,8 +17,9 @@ static bool is_control(const unsigned char *at) {
     return class == CHARACTER_CONTROL || class == CHARACTER_BREAK || class == CHARACTER_LINE_END;
 }
 
-static void print_cleaned(FILE *stream, const char *text, bool continued) {
-    for (const unsigned char *at = (const unsigned char *)text; *at;) {
+/* The text up to `end`. continued: line ends before two blanks stay. */
+static void put_cleaned(FILE *stream, const char *text, const char *end, bool continued) {
+    for (const unsigned char *at = (const unsigned char *)text; at < (const unsigned char *)end;) {
         size_t length = utf8_length(at), whole = length > 0 ? length : 1;
         bool next_line = continued && at[0] == '\n' && at[1] == ' ' && at[2] == ' ';
         if (is_control(at) && !next_line)
@@ -25,6 +28,10 @@ static void print_cleaned(FILE *stream, const char *text, bool continued) {
             (void)fwrite(at, 1, whole, stream);
         at += whole;
     }
+}
+
+static void print_cleaned(FILE *stream, const char *text, bool continued) {
+    put_cleaned(stream, text, text + strlen(text), continued);
     (void)fputc('\n', stream);
 }
 
@@ -57,8 +64,40 @@ void text_print_scene_line(FILE *stream, const char *text) {
     print_cleaned(stream, text, false);
 }
 
-void text_print_lines(FILE *stream, const char *text) {
-    print_cleaned(stream, text, true);
+/* https://no-color.org and the conventions of CLICOLOR. */
+static bool has_colour(bool is_terminal) {
+    const char *none = getenv("NO_COLOR"), *force = getenv("CLICOLOR_FORCE"), *colour = getenv("CLICOLOR");
+    if (none && none[0])
+        return false;
+    if (force && force[0] && strcmp(force, "0") != 0)
+        return true;
+    return is_terminal && !(colour && strcmp(colour, "0") == 0);
+}
+
+void text_print_message(FILE *stream, enum text_kind kind, const char *text) {
+    static const struct {
+        const char *word;
+        int colour; /* of ECMA-48 */
+    } kinds[] = {[TEXT_ERROR] = {"error: ", 31}, [TEXT_WARNING] = {"warning: ", 33}, [TEXT_NOTICE] = {"notice: ", 36}};
+    size_t line = strcspn(text, "\n");
+    const char *word = kinds[kind].word, *at = memmem(text, line, word, strlen(word)),
+               *rest = at ? at + strlen(word) : NULL;
+    bool is_terminal = stream == stderr && isatty(STDERR_FILENO), continued = kind == TEXT_ERROR;
+    bool coloured = has_colour(is_terminal);
+    if (!coloured && (at || !is_terminal)) {
+        print_cleaned(stream, text, continued);
+        return;
+    }
+    if (!at) { /* the word stands behind the place: "scene.lua:3: " */
+        const char *colon = memmem(text, line, ": ", 2);
+        at = rest = colon ? colon + 2 : text;
+    }
+    put_cleaned(stream, text, at, continued);
+    if (coloured)
+        (void)fprintf(stream, "\033[1;%dm%s\033[0m", kinds[kind].colour, word);
+    else
+        (void)fputs(word, stream);
+    print_cleaned(stream, rest, continued);
 }
 
 /* The beginning of a JSON string: the bytes for the next *taken bytes of a text; returns how many. */

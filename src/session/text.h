@@ -16,8 +16,10 @@ void text_print_line(FILE *stream, const char *text);
 /* The same for a line whose beginning a scene or a file has chosen, such as the name of a picture: it is not shown as a
  * line of the program (base/terminal_text.h). */
 void text_print_scene_line(FILE *stream, const char *text);
-/* The same for an error with its traceback: line ends remain if the next line is indented by two blanks. */
-void text_print_lines(FILE *stream, const char *text);
+/* A message. On a terminal it has the word of its kind, in colour unless the environment forbids it. In an error, which
+ * may have a traceback, line ends remain if the next line is indented by two blanks. */
+enum text_kind { TEXT_ERROR, TEXT_WARNING, TEXT_NOTICE };
+void text_print_message(FILE *stream, enum text_kind kind, const char *text);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD, the characters above escapes. */
 void text_print_json(FILE *stream, const char *text);
 

@@ -310,7 +310,7 @@ static void examine_node(const struct implicit *solid, uint32_t node, const stru
     }
 }
 
-static bool examine_lines(const struct implicit *solid, struct implicit_findings *out) {
+static bool examine_lines(const struct implicit *solid, double *work) {
     struct geom_scratch scratch;
     uint64_t sum = 0, lines = 0;
     if (!geom_scratch_init(&scratch, implicit_scratch_need(solid)))
@@ -325,17 +325,45 @@ static bool examine_lines(const struct implicit *solid, struct implicit_findings
             return false;
         }
     }
-    out->line_work = (double)sum / (double)lines;
+    *work = (double)sum / (double)lines;
     geom_scratch_destroy(&scratch);
     return true;
 }
 
-bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
-    *out = (struct implicit_findings){.is_empty = solid->in.lipschitz > 0};
-    if (!(solid->in.lipschitz > 0))
-        return examine_lines(solid, out) || error_no_memory(error, "an implicit solid");
+static void examine_points(const struct implicit *solid, struct implicit_findings *out) {
     for (uint64_t k = 0; k < POINTS; k++)
         examine_point(solid, random_point(&solid->in.bounds, k), out);
     examine_node(solid, 0, &solid->in.bounds, solid->region_count / POINTS + 1, out);
-    return true;
+}
+
+/* The same solid with the largest slope as its bound, rounded up to two digits. */
+static bool try_marching(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
+    struct arena arena = {0};
+    struct implicit_input in = solid->in;
+    examine_points(solid, out);
+    out->steep_points = 0;
+    out->is_empty = false;
+    if (!(out->steepest > 0))
+        return true;
+    double digit = 1;
+    while (digit * 100 <= out->steepest)
+        digit *= 10;
+    while (digit * 10 > out->steepest)
+        digit /= 10;
+    in.lipschitz = out->lipschitz = ceil(out->steepest / digit) * digit;
+    const struct implicit *marched = implicit_build(&arena, &in, error);
+    bool ok = marched && (examine_lines(marched, &out->marched_work) || error_no_memory(error, "an implicit solid"));
+    arena_destroy(&arena);
+    return ok;
+}
+
+bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
+    *out = (struct implicit_findings){.is_empty = solid->in.lipschitz > 0};
+    if (solid->in.lipschitz > 0) {
+        examine_points(solid, out);
+        return true;
+    }
+    if (!examine_lines(solid, &out->line_work))
+        return error_no_memory(error, "an implicit solid");
+    return out->line_work <= IMPLICIT_SLOW || try_marching(solid, out, error);
 }

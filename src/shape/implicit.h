@@ -24,6 +24,7 @@ struct implicit_input {
     bool is_distance;
 };
 
+enum { IMPLICIT_SLOW = 3000 };
 struct implicit;
 
 /* NULL and error: no memory, or the program is not of p alone. The work is bounded. */
@@ -37,6 +38,8 @@ struct implicit_findings {
     struct vec3 steepest_at;
     bool is_empty;    /* it is below 0 at none of them, nor at the centre of a region */
     double line_work; /* without a Lipschitz bound: the mean number of operations for a line, if it is below 10^6 */
+    /* Where that is above IMPLICIT_SLOW: a bound that the slopes at all points support, and the mean number with it. */
+    double lipschitz, marched_work;
 };
 /* The same findings for the same solid. False and an error: no memory. */
 bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error);

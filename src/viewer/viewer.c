@@ -165,6 +165,12 @@ void viewer_detach(struct viewer *viewer) {
     viewer->display.figures_at = 0;
 }
 
+bool viewer_has_tiles(const struct viewer *viewer) {
+    const struct viewer_pass *pass = &viewer->pass;
+    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.width == 0 &&
+           !pass->edited;
+}
+
 void viewer_keep(struct viewer *viewer) {
     viewer->keep = viewer->window.open;
 }

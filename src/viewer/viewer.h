@@ -248,6 +248,8 @@ bool viewer_open(struct viewer *viewer, const struct window_driver *driver, cons
                  uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */
 void viewer_detach(struct viewer *viewer);
+/* Whether the film holds tiles of the picture of the script, not of another view or a coarse pass. */
+bool viewer_has_tiles(const struct viewer *viewer);
 /* The scripts will run again for the picture in the window. */
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */

@@ -12,6 +12,7 @@
 #include "world/node_path.h"
 #include "world/world_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -350,6 +351,11 @@ struct instance_frame {
     const struct graphics_state *state_of_operand, *state; /* NULL: no ancestor has a state */
 };
 
+/* A spin goes on over the frames of an animation. */
+static double spin_start(const struct flattening *f, const struct node *node) {
+    return fmod(node->spin->degrees * f->scene->time, 360);
+}
+
 /* A moving node has a link, which is the base of its children. */
 static bool pose_moving(struct flattening *f, const struct node *node, const struct pose *parent, struct pose *out) {
     struct world *world = f->world;
@@ -365,6 +371,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     bool moves_on = node->moves_to && node->moves_to != node;
     if (!moves_on && node->spin) {
         link->motion = motion_of_spin(&parent_from_node, node->velocity, node->spin->axis, node->spin->degrees);
+        link->motion.spin_start = spin_start(f, node);
         out->from_node = transform_identity();
         return flatten_check_transform(f, node, &parent_from_node);
     }
@@ -384,6 +391,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
         link->motion.spins = true;
         link->motion.spin_axis = node->spin->axis;
         link->motion.spin = node->spin->degrees;
+        link->motion.spin_start = spin_start(f, node);
     }
     return true;
 }

@@ -14,10 +14,8 @@ static inline void white_row(void *context, uint32_t y, uint8_t *line) {
 }
 
 static inline void write_white_png(const char *name, uint32_t width, uint32_t height) {
-    char path[512];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(png_write_from(FILE_AT(path),
+    CHECK(png_write_from(FILE_AT(test_path(name)),
                          &(struct png_source){.width = width, .height = height, .bytes = white_row, .context = &width},
                          NULL, &error));
 }

@@ -53,9 +53,9 @@ void estimate_record(const char *claim, double value, struct estimate e, int see
     (void)fclose(file);
 }
 
-void estimate_check(const char *claim, double value, struct estimate e, int seed) {
+void estimate_check(const char *claim, double value, struct estimate e, int seed, double precision) {
     estimate_record(claim, value, e, seed);
-    if (!(e.error <= 0.001 * value))
+    if (!(e.error <= precision * value))
         test_fail(__FILE__, __LINE__, "%s, seed %d: standard error %g of %g", claim, seed, e.error, value);
     if (!(fabs(e.mean - value) <= 4 * e.error + 1e-6 * value))
         test_fail(__FILE__, __LINE__, "%s, seed %d: %.7g +- %.2g, not %.7g", claim, seed, e.mean, e.error, value);
@@ -74,5 +74,5 @@ void estimate_check_equal(const char *claim, struct estimate a, struct estimate 
 
 void estimate_check_mean(const char *claim, double value, struct stage *s, const struct effort *effort, int depth) {
     for (int seed = 1; seed <= effort->seeds; seed++)
-        estimate_check(claim, value, estimate_render(s, effort, depth, seed), seed);
+        estimate_check(claim, value, estimate_render(s, effort, depth, seed), seed, effort_precision(effort));
 }

@@ -65,7 +65,7 @@ static void check_searches(const struct maker *m, uint32_t voxels, int rays, str
     triangle_index_destroy(index);
 }
 
-TEST(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle) {
+TEST_TIMES(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle, 30) {
     static const char *const sets[] = {"base", "avx2", "avx512"};
     int tried = 0;
     for (int isa = 0; isa < 3; isa++) {
@@ -78,13 +78,13 @@ TEST(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle
             maker_soup(&m, (enum soup)kind, 400, &random);
             const uint32_t voxels[] = {1, 30, 400, 4000};
             for (int k = 0; k < 4; k++)
-                check_searches(&m, voxels[k], 500, &random, "soup");
+                check_searches(&m, voxels[k], 150 * times, &random, "soup");
             maker_free(&m);
         }
         struct maker m = {0};
         maker_twisted_torus(&m, 40, 16, 1);
-        check_searches(&m, 1, 1000, &random, "torus");
-        check_searches(&m, 500, 1000, &random, "torus");
+        check_searches(&m, 1, 300 * times, &random, "torus");
+        check_searches(&m, 500, 300 * times, &random, "torus");
         maker_free(&m);
     }
     CHECK(cpu_select_isa("auto"));
@@ -246,9 +246,9 @@ TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {
 
 TEST(the_index_has_the_same_bytes_for_any_number_of_threads) {
     struct maker m = {0};
-    maker_twisted_torus(&m, 400, 150, 2);
+    maker_twisted_torus(&m, 200, 75, 2);
     struct test_random random = {13};
-    maker_soup(&m, SOUP_MIXED_SIZES, 30000, &random);
+    maker_soup(&m, SOUP_MIXED_SIZES, 10000, &random);
     struct triangle_set set = set_of(&m);
     for (uint32_t voxels = 0; voxels <= 300; voxels += 300) {
         struct triangle_index *first = build(&set, voxels, NULL);

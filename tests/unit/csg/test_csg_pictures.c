@@ -22,19 +22,12 @@ static void renders(const char *text) {
     struct test_result result = test_gray_scene(text, "scene.lua", NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s\n%s", text, result.err);
-    free(result.out);
-    free(result.err);
-}
-
-static struct test_picture picture(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_picture(path);
+    test_free_result(&result);
 }
 
 /* Pixels in which two pictures differ by more than `levels`. */
 static uint32_t differing(const char *name_a, const char *name_b, int levels) {
-    struct test_picture a = picture(name_a), b = picture(name_b);
+    struct test_picture a = test_read_picture(test_path(name_a)), b = test_read_picture(test_path(name_b));
     uint32_t count = 0, size = a.width * a.height;
     CHECK(a.rgb && b.rgb && a.width == b.width && a.height == b.height);
     for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++) {
@@ -51,7 +44,7 @@ static uint32_t differing(const char *name_a, const char *name_b, int levels) {
 
 /* The number of pixels that differ from the first one. */
 static uint32_t varied(const char *name) {
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     uint32_t count = 0;
     for (uint32_t i = 0; p.rgb && i < p.width * p.height; i++)
         count += memcmp(p.rgb, p.rgb + 3 * i, 3) != 0;
@@ -199,7 +192,7 @@ TEST(what_is_far_away_is_inside_of_an_inverse) {
                   "local sea = gr.difference(ball(glass, 0, 0, 0, 1000), ball(glass, 0, 0, 0, 1))\n"
                   "show(cave, 'a.png') show(sea, 'b.png')\n"
                   "show(gr.union('u', cave, ball(red, 0, 0, 0, .5)), 'c.png')\n");
-    struct test_picture a = picture("a.png"), b = picture("b.png");
+    struct test_picture a = test_read_picture(test_path("a.png")), b = test_read_picture(test_path("b.png"));
     /* In both, rays that never leave the sea end in the background; those through the cave are the same. */
     uint32_t same = 0, size = a.width * a.height;
     for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++)

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { SIZE = 512 };
+enum { SIZE = 256 };
 
 /* The pixels whose sign is not that of the whole program. */
 static int wrong_pixels(const struct expr_program *program, struct prospero *p) {

@@ -176,12 +176,10 @@ TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
     struct test_result result = test_gray(NULL, "merge 1.part other.part");
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "does not belong to 1.part: its pixels have records of another size") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray(NULL, "merge 1.part 2.part");
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct test_picture picture = test_read_picture(test_path("a.png"));
     struct film film = painted(plain);
     uint8_t line[3 * SIDE];

@@ -384,7 +384,7 @@ TEST(control_c_finishes_tiles_and_writes_every_output) {
 TEST(a_second_control_c_stops_at_once) {
     put("scene.lua", ONE);
     gives("for moment in " MOMENTS
-          "; do env --default-signal=INT $gray scene.lua -j 1 -full -ss 64 --partial 2>said.txt & "
+          "; do env --default-signal=INT $gray scene.lua -j 1 -full -ss 64 --checkpoint auto 2>said.txt & "
           "pid=$!; sleep $moment; kill -INT $pid; sleep $moment; kill -INT $pid; wait $pid; status=$?; "
           "grep -q 'tiles under way' said.txt && break; done; cat said.txt >&2; exit $status",
           130, "gray: interrupted, out.png is not written");

@@ -513,6 +513,47 @@ TEST(a_checkpoint_of_another_run_is_refused) {
     free(film.pixels);
 }
 
+/* Without --checkpoint. began: seconds ago; options: their digest. */
+static void interrupt(const char *path, double began, uint64_t options_digest, bool finishes, const char *says) {
+    struct options options = {.keeps_tiles = true, .checkpoint_every = 0};
+    struct film film = half_film();
+    struct tile_picture picture = some_picture();
+    struct checkpoint checkpoint;
+    struct checkpoint_tiles tiles = {0};
+    struct error error;
+    char notice[256];
+    picture.key.options.a = options_digest;
+    checkpoint_init(&checkpoint, &options, files_for(&options));
+    CHECK(checkpoint_open(&checkpoint, path, notice, &error) && notice[0] == '\0');
+    CHECK(checkpoint_restore(&checkpoint, &picture, &film, notice, &error));
+    CHECK(strstr(notice, says) && (notice[0] == '\0') == (says[0] == '\0'));
+    CHECK(checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error) && tiles.done == 0);
+    checkpoint.written_at -= began;
+    CHECK(checkpoint_update(&checkpoint, &picture, &film, !finishes, &tiles, &error));
+    CHECK(checkpoint_finish(&checkpoint, finishes, &error));
+    free(film.pixels);
+}
+
+TEST(a_checkpoint_that_was_not_requested_is_written_after_a_minute_and_replaces_none_of_other_options) {
+    const char *picture = test_path("l.png"), *path = test_path("l.png.checkpoint");
+    struct file_identity first, second;
+    interrupt(picture, 59, 1, false, "");
+    CHECK(access(path, F_OK) != 0);
+    interrupt(picture, 61, 1, false, "");
+    CHECK(file_identity_of(path, &first));
+    /* Other options: neither replaced nor removed. */
+    interrupt(picture, 61, 2, false, "is of a run with other options, and stays");
+    interrupt(picture, 61, 2, true, "stays");
+    CHECK(file_identity_of(path, &second) && first.inode == second.inode);
+    /* The same ones: kept by a short run, replaced by a long one, removed by a finished one. */
+    interrupt(picture, 59, 1, false, "is of this picture: --resume would go on with it");
+    CHECK(file_identity_of(path, &second) && first.inode == second.inode);
+    interrupt(picture, 61, 1, false, "--resume");
+    CHECK(file_identity_of(path, &second) && first.inode != second.inode);
+    interrupt(picture, 1, 1, true, "--resume");
+    CHECK(access(path, F_OK) != 0);
+}
+
 TEST(a_checkpoint_that_cannot_be_written_is_reported_once_and_on_request) {
     struct options options = options_for(test_path("no/such\x01/folder/c.tiles"), false);
     const char *file = test_path("no");

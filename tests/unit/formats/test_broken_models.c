@@ -167,6 +167,5 @@ TEST(broken_mesh_files_of_every_kind_are_one_line_each_and_status_1) {
         seen++;
     }
     CHECK_EQ_INT(seen, case_count);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

@@ -271,9 +271,8 @@ static void rows(void *context, uint32_t y, uint8_t *line) {
 }
 
 TEST(gltf_materials_and_embedded_pictures_become_ours) {
-    char path[400];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/p.png", test_folder());
+    const char *path = test_path("p.png");
     CHECK(png_write_from(FILE_AT(path), &(struct png_source){.width = 4, .height = 4, .bytes = rows}, NULL, &error));
     size_t size;
     char *png = test_read_file(path, &size);

@@ -30,13 +30,6 @@
 
 enum { KIB_OF_LIMIT = 16 << 10 };
 
-/* The peak memory of any child, in KiB. */
-static long max_memory(void) {
-    struct rusage usage;
-    (void)getrusage(RUSAGE_CHILDREN, &usage);
-    return usage.ru_maxrss;
-}
-
 /* A program without the limit must not take the machine's memory. */
 static void guard(void) {
     struct rlimit limit;
@@ -47,8 +40,7 @@ static void guard(void) {
 }
 
 static void forget(struct test_result result) {
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* The memory of an empty script; to be called after files are made. */
@@ -56,11 +48,11 @@ static long memory_of_nothing(void) {
     struct test_result plain = test_gray_scene("local x = 1", "scene.lua", NULL);
     CHECK_EQ_INT(plain.status, 0);
     forget(plain);
-    return max_memory();
+    return test_children_used().kibibytes;
 }
 
 static void check_memory(const char *what, long without, long limit) {
-    long more = max_memory() - without;
+    long more = test_children_used().kibibytes - without;
     if (!test_has_sanitizer() && more > limit * 11 / 10)
         test_fail(__FILE__, __LINE__, "%s: %ld KiB over an empty script for a limit of %ld", what, more, limit);
 }

@@ -83,10 +83,8 @@ TEST(mtl_maps_have_their_options_and_are_found) {
 
 /* A material library in one folder, images in another beside it, blanks in all names, both kinds of slashes. */
 TEST(mtl_paths_are_relative_to_the_library_and_may_hold_blanks) {
-    char path[500];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/my parts/some tex/x", test_folder());
-    CHECK(file_make_folders_for(path, &error));
+    CHECK(file_make_folders_for(test_path("my parts/some tex/x"), &error));
     test_write_text(in_folder("my parts/some tex/a b.png"), "x");
     test_write_text(in_folder("my parts/two.png"), "x");
     test_write_text(in_folder("three.png"), "x");

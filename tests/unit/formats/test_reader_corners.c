@@ -141,17 +141,13 @@ static const struct corner corners[] = {
 };
 
 static void put(const char *name, const char *text) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_text(path, text);
+    test_write_text(test_path(name), text);
 }
 
 static void expect(const char *name, const void *data, size_t size, const char *words) {
-    char path[512];
     struct model model;
     struct error error;
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    bool ok = parse_model(&model, path, data, size, NULL, &error);
+    bool ok = parse_model(&model, test_path(name), data, size, NULL, &error);
     if (ok != !words || (words && !strstr(error.text, words)))
         test_fail(__FILE__, __LINE__, "%s, %.60s: %s, not '%s'", name, (const char *)data, ok ? "is read" : error.text,
                   words ? words : "read");
@@ -265,12 +261,10 @@ TEST(any_allocation_may_fail_while_nodes_are_read) {
 
 /* A limit that the test sets replaces the limit of 32-bit indices. */
 static void expect_max(const char *name, const void *data, size_t size, size_t max, const char *words) {
-    char path[512];
     struct model model;
     struct error error;
     struct model_options options = {.max = max};
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    bool ok = parse_model(&model, path, data, size, &options, &error);
+    bool ok = parse_model(&model, test_path(name), data, size, &options, &error);
     if (ok != !words || (words && !strstr(error.text, words)))
         test_fail(__FILE__, __LINE__, "%s, at most %zu: %s, not '%s'", name, max, ok ? "is read" : error.text,
                   words ? words : "read");
@@ -415,10 +409,8 @@ TEST(gzip_of_any_length_is_read_piece_by_piece) {
         test_folder());
     test_need_tools("gzip");
     CHECK(system(line) == 0);
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/t.obj.gz", test_folder());
     struct bytes b = {0};
-    b.data = (uint8_t *)test_read_file(path, &b.size);
+    b.data = (uint8_t *)test_read_file(test_path("t.obj.gz"), &b.size);
     CHECK(b.data != NULL);
     expect("t.obj.gz", b.data, b.size, NULL);
     check_failed_allocations("t.obj.gz", &b);

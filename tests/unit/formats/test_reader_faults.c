@@ -118,16 +118,13 @@ static void write_picture_row(void *context, uint32_t y, uint8_t *line) {
 }
 
 static void put(const char *name, const void *data, size_t size) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_file(path, data, size);
+    test_write_file(test_path(name), data, size);
 }
 
 /* The text of t.gltf with its buffers and pictures inserted. */
 static void make_gltf(struct bytes *out) {
     static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     struct bytes buffer = {0}, coded = {0}, picture = {0};
-    char path[512];
     for (int i = 0; i < 12; i++)
         bytes_float(&buffer, corners[i / 3][i % 3], false);
     for (int i = 0; i < 4; i++)
@@ -143,9 +140,8 @@ static void make_gltf(struct bytes *out) {
         bytes_float(&buffer, i + 1, false);
     write_base64(&coded, &buffer);
     bytes_add(&coded, "", 1);
-    (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
     size_t size;
-    uint8_t *png = (uint8_t *)test_read_file(path, &size);
+    uint8_t *png = (uint8_t *)test_read_file(test_path("pic.png"), &size);
     struct bytes raw = {.data = png, .size = size};
     write_base64(&picture, &raw);
     bytes_add(&picture, "", 1);
@@ -157,11 +153,9 @@ static void make_gltf(struct bytes *out) {
 }
 
 static void prepare(void) {
-    char path[512];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
-    CHECK(png_write_from(FILE_AT(path), &(struct png_source){.width = 4, .height = 4, .bytes = write_picture_row}, NULL,
-                         &error));
+    CHECK(png_write_from(FILE_AT(test_path("pic.png")),
+                         &(struct png_source){.width = 4, .height = 4, .bytes = write_picture_row}, NULL, &error));
     put("t.mtl", mtl_text, strlen(mtl_text));
 }
 
@@ -212,8 +206,7 @@ static void expect_line(const char *path, bool ok, const struct error *error, co
 
 /* Removes every word of the text, and replaces it by every unexpected one. */
 static void change_words(const char *name, const char *text, size_t size, const struct model_options *options) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    const char *path = test_path(name);
     char *changed = malloc(size + 64);
     for (size_t at = 0, end; at < size; at = end) {
         end = at + 1;
@@ -240,15 +233,13 @@ static void change_words(const char *name, const char *text, size_t size, const 
 /* Call number 1, 2, 3 ... fails until a run has fewer calls. */
 static void fail_everything(const char *name, const struct model_options *options) {
 #ifdef GRAY_FAULTS
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
     for (int kind = FAULT_OF_ALLOCATION; kind <= FAULT_OF_CALL; kind++)
         for (uint64_t k = 1;; k++) {
             struct error error;
             int triangles;
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = read_into_scene(path, options, &error, &triangles);
+            bool ok = read_into_scene(test_path(name), options, &error, &triangles);
             fault_at((enum fault_kind)kind, 0);
             if (!ok && kind == FAULT_OF_ALLOCATION && error.kind != ERROR_MACHINE)
                 test_fail(__FILE__, __LINE__, "%s, allocation %llu: %s", name, (unsigned long long)k, error.text);
@@ -263,14 +254,12 @@ static void fail_everything(const char *name, const struct model_options *option
 }
 
 static void check_text(const char *name, const char *text, size_t size, int triangles) {
-    char path[512];
     struct error error;
     int found = 0;
     struct model_options plain = {0}, all = {.smooth = true, .smooth_angle = 60, .weld = true, .flip = true};
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
     prepare();
     put(name, text, size);
-    if (!read_into_scene(path, &plain, &error, &found))
+    if (!read_into_scene(test_path(name), &plain, &error, &found))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     CHECK_EQ_INT(found, triangles);
     change_words(name, text, size, &plain);
@@ -307,9 +296,7 @@ TEST(any_allocation_may_fail_while_gzip_is_read) {
     struct model_options plain = {0};
     struct error error;
     int triangles = 0;
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/z.obj.gz", test_folder());
-    CHECK(read_into_scene(path, &plain, &error, &triangles));
+    CHECK(read_into_scene(test_path("z.obj.gz"), &plain, &error, &triangles));
     CHECK_EQ_INT(triangles, 5);
     fail_everything("z.obj.gz", &plain);
 }
@@ -399,13 +386,12 @@ TEST(a_model_whose_real_name_is_too_long_for_the_store_is_an_error) {
 
 /* The library of materials is another file: its lines name it. */
 TEST(any_word_of_a_material_library_may_be_another) {
-    char path[512];
     struct error error;
     char *changed = malloc(sizeof mtl_text + 64);
     int triangles;
     prepare();
     put("t.obj", obj_text, strlen(obj_text));
-    (void)snprintf(path, sizeof path, "%s/t.obj", test_folder());
+    const char *path = test_path("t.obj");
     for (size_t at = 0, end; at < strlen(mtl_text); at = end) {
         end = at + 1;
         if (is_separator(mtl_text[at]))

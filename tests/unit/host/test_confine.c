@@ -262,8 +262,7 @@ static void check_said(const char *arguments, const char *begin) {
     bool good = begin[0] ? strncmp(result.err, begin, strlen(begin)) == 0 && end && end[1] == '\0' : !result.err[0];
     if (!good)
         test_fail(__FILE__, __LINE__, "%s says \"%s\", not \"%s\"", arguments, result.err, begin);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(hostile_a_kernel_without_landlock_is_one_warning) {
@@ -280,8 +279,7 @@ TEST(hostile_a_kernel_without_landlock_is_one_warning) {
     struct test_result result = test_gray_scene("x = 1", "--script-time 0.05 dies.lua scene.lua", NULL);
     const char *first = strstr(result.err, "no Landlock");
     CHECK(first && !strstr(first + 1, "no Landlock") && strstr(first, "dies.lua"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(hostile_a_kernel_without_a_filter_is_one_warning) {
@@ -289,8 +287,7 @@ TEST(hostile_a_kernel_without_a_filter_is_one_warning) {
         test_skip("builds with sanitizers run without the filter");
     struct test_result plain = test_gray_scene("x = 1", "--verbose scene.lua", NULL);
     bool landlock = strstr(plain.err, "Landlock (version ");
-    free(plain.out);
-    free(plain.err);
+    test_free_result(&plain);
     if (!landlock)
         test_skip("no Landlock in this kernel");
     check_said("scene.lua", "");

@@ -64,15 +64,11 @@ static int shell(const char *line) {
 }
 
 static char *content(const char *name, size_t *size) {
-    char path[4096];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_file(path, size);
+    return test_read_file(test_path(name), size);
 }
 
 static void put(const char *name, const char *text) {
-    char path[4096];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_text(path, text);
+    test_write_text(test_path(name), text);
 }
 
 static void prepare(uint64_t counts[2]) {

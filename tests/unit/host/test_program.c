@@ -103,8 +103,7 @@ static struct test_picture picture_of(const char *name) {
 static void ends(struct test_result result, int status) {
     if (result.status != status)
         test_fail(__FILE__, __LINE__, "status %d, not %d; standard error:\n%s", result.status, status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void ends_saying(struct test_result result, int status, const char *text) {
@@ -170,18 +169,6 @@ static bool wait_for(const char *text) {
         test_fail(__FILE__, __LINE__, "\"%s\" never appears on standard error", text);
     free(path);
     return found;
-}
-
-/* The one child of a process, or 0. */
-static pid_t child_of(pid_t process) {
-    char path[64];
-    int child = 0;
-    (void)snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)process, (int)process);
-    char *text = test_read_file(path, NULL);
-    if (text)
-        child = atoi(text);
-    free(text);
-    return (pid_t)child;
 }
 
 /* Starts an endless picture over an old file and waits until tiles are rendered. */
@@ -320,8 +307,7 @@ TEST(every_format_of_pictures_is_written_and_may_be_replaced) {
             CHECK_EQ_INT(result.status, 0);
             if (result.status != 0)
                 test_fail(__FILE__, __LINE__, "%s: %s", name, result.err);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
         }
         uint8_t head[FILE_HEAD_SIZE] = {0};
         const char *files[2] = {name, i == PICTURE_EXR ? name : layer};
@@ -525,7 +511,7 @@ TEST(a_limit_on_file_sizes_is_an_error_not_a_signal) {
 }
 
 TEST(a_killed_rendering_process_leaves_the_old_picture_and_the_next_script_runs) {
-    pid_t program = start_endless(), child = child_of(program);
+    pid_t program = start_endless(), child = test_child_of(program);
     CHECK(child > 0 && kill(child, SIGKILL) == 0);
     CHECK_EQ_INT(finish(program), 3);
     holds_text("out.png", OLD_PICTURE);
@@ -535,7 +521,7 @@ TEST(a_killed_rendering_process_leaves_the_old_picture_and_the_next_script_runs)
 }
 
 TEST(a_crash_is_reported_in_one_line_with_its_signal) {
-    pid_t program = start_endless(), child = child_of(program);
+    pid_t program = start_endless(), child = test_child_of(program);
     CHECK(child > 0 && kill(child, SIGABRT) == 0);
     CHECK_EQ_INT(finish(program), 3);
     holds_text("out.png", OLD_PICTURE);
@@ -688,7 +674,7 @@ TEST(a_build_that_is_interrupted_ends_before_the_rendering) {
 }
 
 TEST(the_rendering_process_goes_with_its_supervisor) {
-    pid_t program = start_endless(), child = child_of(program);
+    pid_t program = start_endless(), child = test_child_of(program);
     CHECK(child > 0 && kill(program, SIGKILL) == 0);
     CHECK_EQ_INT(finish(program), 128 + SIGKILL);
     /* It has ended, or is a zombie. */
@@ -898,23 +884,19 @@ TEST(names_with_line_ends_and_control_characters_cannot_speak_for_the_program) {
     CHECK_TEXT(result.err,
                "scene.lua: warning: node 'a?gray: notice: b?[2J?2J?' has no material and is shown in plain gray "
                "(made at scene.lua:1)\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene("gr.superellipsoid{name = 'a\\n  b\\ngray: c', e = 0}\n", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "(node 'a?  b?gray: c')\n  stack traceback:\n") && !strstr(result.err, "\ngray"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene("gr.mesh{file = 'a\\ngray: c'}\n", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "a?gray: c") && !strstr(result.err, "\ngray"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene("error('a\\ngray: c')\n", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "scene.lua:1: a\n  gray: c\n  stack traceback:\n") == result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(descriptors_that_are_closed_at_the_start_do_not_become_those_of_other_files) {
@@ -932,8 +914,7 @@ TEST(descriptors_that_are_closed_at_the_start_do_not_become_those_of_other_files
         0);
     CHECK_EQ_INT(shell("$gray scene.lua -o - >&- 2>said.txt"), 3);
     CHECK_EQ_INT(shell("grep -q 'standard output: cannot be written: ' said.txt"), 0);
-    free(whole.out);
-    free(whole.err);
+    test_free_result(&whole);
 }
 
 TEST(a_thousand_reflections_fit_whatever_the_limit_of_the_stack) {
@@ -948,8 +929,7 @@ TEST(a_thousand_reflections_fit_whatever_the_limit_of_the_stack) {
                        "(ulimit -S -s $limit && $gray scene.lua -q -o out.png -j $threads -ss 1 -reflect-limit 1000) "
                        "&& cmp out.png whole.png || exit 1; rm out.png; done; done"),
                  0);
-    free(plain.out);
-    free(plain.err);
+    test_free_result(&plain);
 }
 
 TEST(verbose_names_the_voxels_of_a_grid_only) {
@@ -965,7 +945,6 @@ TEST(verbose_names_the_voxels_of_a_grid_only) {
         CHECK(strstr(out, ": 1 primitives, 0 triangles,") || strstr(err, ": 1 primitives, 0 triangles,"));
         CHECK((strstr(out, "grid of 1 x 1 x 1") || strstr(err, "grid of 1 x 1 x 1")) == (i == 0));
         CHECK(!strstr(out, "grid of 0") && !strstr(err, "grid of 0"));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }

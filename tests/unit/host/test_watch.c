@@ -239,6 +239,5 @@ TEST(watching_goes_with_no_run_in_parts) {
     struct test_result result = test_gray_scene("", "--watch --shard 1/2 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 2);
     CHECK(strstr(result.err, "--watch cannot be combined with") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

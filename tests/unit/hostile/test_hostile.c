@@ -58,30 +58,18 @@ static bool matches(const char *pattern, const char *name, const char *text) {
     return *pattern == *text && matches(pattern + 1, name, text + 1);
 }
 
-static double seconds_of_children(void) {
-    struct rusage usage;
-    (void)getrusage(RUSAGE_CHILDREN, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
-static long max_memory(void) {
-    struct rusage usage;
-    (void)getrusage(RUSAGE_CHILDREN, &usage);
-    return usage.ru_maxrss;
-}
-
 static void check_script(const char *folder, const char *name) {
     char path[1024], arguments[1024];
     (void)snprintf(path, sizeof path, "%s/%s", folder, name);
     char *text = test_read_file(path, NULL), *expect = header(text, "expect"), *status = header(text, "status");
     char *more = header(text, "arguments");
     (void)snprintf(arguments, sizeof arguments, LIMITS " %s %s", more ? more : "", name);
-    double before = seconds_of_children();
+    double before = test_children_used().seconds;
     struct test_result result = test_gray(folder, arguments);
-    double used = seconds_of_children() - before;
+    double used = test_children_used().seconds - before;
     if (getenv("GRAY_TEST_TELL"))
-        printf("    %s: %.3f s, %ld KiB at most so far: %.300s\n", name, used, max_memory(), result.err);
+        printf("    %s: %.3f s, %ld KiB at most so far: %.300s\n", name, used, test_children_used().kibibytes,
+               result.err);
     char *line = result.err, first[2048];
     line += strspn(line, "x"); /* of those that write to standard error */
     (void)snprintf(first, sizeof first, "%.*s", (int)strcspn(line, "\n"), line);
@@ -109,8 +97,7 @@ static void check_script(const char *folder, const char *name) {
     /* A tenth more, plus the start of two processes. */
     if (!more && !test_has_sanitizer() && used > time_limit * 1.1 + 0.08)
         test_fail(__FILE__, __LINE__, "%s took %.3f s of processor time", name, used);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     free(text);
     free(expect);
     free(status);
@@ -194,12 +181,12 @@ TEST(hostile_no_script_takes_more_than_its_memory_and_a_tenth) {
     test_write_text(path, "local x = 1");
     struct test_result plain = test_gray(NULL, "plain.lua");
     CHECK_EQ_INT(plain.status, 0);
-    free(plain.out);
-    free(plain.err);
-    long without = max_memory();
+    test_free_result(&plain);
+    long without = test_children_used().kibibytes;
     CHECK(run_scripts("memory_") >= 15);
-    if (!test_has_sanitizer() && max_memory() - without > memory_limit * 11 / 10)
-        test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script", max_memory() - without, without);
+    if (!test_has_sanitizer() && test_children_used().kibibytes - without > memory_limit * 11 / 10)
+        test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script",
+                  test_children_used().kibibytes - without, without);
     free(path);
 }
 
@@ -321,10 +308,8 @@ TEST(hostile_verbose_says_what_confines_and_no_sandbox_is_one_warning) {
     CHECK_EQ_INT(without.status, 0);
     CHECK_TEXT(without.err, "gray: warning: --no-sandbox: scenes may read and write all your files and start programs\n"
                             "scene.lua: no picture was rendered, because the script did not call gr.render\n");
-    free(plain.out);
-    free(plain.err);
-    free(without.out);
-    free(without.err);
+    test_free_result(&plain);
+    test_free_result(&without);
 }
 
 TEST(hostile_folders_that_are_allowed_can_be_read_and_written_and_only_those) {
@@ -344,8 +329,7 @@ TEST(hostile_folders_that_are_allowed_can_be_read_and_written_and_only_those) {
                         arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     char path[1024];
     (void)snprintf(path, sizeof path, "%s/b.txt", inner);
     char *text = test_read_file(path, NULL);

@@ -356,7 +356,7 @@ TEST(hostile_layers_and_debug_pictures_follow_the_rules_of_pictures) {
 }
 
 TEST(hostile_what_an_interruption_writes_follows_the_rules_of_pictures) {
-#define ENDED "timeout --preserve-status -s INT 0.7 $gray --partial -full -ss 16 scene.lua"
+#define ENDED "timeout --preserve-status -s INT 0.7 $gray -full -ss 16 scene.lua"
     static const struct attack rows[] = {
         {.name = "text in its place",
          .before = "text x.partial.png",
@@ -387,8 +387,17 @@ TEST(hostile_what_an_interruption_writes_follows_the_rules_of_pictures) {
          .before = "png x.partial.png",
          .shell = ENDED,
          .scene = "p('x.png', 4000, 4000)",
+         .status = ATTACK_ANY},
+        {.name = "a folder in its place",
+         .before = "dir x.partial.png",
+         .shell = ENDED,
+         .scene = "p('x.png', 4000, 4000)",
+         .status = ATTACK_ANY},
+        {.name = "a picture of the same script in its place",
+         .shell = ENDED,
+         .scene = "p'x.partial.png' p('x.png', 4000, 4000)",
          .status = ATTACK_ANY,
-         .after = "maybe x.partial.png"},
+         .after = "picture x.partial.png"},
     };
     ATTACKS(rows);
 }

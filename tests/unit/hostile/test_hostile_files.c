@@ -149,8 +149,7 @@ static void check_scripts(const char *how, const char *use, const char *options,
     char *more = next_message(&rest);
     if (more)
         test_fail(__FILE__, __LINE__, "%s: one line more: %s", how, more);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Those that are read by the program itself, one run for each. */
@@ -167,8 +166,7 @@ static void check_runs(const char *how, const char *arguments) {
         size_t skipped = line && strncmp(line, "scene.lua:1: ", 13) == 0 ? 13 : 0;
         check_line(&rows[i], line ? line + skipped : "nothing");
         CHECK(next_message(&rest) == NULL);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

@@ -421,8 +421,7 @@ TEST(hostile_names_leave_json_json) {
             check_json("progress", result.err);
             check_json("statistics", result.out);
         }
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         free(scene);
     }
 }

@@ -258,12 +258,13 @@ static const char *close_fifos(struct fifo_pair *fifos) {
     return harmed;
 }
 
-/* All moments of a race. The first failure of a race ends it. */
-static void run_race(const struct race *race, uid_t user) {
+/* The moments of a race from `moment` on, every `stride`-th one. The first failure of a race ends it. */
+static void run_race(const struct race *race, uid_t user, long moment, long stride) {
     char *reason = NULL;
-    bool acted = true;
-    /* The user's rights make little difference, so every third moment is enough. */
-    for (long moment = 1; !reason && acted && moment < 400; moment += user && getuid() == 0 ? 3 : 1) {
+    /* The user's rights make little difference, so every third of them is enough. */
+    if (user && getuid() == 0)
+        stride *= 3;
+    for (bool acted = true; !reason && acted && moment < 400; moment += stride) {
         fresh_folder(race, user);
         struct attack_tree old = attack_tree(root);
         struct fifo_pair fifos = open_fifos();
@@ -288,17 +289,19 @@ static void run_race(const struct race *race, uid_t user) {
     free(reason);
 }
 
-static void run_races(const struct race *races, size_t count) {
+/* Every third moment, each race from another one on; all of them in make test-long. */
+static void run_races(const struct race *races, size_t count, bool all) {
     for (size_t i = 0; i < count; i++) {
+        long first = all ? 1 : 1 + (long)i % 3, stride = all ? 1 : 3;
         if (getuid() == 0)
-            run_race(&races[i], 0);
+            run_race(&races[i], 0, first, stride);
         if (attack_user() && (getuid() != 0 || i % 2))
-            run_race(&races[i], attack_user());
+            run_race(&races[i], attack_user(), first, stride);
     }
 }
-#define RACES(races) run_races(races, sizeof(races) / sizeof *(races))
+#define RACES(races) run_races(races, sizeof(races) / sizeof *(races), times > 1)
 
-TEST(hostile_no_moment_lets_a_picture_out_by_its_own_name) {
+TEST_TIMES(hostile_no_moment_lets_a_picture_out_by_its_own_name, 3) {
     static const struct race races[] = {
         {"a link to a picture appears", "link l ../out/canary.png", "p'x.png'", NULL, "l x.png", NULL},
         {"a picture becomes a link to text", "png x.png; link l ../out/canary.txt", "p'x.png'", NULL, "l x.png", NULL},
@@ -312,7 +315,7 @@ TEST(hostile_no_moment_lets_a_picture_out_by_its_own_name) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_name) {
+TEST_TIMES(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_name, 3) {
     static const struct race races[] = {
         {"a link appears in a layer's place", "link l ../out/canary.png", "p'x.png'", "--aov depth", "l x.depth.png",
          NULL},
@@ -326,7 +329,7 @@ TEST(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_name) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_loses_a_file_that_is_no_picture) {
+TEST_TIMES(hostile_no_moment_loses_a_file_that_is_no_picture, 3) {
     static const struct race races[] = {
         {"text appears", "text note", "p'x.png'", NULL, "note x.png", "note"},
         {"a picture becomes text", "png x.png; text note", "p'x.png'", NULL, "note x.png", "note"},
@@ -339,7 +342,7 @@ TEST(hostile_no_moment_loses_a_file_that_is_no_picture) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_picture_into_a_special_file) {
+TEST_TIMES(hostile_no_moment_lets_a_picture_into_a_special_file, 3) {
     static const struct race races[] = {
         {"a FIFO appears", "fifo fifo", "p'x.png'", NULL, "fifo x.png", NULL},
         {"a picture becomes a FIFO", "png x.png; fifo fifo", "p'x.png'", NULL, "fifo x.png", NULL},
@@ -350,7 +353,7 @@ TEST(hostile_no_moment_lets_a_picture_into_a_special_file) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_file_beside_a_picture_into_a_special_file) {
+TEST_TIMES(hostile_no_moment_lets_a_file_beside_a_picture_into_a_special_file, 3) {
     static const struct race races[] = {
         {"a FIFO appears in a layer's place", "fifo fifo", "p'x.png'", "--aov depth", "fifo x.depth.png", NULL},
         {"a FIFO appears in the first pass's place", "fifo fifo", "p'x.png'", "-write-pre-aa A", "fifo Ax.png", NULL},
@@ -363,7 +366,7 @@ TEST(hostile_no_moment_lets_a_file_beside_a_picture_into_a_special_file) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_picture_out_by_its_folders) {
+TEST_TIMES(hostile_no_moment_lets_a_picture_out_by_its_folders, 3) {
     static const struct race races[] = {
         {"its folder becomes a link", "dir d; link l ../out", "p'd/x.png'", NULL, "d was; l d", NULL},
         {"the folder above becomes a link", "dir d; dir d/e; link l ../out", "p'd/e/x.png'", NULL, "d was; l d", NULL},
@@ -377,7 +380,7 @@ TEST(hostile_no_moment_lets_a_picture_out_by_its_folders) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_folders) {
+TEST_TIMES(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_folders, 3) {
     static const struct race races[] = {
         {"its folder becomes one with a FIFO", "dir d; dir f; fifo fifo; hard f/x.png fifo", "p'd/x.png'", NULL,
          "d was; f d", NULL},
@@ -390,7 +393,7 @@ TEST(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_folders) {
 }
 
 /* Repeated changes, as fast as a process can make them. */
-TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
+TEST_TIMES(hostile_folders_that_change_all_the_time_let_no_picture_out, 3) {
     static const struct race races[] = {
         {"a picture, a link and a FIFO change places",
          "png a; link b ../out/canary.txt; fifo fifo; link c ../out/canary.fifo",
@@ -419,7 +422,7 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         }
         (void)snprintf(words, sizeof words, "-q -j 1 %s scene.lua", race->options ? race->options : "");
         int status = 0;
-        for (double limit = attack_now() + 2.5; status >= 0 && status <= 3 && attack_now() < limit;)
+        for (double limit = attack_now() + 0.9 * times; status >= 0 && status <= 3 && attack_now() < limit;)
             status = attack_wait(attack_start(in, words, user), ATTACK_PATIENCE);
         (void)kill(thrower, SIGKILL);
         (void)waitpid(thrower, NULL, 0);
@@ -452,7 +455,7 @@ static void check_later(uid_t user) {
     CHECK_EQ_INT(attack_wait(child, ATTACK_PATIENCE), 0);
 }
 
-static void kill_before_any_call(void) {
+static void kill_before_any_call(int times) {
     static const struct race kills[] = {
         {"a kill while a picture is replaced", "png x.png", "p'x.png'", NULL, NULL, NULL},
         {"a kill while a picture is made", "", "p'x.png'", NULL, NULL, NULL},
@@ -463,7 +466,7 @@ static void kill_before_any_call(void) {
         char *reason = NULL;
         int left = 0;
         bool killed = true;
-        for (long moment = 1; killed && !reason && moment < 400; moment++) {
+        for (long moment = times > 1 ? 1 : 1 + (long)i; killed && !reason && moment < 400; moment += 4 - times) {
             uid_t user = moment % 2 ? attack_user() : 0;
             fresh_folder(race, user);
             struct ending ending = run_traced(race, moment, user);
@@ -487,21 +490,21 @@ static void kill_before_any_call(void) {
     }
 }
 
-TEST(hostile_a_kill_before_any_call_leaves_nothing_that_the_next_run_does_not_remove) {
-    kill_before_any_call();
+TEST_TIMES(hostile_a_kill_before_any_call_leaves_nothing_that_the_next_run_does_not_remove, 3) {
+    kill_before_any_call(times);
 }
 
-TEST(hostile_a_kill_on_a_file_system_without_nameless_files_leaves_nothing_for_ever) {
+TEST_TIMES(hostile_a_kill_on_a_file_system_without_nameless_files_leaves_nothing_for_ever, 3) {
     attack_set_system(ATTACK_SYSTEM_WITHOUT_TMPFILE);
-    kill_before_any_call();
+    kill_before_any_call(times);
 }
 
-TEST(hostile_a_kill_on_a_file_system_that_cannot_exchange_leaves_nothing_for_ever) {
+TEST_TIMES(hostile_a_kill_on_a_file_system_that_cannot_exchange_leaves_nothing_for_ever, 3) {
     attack_set_system(ATTACK_SYSTEM_WITHOUT_EXCHANGE);
-    kill_before_any_call();
+    kill_before_any_call(times);
 }
 
-static void run_races_on(enum attack_system system) {
+static void run_races_on(enum attack_system system, int times) {
     static const struct race races[] = {
         {"a FIFO appears", "fifo fifo", "p'x.png'", NULL, "fifo x.png", NULL},
         {"a picture becomes a link to a FIFO", "pfm x.pfm; link l ../out/canary.fifo", "p'x.pfm'", NULL, "l x.pfm",
@@ -515,22 +518,22 @@ static void run_races_on(enum attack_system system) {
     RACES(races);
 }
 
-TEST(hostile_no_moment_lets_a_picture_out_without_nameless_files) {
-    run_races_on(ATTACK_SYSTEM_WITHOUT_TMPFILE);
+TEST_TIMES(hostile_no_moment_lets_a_picture_out_without_nameless_files, 3) {
+    run_races_on(ATTACK_SYSTEM_WITHOUT_TMPFILE, times);
 }
 
-TEST(hostile_no_moment_lets_a_picture_out_without_exchange) {
-    run_races_on(ATTACK_SYSTEM_WITHOUT_EXCHANGE);
+TEST_TIMES(hostile_no_moment_lets_a_picture_out_without_exchange, 3) {
+    run_races_on(ATTACK_SYSTEM_WITHOUT_EXCHANGE, times);
 }
 
-TEST(hostile_no_moment_lets_a_picture_out_without_second_names) {
-    run_races_on(ATTACK_SYSTEM_WITHOUT_LINKS);
+TEST_TIMES(hostile_no_moment_lets_a_picture_out_without_second_names, 3) {
+    run_races_on(ATTACK_SYSTEM_WITHOUT_LINKS, times);
 }
 
-TEST(hostile_several_runs_that_write_one_picture_leave_it_whole) {
+TEST_TIMES(hostile_several_runs_that_write_one_picture_leave_it_whole, 3) {
     static const struct race race = {"several runs", "png x.png", "for i = 1, 40 do p('x.png', 20 + i, 20) end",
                                      NULL,           NULL,        NULL};
-    for (int round = 0; round < 12; round++) {
+    for (int round = 0; round < 4 * times; round++) {
         int system = round % 4;
         pid_t programs[4];
         char name[64], *reason = NULL;

@@ -12,18 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char in[700];
-
-static void fresh_folder(const char *files, const char *scene) {
-    static int number;
-    char path[1024], *text = NULL;
-    (void)snprintf(in, sizeof in, "%s/%d", test_folder(), ++number);
-    (void)snprintf(path, sizeof path, "%s/scene.lua", in);
-    CHECK(mkdir(in, 0777) == 0 && chmod(in, 0777) == 0 && attack_prepare(in, files));
-    CHECK(asprintf(&text, "%s%s\n", attack_prelude, scene) > 0);
-    test_write_text(path, text);
-    free(text);
-}
+static const char *in;
 
 /* Without a separate render process (--no-fork, for debuggers) the signal itself may end the program. */
 static const char *end_of(pid_t program, int signal, bool single) {
@@ -52,16 +41,16 @@ static void interrupt(const char *name, const char *words, int signal, uid_t use
 }
 
 TEST(hostile_opening_a_fifo_without_a_reader_ends_at_a_signal) {
-    fresh_folder("fifo f; link l f", "p'x.png'");
+    in = attack_folder("fifo f; link l f", "p'x.png'");
     interrupt("a FIFO without a reader, SIGINT", "-j 1 -o f scene.lua", SIGINT, 0);
     interrupt("a FIFO without a reader, SIGTERM", "-j 1 -o f scene.lua", SIGTERM, 0);
     interrupt("a FIFO without a reader, SIGHUP", "-j 1 -o f scene.lua", SIGHUP, 0);
     interrupt("a link to a FIFO without a reader", "-j 1 -o l scene.lua", SIGINT, 0);
     interrupt("a FIFO without a reader, without a process of its own", "--no-fork -j 1 -o f scene.lua", SIGINT, 0);
-    fresh_folder("fifo f2", "p'x.png' p'y.png'");
+    in = attack_folder("fifo f2", "p'x.png' p'y.png'");
     interrupt("a FIFO without a reader for the second picture", "-j 1 -o f%d scene.lua", SIGINT, 0);
     if (attack_user()) {
-        fresh_folder("fifo f; mode f 666", "p'x.png'");
+        in = attack_folder("fifo f; mode f 666", "p'x.png'");
         interrupt("a FIFO without a reader, SIGTERM", "-j 1 -o f scene.lua", SIGTERM, attack_user());
     }
 }
@@ -79,7 +68,7 @@ TEST(hostile_writing_to_a_reader_that_stopped_ends_at_a_signal) {
     };
     for (size_t i = 0; i < sizeof attempts / sizeof *attempts; i++) {
         char path[1024];
-        fresh_folder("fifo f.pfm; tty t.pfm", "p('x.pfm', 200, 200)");
+        in = attack_folder("fifo f.pfm; tty t.pfm", "p('x.pfm', 200, 200)");
         (void)snprintf(path, sizeof path, "%s/f.pfm", in);
         int reader = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
         CHECK(reader >= 0);
@@ -108,7 +97,7 @@ static void interrupt_stream(const char *name, const char *scene, const char *op
     static int tried;
     int ends[2], signal = tried++ % 2 ? SIGTERM : SIGINT;
     char line[512];
-    fresh_folder("", scene);
+    in = attack_folder("", scene);
     CHECK(pipe2(ends, O_CLOEXEC) == 0);
     (void)snprintf(line, sizeof line, "exec '%s' -j 1 %s scene.lua", attack_binary(), options);
     fflush(stdout);

@@ -82,7 +82,10 @@ static void check_lost(const char *arguments) {
                        piped ? "sleep 0.2; " : "", arguments, piped ? "" : outputs[i], piped ? outputs[i] : "");
         (void)shell(line);
         char *status = test_read_file(test_path("status"), NULL), *said = test_read_file(test_path("err.txt"), NULL);
+        bool silent = piped && (strncmp(arguments, "--", 2) == 0 && !strchr(arguments, ' ')); /* --help | head */
         const char *found = said ? strstr(said, lost) : NULL;
+        if (silent)
+            found = said && said[0] == '\0' ? lost : NULL;
         if (!status || strcmp(status, "3\n") != 0 || !found || strstr(found + strlen(lost), lost))
             test_fail(__FILE__, __LINE__, "gray %s %s: status %s, \"%s\"", arguments, outputs[i], status, said);
         free(status);
@@ -291,7 +294,7 @@ TEST(hostile_a_scene_that_may_write_does_not_see_what_lies_outside) {
     CHECK(access(test_path("a/s/in.txt"), F_OK) == 0 && access(test_path("a/s/z"), F_OK) != 0);
 }
 
-TEST(hostile_the_name_of_a_picture_does_not_show_what_lies_outside) {
+TEST_TIMES(hostile_the_name_of_a_picture_does_not_show_what_lies_outside, 4) {
     static const char *const names[] = {"dir/x.png",        "dir/x",        "dir/n/y.png",  "dir2/x.png",
                                         "dirx/y.png",       "absdir/x.png", "up/out/x.png", "sub/../dir/x.png",
                                         "../../out/x.png",  "hiddir/x.png", ".hid/x.png",   "dir/../out/x.png",
@@ -302,8 +305,10 @@ TEST(hostile_the_name_of_a_picture_does_not_show_what_lies_outside) {
         (void)snprintf(text, sizeof text,
                        "gr.render(gr.node('r'), '%s', 4, 4, {0,0,5}, {0,0,-1}, {0,1,0}, 40, {1,1,1}, {})\n", names[i]);
         test_write_text(test_path("a/s/scene.lua"), text);
-        check_state_is_not_seen("scene.lua");
-        check_state_is_not_seen("--check scene.lua");
+        if (times > 1 || i % 4)
+            check_state_is_not_seen("scene.lua");
+        if (times > 1 || i % 4 == 0)
+            check_state_is_not_seen("--check scene.lua");
     }
 }
 

@@ -521,7 +521,7 @@ TEST(a_signal_ends_the_program_that_makes_the_video_and_the_frames_are_kept) {
     gives("mkdir bin && printf '#!/bin/sh\\ncat >/dev/null; touch %s/started\\nexec sleep 100\\n' $PWD > bin/ffmpeg && "
           "chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH $gray scene.lua -o x.mp4 & p=$!; await 'test -e started'; "
           "kill -TERM $p; wait $p; s=$?; test -e x.mp4 && exit 1; exit $s",
-          130, "gray: interrupted\ngray: notice: x.mp4.frames holds 12 frames\n");
+          130, "gray: interrupted\ngray: notice: x.mp4.frames holds 12 frames (--resume continues)\n");
     gives("$gray -q scene.lua -o 'y.####.png' && cmp x.mp4.frames/000012.png y.0012.png", 0, "");
 }
 

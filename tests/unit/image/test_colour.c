@@ -111,8 +111,7 @@ static int background_byte(const char *field, const char *options) {
                    field);
     struct test_result result = test_gray_scene(text, options, NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
     struct image *image = image_read(path, &error);
     int byte = image ? (int)(255 * image_texel(image, 0, 0).r + 0.5) : -1;
@@ -164,8 +163,7 @@ TEST(a_picture_of_emission_luminance_is_a_number) {
         "          height=2, spp=1, eye={0,0,5}, integrator='path', background={0,0,0}}\n",
         "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct image *image = image_read(test_path("x.pfm"), &error);
     CHECK(image != NULL);
     struct rgba texel = image ? image_texel(image, 0, 0) : (struct rgba){0, 0, 0, 0};
@@ -195,9 +193,8 @@ TEST(a_png_file_states_its_transfer_function) {
         {"iCCP", "Adobe RGB (1998)\0\0broken", 24, {TRANSFER_SRGB, 0}, "'Adobe RGB (1998)'"},
         {"iCCP", "sRGB IEC61966-2.1\0\0broken", 25, {TRANSFER_SRGB, 0}, NULL},
     };
-    char path[512];
     struct error error = {.kind = ERROR_NONE};
-    (void)snprintf(path, sizeof path, "%s/stated.png", test_folder());
+    const char *path = test_path("stated.png");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         write_stated(path, (uint8_t[]){192, 128, 64}, rows[i].kind, rows[i].bytes, rows[i].size);
         struct image *image = image_read(path, &error);
@@ -221,8 +218,7 @@ static void unlit_bytes(const char *material, const char *options, int out[3]) {
                    material);
     struct test_result result = test_gray_scene(text, options, NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
     struct image *image = image_read(path, &error);
     CHECK(image != NULL);
@@ -304,8 +300,7 @@ TEST(colours_of_the_screen_are_accepted_for_lights_fogs_and_skies) {
             struct test_result result =
                 test_gray_scene(text, linear ? "-q --colour linear scene.lua" : "-q scene.lua", NULL);
             CHECK_EQ_INT(result.status, 0);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
             (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
             struct image *image = image_read(path, &error);
             CHECK(image != NULL);
@@ -333,15 +328,12 @@ TEST(errors_of_colours_of_the_screen_name_what_is_accepted) {
         struct test_result result = test_gray_scene(rows[i][0], "-q scene.lua", NULL);
         CHECK_EQ_INT(result.status, 1);
         CHECK(strstr(result.err, rows[i][1]) != NULL);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
 TEST(encoding_classic_pictures_is_reported_and_so_are_unknown_colours) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/adobe.png", test_folder());
-    write_stated(path, (uint8_t[]){192, 128, 64}, "iCCP", "Adobe RGB (1998)\0\0broken", 24);
+    write_stated(test_path("adobe.png"), (uint8_t[]){192, 128, 64}, "iCCP", "Adobe RGB (1998)\0\0broken", 24);
     static const struct {
         const char *options, *report;
     } rows[] = {{"--srgb scene.lua", "--colour linear"},
@@ -354,8 +346,7 @@ TEST(encoding_classic_pictures_is_reported_and_so_are_unknown_colours) {
                             rows[i].options, NULL);
         CHECK_EQ_INT(result.status, 0);
         CHECK(rows[i].report ? strstr(result.err, rows[i].report) != NULL : strstr(result.err, "linear") == NULL);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

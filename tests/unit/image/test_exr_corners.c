@@ -132,15 +132,13 @@ TEST(any_allocation_or_call_may_fail_while_exr_is_written_and_read) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
 #endif
-    char path[512];
     int failed[2] = {0};
-    (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {
             struct error error = {0};
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = write_read(path, &error);
+            bool ok = write_read(test_path("a.exr"), &error);
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
             CHECK(ok || (error.text[0] && !strchr(error.text, '\n')));

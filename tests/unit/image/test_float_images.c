@@ -251,10 +251,9 @@ TEST(exr_pictures_cut_or_changed_anywhere_are_one_line) {
         CHECK(strstr(error.text, "OpenEXR") != NULL);
         return;
     }
-    char path[512];
     uint32_t width = 24;
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
+    const char *path = test_path("a.exr");
     CHECK(exr_write(FILE_AT(path), width, H, light_row, &width, &error));
     size_t size;
     char *file = test_read_file(path, &size);

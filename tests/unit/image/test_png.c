@@ -431,9 +431,8 @@ TEST(png_write_refuses_sizes_a_png_cannot_have) {
 }
 
 TEST(png_writing_survives_every_failed_allocation) {
-    char path[300];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
+    const char *path = test_path("a.png");
     uint64_t before = mem_allocations();
     CHECK(write_noise(FILE_AT(path), 20, 20, &error));
     uint64_t count = mem_allocations() - before;

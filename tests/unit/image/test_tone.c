@@ -127,8 +127,7 @@ static void run_scene(const char *script, const char *options) {
     struct test_result result = test_gray_scene(script, options, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s", result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* The largest difference of bytes. */
@@ -300,9 +299,8 @@ static void word_row(void *context, uint32_t y, uint16_t *line) {
 }
 
 TEST(deep_png_holds_sixteen_bits) {
-    char path[512];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
+    const char *path = test_path("a.png");
     CHECK(
         png_write_from(FILE_AT(path), &(struct png_source){.width = 64, .height = 5, .words = word_row}, NULL, &error));
     struct image *image = image_read(path, &error);
@@ -329,9 +327,7 @@ static const char bright_scene[] =
     "r{file = 'deep.png', deep = true}\n";
 
 static void expect_pixel(const char *name, uint8_t r, uint8_t g, uint8_t b) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    struct test_picture picture = test_read_picture(path);
+    struct test_picture picture = test_read_picture(test_path(name));
     if (!picture.rgb || picture.rgb[0] != r || picture.rgb[1] != g || picture.rgb[2] != b)
         test_fail(__FILE__, __LINE__, "%s is not %d %d %d", name, r, g, b);
     free(picture.rgb);
@@ -343,10 +339,8 @@ TEST(a_picture_may_be_exr_where_its_library_is) {
                                                 "0.5}}\n",
                                                 "scene.lua", NULL);
     CHECK_EQ_INT(result.status, exr_can_write() ? 0 : 1);
-    char path[512];
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/light.exr", test_folder());
-    struct image *image = exr_can_write() ? image_read(path, &error) : NULL;
+    struct image *image = exr_can_write() ? image_read(test_path("light.exr"), &error) : NULL;
     if (image) {
         struct rgba c = image_texel(image, 1, 1);
         CHECK(c.r == 0.25 && c.g == 2 && c.b == 0.5);
@@ -354,8 +348,7 @@ TEST(a_picture_may_be_exr_where_its_library_is) {
     CHECK((image != NULL) == exr_can_write());
     CHECK(exr_can_write() || strstr(result.err, "OpenEXR"));
     image_release(image);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(the_extension_sets_the_format_and_tone_is_only_for_png) {
@@ -379,6 +372,5 @@ TEST(the_extension_sets_the_format_and_tone_is_only_for_png) {
     file = test_read_file(path, &size);
     CHECK(file && strncmp(file, "#?RADIANCE\n", 11) == 0);
     free(file);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

@@ -429,9 +429,7 @@ TEST(a_pixel_trace_names_nodes_decorators_lights_and_their_occluders) {
     says(&result, ", seen: (");
     says(&result, "times 255, rounded: ");
     release(result);
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/out.png", test_folder());
-    CHECK(access(path, F_OK) != 0); /* nothing is rendered */
+    CHECK(access(test_path("out.png"), F_OK) != 0); /* nothing is rendered */
     result = test_gray_scene(NULL, "--pixel 0,0 --deep scene.lua", NULL);
     says(&result, "hits nothing: background, the gradient");
     says(&result, "times 65535, rounded: ");

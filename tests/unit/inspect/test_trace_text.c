@@ -61,9 +61,7 @@ static const char roof_materials[] =
     "newmtl tiles\nKd 0.8 0.3 0.2\nKs 0.2 0.2 0.2\nNs 9\nnewmtl wood\nKd 0.5 0.4 0.2\n";
 
 static void put(const char *name, const void *data, size_t size) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_file(path, data, size);
+    test_write_file(test_path(name), data, size);
 }
 
 static void put_picture(const char *name, const float values[12]) {
@@ -96,8 +94,7 @@ static char *print_trace(const char *options) {
     struct test_result result = test_gray_scene(scene, line, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", line, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     (void)snprintf(path, sizeof path, "%s/out.png", test_folder());
     struct test_picture picture = test_read_picture(path);
     for (unsigned k = 0; k < 2 * WIDTH; k++)
@@ -180,10 +177,8 @@ TEST(a_dumped_scene_with_one_of_everything_lists_its_kinds) {
     write_files();
     struct test_result result = test_gray_scene(scene, "-q --dump-scene scene.lua", NULL);
     SAYS(result.out, words);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(scene, "-q --dump-scene --json scene.lua", NULL);
     SAYS(result.out, json);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

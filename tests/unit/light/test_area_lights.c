@@ -670,7 +670,6 @@ TEST(a_mesh_light_that_is_not_in_the_scene_says_that_a_texture_of_emission_is_av
         CHECK_EQ_INT(result.status, 0);
         CHECK((strstr(result.err, "not in the scene: of the texture of its emission only the average counts") !=
                NULL) == (k == 0));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }

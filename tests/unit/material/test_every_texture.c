@@ -92,6 +92,5 @@ TEST(every_shape_shows_pictures_and_bumps_by_its_material_and_by_its_node) {
         if (!ball && (!same_picture(name, "node", "material") || !same_picture(name, "bumps", "relief")))
             test_fail(__FILE__, __LINE__, "%s: node and material differ", name);
     }
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

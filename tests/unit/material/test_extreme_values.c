@@ -23,6 +23,7 @@ struct gallery {
     struct assets assets;
     int pictures;
     int max; /* numbers of an argument that are tried one by one */
+    bool is_long;
     bool finite, clamped;
     char first[160]; /* the position of the first number that is not finite */
 };
@@ -136,7 +137,6 @@ static bool render_small(void *context, const struct render_request *request, st
 
 /* False: refused. */
 static bool run_text(struct gallery *gallery, const char *text, struct error *error) {
-    char path[512];
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua"};
     const struct script_host host = {.context = gallery,
                                      .assets = &gallery->assets,
@@ -146,7 +146,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
                                      .cancelled = is_stopped};
     struct arena arena = {0};
     const char *traceback = NULL;
-    (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
+    const char *path = test_path("scene.lua");
     test_write_text(path, text);
     gallery->pictures = 0;
     gallery->finite = true;
@@ -498,12 +498,19 @@ static void try_everywhere(struct gallery *gallery, const char *value, bool must
     for (int f = 0; f < function_count(); f++) {
         const struct script_function *function = function_at(f);
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count; p++) {
-            char call[CALL_SIZE], right[256], with[512];
+            char call[CALL_SIZE], right[256], with[512], all[512] = "";
             if (!is_numeric(function->parameters[p].kind) || !goes_with_the_others(function, p))
+                continue;
+            /* Millions of triangles; displacements_that_are_impossible_are_refused. */
+            if (!gallery->is_long && strcmp(function->name, "displace") == 0)
                 continue;
             right_text(&function->parameters[p], right, sizeof right);
             for (int which = -1; which < gallery->max && replace_number(right, which, value, with, sizeof with);
                  which++) {
+                if (strcmp(with, all) == 0) /* of one number */
+                    continue;
+                if (which < 0)
+                    (void)snprintf(all, sizeof all, "%s", with);
                 if (has_table_form(function)) {
                     table_call(function, p, with, call);
                     try_call(gallery, function, call, must_refuse);
@@ -530,22 +537,19 @@ static void try_combinations(struct gallery *gallery, const char *value) {
 static void try_values(const char *const *values, bool must_refuse, bool combinations_too, bool is_long) {
     struct gallery gallery;
     open_gallery(&gallery);
-    gallery.max = is_long ? 9 : 3;
+    gallery.max = is_long ? 9 : 1;
+    gallery.is_long = is_long;
     for (; *values; values++) {
         try_everywhere(&gallery, *values, must_refuse);
         if (combinations_too)
             try_combinations(&gallery, *values);
     }
-    CHECK(trials > 900);
+    CHECK(trials > 500);
     close_gallery(&gallery);
 }
 
-TEST(numbers_that_are_not_finite_are_refused_in_every_argument) {
-    try_values((const char *const[]){"(0/0)", "(1/0)", NULL}, true, false, false);
-}
-
 TEST(numbers_beyond_1e30_are_refused_in_every_argument) {
-    try_values((const char *const[]){"1e31", "-1e308", NULL}, true, false, false);
+    try_values((const char *const[]){"1e31", NULL}, true, false, false);
 }
 
 TEST(numbers_of_1e30_give_one_line_or_a_finite_picture) {
@@ -564,9 +568,10 @@ TEST(the_smallest_numbers_give_one_line_or_a_finite_picture) {
     try_values((const char *const[]){"5e-324", NULL}, false, true, false);
 }
 
-TEST_LONG(numbers_just_beyond_1e30_are_refused_in_every_argument) {
-    try_values((const char *const[]){"1.0000000000000001e30", "-1.0001e30", "1e40", "1e308", "(-1/0)", NULL}, true,
-               false, true);
+TEST_LONG(numbers_just_beyond_1e30_or_not_finite_are_refused_in_every_argument) {
+    try_values((const char *const[]){"1.0000000000000001e30", "-1.0001e30", "1e40", "-1e308", "1e308", "(-1/0)",
+                                     "(1/0)", "(0/0)", NULL},
+               true, false, true);
 }
 
 TEST_LONG(extreme_numbers_of_every_size_give_one_line_or_a_finite_picture) {
@@ -706,19 +711,16 @@ TEST(light_beyond_the_largest_float_is_clamped_with_one_warning) {
     count_floats("pre-x.pfm", &not_finite, &largest);
     CHECK(not_finite == 0 && largest > 0);
     check_layers(AOV_ALL & ~AOV_PATH);
-    free(r.out);
-    free(r.err);
+    test_free_result(&r);
     r = test_gray_scene(scene, "-q --integrator path --spp 4 --aov all scene.lua", NULL);
     CHECK_EQ_INT(r.status, 0);
     count_floats("x.pfm", &not_finite, &largest);
     CHECK(not_finite == 0);
     check_layers(AOV_ALL);
-    free(r.out);
-    free(r.err);
+    test_free_result(&r);
     r = test_gray_scene(scene, "-q scene.lua", NULL);
     CHECK_TEXT(r.err, "");
-    free(r.out);
-    free(r.err);
+    test_free_result(&r);
 }
 
 TEST(one_warning_for_each_picture_that_is_clamped) {
@@ -734,8 +736,7 @@ TEST(one_warning_for_each_picture_that_is_clamped) {
     CHECK_EQ_INT(r.status, 0);
     CHECK_EQ_INT(format_count(r.err, clamped_words), 3);
     CHECK_EQ_INT(format_count(r.err, "dark.pfm: light"), 0);
-    free(r.out);
-    free(r.err);
+    test_free_result(&r);
 }
 
 /* Radiance pictures end below the largest float; EXR and PNG pictures are read back by the program itself. */
@@ -750,8 +751,7 @@ TEST(clamped_light_can_be_read_back_in_every_format) {
             test_gray_scene(scene, "--exposure 100 --tone filmic --srgb --aov depth,normal scene.lua", NULL);
         CHECK_EQ_INT(r.status, 0);
         CHECK_EQ_INT(format_count(r.err, clamped_words), 1);
-        free(r.out);
-        free(r.err);
+        test_free_result(&r);
         (void)snprintf(scene, sizeof scene,
                        "gr.render{node = gr.node('n'), file = 'back.pfm', width = 16, height = 8, eye = {0, 0, 0}, "
                        "projection = 'panorama', background = gr.sky_map{image = '%s'}}\n",
@@ -759,8 +759,7 @@ TEST(clamped_light_can_be_read_back_in_every_format) {
         r = test_gray_scene(scene, "scene.lua", NULL);
         if (r.status != 0)
             test_fail(__FILE__, __LINE__, "%s: %s", names[i], r.err);
-        free(r.out);
-        free(r.err);
+        test_free_result(&r);
         count_floats("back.pfm", &not_finite, &largest);
         CHECK(not_finite == 0);
     }
@@ -772,8 +771,7 @@ TEST(pixels_that_are_inspected_have_no_numbers_that_json_lacks) {
     struct test_result r = test_gray_scene(scene, "--pixel 8,6 --pixel 0,0 --pixel 3,11 --json scene.lua", NULL);
     CHECK_EQ_INT(r.status, 0);
     CHECK(strlen(r.out) > 1000 && !strstr(r.out, "nan") && !strstr(r.out, "inf,") && !strstr(r.out, ":inf"));
-    free(r.out);
-    free(r.err);
+    test_free_result(&r);
 }
 
 TEST(numbers_of_options_are_finite) {
@@ -791,8 +789,7 @@ TEST(numbers_of_options_are_finite) {
                             arguments, NULL);
         if (r.status != 2 || format_count(r.err, "\n") > 2)
             test_fail(__FILE__, __LINE__, "%s: status %d: %s", options[i], r.status, r.err);
-        free(r.out);
-        free(r.err);
+        test_free_result(&r);
     }
 }
 
@@ -816,8 +813,7 @@ TEST(the_ends_of_the_ranges_of_options_give_a_finite_picture) {
             test_fail(__FILE__, __LINE__, "%s: status %d: %s", options[i], r.status, r.err);
         count_floats("x.pfm", &not_finite, &largest);
         CHECK(not_finite == 0);
-        free(r.out);
-        free(r.err);
+        test_free_result(&r);
     }
 }
 
@@ -939,8 +935,7 @@ TEST(tiles_with_colours_that_are_not_finite_are_refused) {
             bright_text("x.png", scene, sizeof scene);
             struct test_result r = test_gray_scene(scene, "-q --shard 1/1 scene.lua", NULL);
             CHECK_EQ_INT(r.status, 0);
-            free(r.out);
-            free(r.err);
+            test_free_result(&r);
             struct tile_file file;
             struct error error;
             (void)snprintf(name, sizeof name, "%s", test_path("x.png.1-of-1.part"));
@@ -967,8 +962,7 @@ TEST(tiles_with_colours_that_are_not_finite_are_refused) {
             r = test_gray(NULL, "merge x.png.1-of-1.part -o merged.pfm");
             if (r.status != 1 || format_count(r.err, "\n") != 1 || !strstr(r.err, "not finite"))
                 test_fail(__FILE__, __LINE__, "status %d: %s", r.status, r.err);
-            free(r.out);
-            free(r.err);
+            test_free_result(&r);
         }
     }
 }

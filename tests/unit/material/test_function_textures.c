@@ -130,8 +130,7 @@ TEST(a_fine_checker_in_lua_has_its_mean_at_the_horizon) {
         " view = {0.1, -0.05, -1}, up = {0, 1, 0}, fov = 20, ambient = {1, 1, 1}}\n",
         "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct test_picture picture = test_read_picture(test_path("a.png"));
     for (uint32_t y = 22; y < 30; y++) { /* below the horizon, which is in row 21 */
         double sum = 0, squares = 0;

@@ -696,8 +696,7 @@ static void check_equal(const char *first, const char *second) {
     struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
     CHECK_TEXT(result.err, "");
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     size_t size_a, size_b;
     char path[2][512];
     for (int i = 0; i < 2; i++)
@@ -749,8 +748,7 @@ TEST(every_kind_that_scripts_can_make_is_taken_as_colour_number_and_height) {
     struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
     CHECK_TEXT(result.err, "");
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_marble_decorator_is_a_mix_of_a_marble_texture) {

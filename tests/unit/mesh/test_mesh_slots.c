@@ -259,11 +259,8 @@ static bool picture_of(const char *cull, const char *drawn, struct test_picture 
     struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
-    free(result.out);
-    free(result.err);
-    char path[400];
-    (void)snprintf(path, sizeof path, "%s/cull.png", test_folder());
-    *out = test_read_picture(path);
+    test_free_result(&result);
+    *out = test_read_picture(test_path("cull.png"));
     return out->width == 40;
 }
 

@@ -163,7 +163,7 @@ TEST(holes_joined_by_bridges_stay_open) {
 
 TEST(a_spiral_of_thousands_of_corners_is_covered_in_reasonable_time) {
     struct polygon p = {0};
-    enum { CORNERS = 4000 };
+    enum { CORNERS = 2000 };
     for (int i = 0; i < CORNERS; i++) {
         double a = i * 0.02;
         add(&p, (1 + a) * cos(a), (1 + a) * sin(a));

@@ -77,9 +77,7 @@ static const char scene[] =
     "          {gr.light({0, 9, 9}, {1.9, 0.9, 0.9}, {1, 0, 0})})\n";
 
 static char *read_in_folder(const char *name, size_t *size) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_file(path, size);
+    return test_read_file(test_path(name), size);
 }
 
 /* The floats of a PFM file, whose rows are stored bottom to top. */
@@ -149,8 +147,7 @@ TEST(tev_gets_the_picture_and_every_tile_once_byte_for_byte) {
     CHECK_EQ_INT(at, r.size);
     free(file);
     free(r.bytes);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_viewer_that_goes_away_or_is_not_there_is_done_without) {
@@ -163,15 +160,13 @@ TEST(a_viewer_that_goes_away_or_is_not_there_is_done_without) {
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.err, "gray: warning: --display tev: the viewer is gone"));
     free(r.bytes);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     /* A free port: no program listens there. */
     (void)snprintf(arguments, sizeof arguments, "--display tev:127.0.0.1:%u scene.lua", r.port);
     result = test_gray_scene(NULL, arguments, NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.err, "gray: warning: --display tev:127.0.0.1:"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(addresses_of_displays_are_read_or_refused) {
@@ -190,8 +185,7 @@ TEST(addresses_of_displays_are_read_or_refused) {
         CHECK(!display_parse(wrong[i], &choice));
     struct test_result result = test_gray_scene(scene, "--display tivi scene.lua", NULL);
     CHECK_EQ_INT(result.status, 2);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- terminals --- */
@@ -353,9 +347,7 @@ TEST(a_small_view_of_a_film_is_the_mean_of_its_light) {
 
 TEST(a_picture_in_the_terminal_is_the_picture) {
     struct test_result result = test_gray_scene(scene, "--size 40x30 -o out.png --display term:blocks scene.lua", NULL);
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/out.png", test_folder());
-    struct test_picture p = test_read_picture(path);
+    struct test_picture p = test_read_picture(test_path("out.png"));
     const char *at = result.out;
     CHECK_EQ_INT(result.status, 0);
     for (uint32_t y = 0; p.rgb && y < 30; y += 2)
@@ -374,6 +366,5 @@ TEST(a_picture_in_the_terminal_is_the_picture) {
             at++;
         }
     free(p.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { RANKS = 2, WIDTH = 160, HEIGHT = 128, QUEUE = 1024, SLOTS = 2 };
+enum { RANKS = 2, WIDTH = 96, HEIGHT = 96, QUEUE = 1024, SLOTS = 2 };
 
 struct letter {
     int kind;
@@ -78,7 +78,7 @@ static void begin(struct stage *s) {
     stage_begin(s, 2);
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.max_depth = 5;
-    s->settings.noise = 0.12;
+    s->settings.noise = 0.16;
     s->camera = (struct camera){{0, 0, 3.5}, {0, 0, -1}, {0, 1, 0}, 50};
     struct material *white = stage_phong(s, vec3_make(0.7, 0.6, 0.5), vec3_all(0), 1);
     white->phong.two_sided = true;

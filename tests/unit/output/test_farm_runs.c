@@ -328,7 +328,7 @@ static void make_noisy_whole(void) {
 }
 
 TEST(a_farm_with_noise_has_the_bytes_of_one_run_whatever_is_lost) {
-    need_mpi(ONE);
+    need_mpi(SCENE "picture('out.png', 220, 170)\n");
     make_noisy_whole();
     pid_t farm = start_farm("", 3, NOISE);
     CHECK_EQ_INT(await_end(farm), 0);
@@ -355,7 +355,7 @@ TEST(a_farm_with_noise_has_the_bytes_of_one_run_whatever_is_lost) {
 
 /* SIGINT: mpirun ends all processes. */
 TEST(a_farm_with_noise_goes_on_from_a_checkpoint_with_the_bytes_of_one_run) {
-    need_mpi(SCENE "picture('out.png', 130, 100)\n");
+    need_mpi(SCENE "picture('out.png', 100, 80)\n");
     CHECK_EQ_INT(shell("$gray scene.lua -q " FINE " -o whole.png"), 0);
     pid_t farm = start_farm("", 3, FINE " --checkpoint c.tiles --checkpoint-every 1000");
     if (await_work(0, 0.08, NULL))

@@ -18,8 +18,7 @@ static const char scene[] =
     "           view={0, -.1, -1}, fov=45, background={.1, .2, .4}, lights={lamp}}\n";
 
 static char *picture(size_t *size) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/out.pfm", test_folder());
+    const char *path = test_path("out.pfm");
     char *bytes = test_read_file(path, size);
     (void)remove(path);
     return bytes;
@@ -29,8 +28,7 @@ static void run(const char *arguments) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", arguments, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void check_same(const char *arguments, const char *whole, size_t size) {
@@ -98,13 +96,11 @@ TEST(a_path_traced_pixel_is_explained_by_its_mean_its_error_and_its_brightest_pa
         vertices++;
     CHECK_EQ_INT(count, 8);
     CHECK(vertices >= 8);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(scene, "--pixel 30,38 --noise 0.1 --spp 20 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.out, "of 20 samples (--spp; --noise may need fewer)"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* The line names the file that is written. */
@@ -126,8 +122,7 @@ TEST(with_a_time_limit_a_line_names_the_picture_and_its_samples) {
         CHECK_EQ_INT(result.status, 0);
         if (!strstr(result.err, cases[i].line))
             test_fail(__FILE__, __LINE__, "%s: not '%s' but: %s", cases[i].arguments, cases[i].line, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -231,8 +226,7 @@ TEST(fields_that_exclude_each_other_are_an_error_unless_one_has_priority) {
         struct test_result result = test_gray_scene(plain, errors[i], NULL);
         CHECK_EQ_INT(result.status, 1);
         CHECK(strstr(result.err, "styles are for the integrator 'whitted', not for 'path'"));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
     same_pictures(plain, "--default integrator=path --style ink", PICTURES ", style='ink'" PICTURES_END, "");
     same_pictures(PICTURES ", integrator='path', spp=2" PICTURES_END, "--default style=ink",
@@ -262,7 +256,6 @@ TEST(a_notice_of_an_option_counts_the_pictures_of_an_animation) {
         struct test_result result = test_gray_scene(call, runs[i], NULL);
         CHECK_EQ_INT(result.status, 0);
         CHECK(strstr(result.err, "scene.lua: -ss 2 replaces the field samples of 3 pictures\n"));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }

@@ -720,11 +720,11 @@ static void check_energy(double alpha, int samples) {
 }
 
 TEST(paths_with_photons_show_the_caustic_of_a_lamp_through_a_lens_once) {
-    check_energy(0, 1024);
+    check_energy(0, 512);
 }
 
 TEST(paths_with_photons_show_the_light_of_rough_glass_over_diffuse_once) {
-    check_energy(0.3, 1024);
+    check_energy(0.3, 512);
 }
 
 /* The error is that of the mean of runs with different seeds. */

@@ -19,26 +19,14 @@
 #include <termios.h>
 #include <unistd.h>
 
-static char in[700];
-
-/* A folder open to every user, with files and a scene. */
-static void fresh_folder(const char *files, const char *scene) {
-    static int number;
-    char path[1024], *text = NULL;
-    (void)snprintf(in, sizeof in, "%s/%d", test_folder(), ++number);
-    (void)snprintf(path, sizeof path, "%s/scene.lua", in);
-    CHECK(mkdir(in, 0777) == 0 && chmod(in, 0777) == 0 && attack_prepare(in, files));
-    CHECK(asprintf(&text, "%s%s\n", attack_prelude, scene) > 0);
-    test_write_text(path, text);
-    free(text);
-}
+static const char *in;
 
 /* Runs a scene in a fresh folder as root (or whoever runs the tests) and as a user; the first line of standard error
  * begins like this. */
 static void expect(const char *files, const char *scene, const char *words, int status, const char *says) {
     uid_t users[2] = {0, getuid() == 0 ? attack_user() : 0};
     for (int i = 0; i < (users[1] ? 2 : 1); i++) {
-        fresh_folder(files, scene);
+        in = attack_folder(files, scene);
         int how = attack_wait(attack_start(in, words, users[i]), ATTACK_PATIENCE);
         char *said = attack_output("err.txt");
         if (how != status || strncmp(said, says, strlen(says)) != 0)
@@ -47,29 +35,11 @@ static void expect(const char *files, const char *scene, const char *words, int 
     }
 }
 
-static double seconds_of_children(void) {
-    struct rusage usage;
-    (void)getrusage(RUSAGE_CHILDREN, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
-static pid_t child_of(pid_t process) {
-    char path[64];
-    int child = 0;
-    (void)snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)process, (int)process);
-    char *text = test_read_file(path, NULL);
-    if (text)
-        child = atoi(text);
-    free(text);
-    return (pid_t)child;
-}
-
 /* The render process of a program. */
 static pid_t wait_for_child(pid_t program) {
     pid_t child = 0;
     for (double limit = attack_now() + ATTACK_PATIENCE; child <= 0 && attack_now() < limit; attack_rest(0.01))
-        child = child_of(program);
+        child = test_child_of(program);
     CHECK(child > 0);
     return child;
 }
@@ -77,11 +47,11 @@ static pid_t wait_for_child(pid_t program) {
 /* --- limits --- */
 
 TEST(rendering_is_not_counted_as_time_of_the_script) {
-    fresh_folder("", "p('x.png', 80, 80) p('y.png', 80, 80)");
-    double before = seconds_of_children();
+    in = attack_folder("", "p('x.png', 80, 80) p('y.png', 80, 80)");
+    double before = test_children_used().seconds;
     CHECK_EQ_INT(attack_wait(attack_start(in, "-q -j 1 -full -ss 16 --script-time 0.2 scene.lua", 0), ATTACK_PATIENCE),
                  0);
-    CHECK(seconds_of_children() - before > 0.3); /* otherwise it is not displayed */
+    CHECK(test_children_used().seconds - before > 0.3); /* otherwise it is not displayed */
     expect("", "p('x.png', 9, 9) while true do end", "-q --script-time 0.2 scene.lua", 1, "scene.lua:");
 }
 
@@ -117,12 +87,10 @@ TEST(scripts_print_64_mebibytes_at_most_and_without_a_sandbox_all) {
     static const char *const scene = "local s = string.rep('x', 2^20) for i = 1, 70 do io.write(s) end";
     struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
     CHECK(result.status == 1 && strlen(result.out) <= 64 << 20 && strlen(result.out) > 60 << 20);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(scene, "-q --no-sandbox scene.lua", NULL);
     CHECK(result.status == 0 && strlen(result.out) == 70 << 20);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- what a scene may read --- */
@@ -139,7 +107,7 @@ TEST(hidden_files_beside_and_above_a_scene_cannot_be_read) {
     static const char *const files =
         "dir d; dir .h; dir ../.h; text seen.lua; text .hid.lua; text d/seen.lua; text d/.hid.lua; text .h/in.lua; "
         "text ../seen.lua; text ../.hid.lua; text ../.h/in.lua; link link.lua .hid.lua; link folder .h";
-    fresh_folder(files, scene);
+    in = attack_folder(files, scene);
     int status = attack_wait(attack_start(in, "-q scene.lua", 0), ATTACK_PATIENCE);
     char *said = attack_output("err.txt");
     if (status != 0)
@@ -153,8 +121,8 @@ TEST(hidden_files_beside_and_above_a_scene_cannot_be_read) {
 
 TEST(the_root_is_no_folder_of_a_scene) {
     char words[1024];
-    fresh_folder("", "assert(io.open('etc/passwd') == nil and "
-                     "io.open('/etc/passwd') == nil and io.open('../etc/passwd') == nil)");
+    in = attack_folder("", "assert(io.open('etc/passwd') == nil and "
+                           "io.open('/etc/passwd') == nil and io.open('../etc/passwd') == nil)");
     (void)snprintf(words, sizeof words, "-q %s/scene.lua", in);
     CHECK_EQ_INT(attack_wait(attack_start("/", words, 0), ATTACK_PATIENCE), 0);
     (void)snprintf(words, sizeof words, "-q --allow-read / %s/scene.lua", in);
@@ -206,7 +174,7 @@ TEST(links_that_are_exchanged_all_the_time_lead_no_reader_out) {
     uid_t users[2] = {0, getuid() == 0 ? attack_user() : 0};
     for (int i = 0; i < (users[1] ? 2 : 1); i++) {
         char path[1024], outer[1024], a[1024], b[1024], d[1024];
-        fresh_folder("dir a", scene);
+        in = attack_folder("dir a", scene);
         (void)snprintf(path, sizeof path, "%s/a/x.lua", in);
         test_write_text(path, "return 'inner'\n");
         (void)snprintf(outer, sizeof outer, "%s/outer", test_folder());
@@ -250,16 +218,14 @@ TEST(scenes_can_read_only_variables_that_begin_as_the_program_s) {
                         "-q scene.lua", "GRAY_OF_A_TEST=seen");
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(what_a_script_prints_is_printed_as_it_is) {
     struct test_result result =
         test_gray_scene("io.write('a\\27[2J\\r\\8\\7\\127\\xff\\n') print('b')", "scene.lua", NULL);
     CHECK_TEXT(result.out, "a\33[2J\r\b\a\177\xff\nb\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- the processes --- */
@@ -271,7 +237,7 @@ static long number_in(const char *text, const char *key) {
 
 TEST(a_rendering_process_keeps_nothing_it_inherited_and_gains_no_privileges) {
     char path[1100], name[300], to[1024];
-    fresh_folder("text inherited.txt; dir folder", "io.open('scene.lua') while true do end");
+    in = attack_folder("text inherited.txt; dir folder", "io.open('scene.lua') while true do end");
     (void)snprintf(path, sizeof path, "%s/inherited.txt", in);
     int file = open(path, O_RDWR), folder = open("/", O_RDONLY | O_DIRECTORY); // NOLINT: both are to be inherited
     CHECK(file >= 0 && folder >= 0);
@@ -319,8 +285,7 @@ TEST(a_build_with_sanitizers_says_that_it_has_no_filter) {
         test_skip("a build without sanitizers");
     struct test_result result = test_gray_scene("x = 1", "--verbose scene.lua", NULL);
     CHECK(strstr(result.err, ", no seccomp filter in a build with sanitizers"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Appends the bytes that a terminal outputs in these seconds. */
@@ -347,7 +312,7 @@ TEST(a_crash_of_the_rendering_process_leaves_the_terminal_as_it_was) {
     if (test_has_sanitizer())
         test_skip("a sanitizer reports the crash on the terminal");
     static char bytes[1 << 18];
-    fresh_folder("", "p('x.png', 2500, 2500)");
+    in = attack_folder("", "p('x.png', 2500, 2500)");
     int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0)
         test_skip("no terminals here");
@@ -445,7 +410,7 @@ TEST(a_picture_is_locked_and_synced_before_it_has_its_name_and_its_folder_after)
         attack_set_system((enum attack_system)system);
         for (int i = 0; i < 2; i++) {
             char calls[256];
-            fresh_folder(states[i], "p('x.png', 20, 20)");
+            in = attack_folder(states[i], "p('x.png', 20, 20)");
             record_calls(calls, sizeof calls);
             const char *synced = strchr(calls, 'S'), *named = strchr(calls, 'N'), *last = strrchr(calls, 'N');
             if (!synced || !named || synced > named || !strchr(last, 'D') ||

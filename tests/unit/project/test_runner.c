@@ -90,8 +90,7 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
     CHECK(WIFSIGNALED(how) && WTERMSIG(how) == SIGHUP);
     struct test_result result = test_gray_scene("while true do end", "scene.lua --script-time 0.1", NULL);
     CHECK_EQ_INT(result.status, 1);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* An ordinary child, one in its own session, an orphan that ignores every signal that can be ignored, a stopped one,
@@ -538,8 +537,14 @@ TEST(uninstalling_removes_what_installing_has_written) {
         "to=$GRAY_EXAMPLE_RUN/usr; "
         "mkdir -p $to/bin && touch $to/bin/other && $make install && $to/bin/gray --version && "
         "test -e $to/share/gray/lua/readobj.lua && test -e $to/share/doc/gray/LICENSE && "
+        "grep -q gr.sphere $to/share/man/man5/gray-scene.5 && test -s $to/share/man/man1/gray.1 && "
+        "cmp -s textures/painting.png $to/share/gray/textures/painting.png && "
+        "cmp -s data/path/dining.lua $to/share/gray/data/path/dining.lua && "
+        "cmp -s docs/start/2-bowl.png $to/share/doc/gray/docs/start/2-bowl.png && "
+        "test -e $to/share/bash-completion/completions/gray && test -e $to/share/zsh/site-functions/_gray && "
+        "test -e $to/share/fish/vendor_completions.d/gray.fish && "
         "touch $to/share/gray/lua/own.lua && $make uninstall && (cd $to && find . -type f | sort) && "
-        "test ! -e $to/share/doc/gray && test ! -e $to/share/gray/lua/dialects && "
+        "test ! -e $to/share/doc/gray && test ! -e $to/share/gray/lua/dialects && test ! -e $to/share/gray/data && "
         "rm $to/share/gray/lua/own.lua && $make install && $make uninstall && test ! -e $to/share/gray && "
         "(cd $to && find . -type f)";
     CHECK_EQ_INT(wait_for(start(lines)), 0);

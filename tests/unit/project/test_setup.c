@@ -75,8 +75,9 @@ TEST(a_library_that_cannot_be_had_is_named_and_left_out) {
     make_machine();
     CHECK_EQ_INT(set_up(NEEDED, "uid=0 refuse='libjansson-dev libopenexr-dev'", ""), 0);
     check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibfreetype-dev\nlibwebp-dev\n");
-    check_file("err", "installing with apt-get (optional): libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev "
-                      "libopenexr-dev libwebp-dev\n"
+    check_file("err", "installing with apt-get (window): libsdl2-dev\n"
+                      "installing with apt-get (libraries): libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev "
+                      "libwebp-dev\n"
                       "libjansson-dev could not be installed: it is left out\n"
                       "libopenexr-dev could not be installed: it is left out\n");
 }
@@ -108,16 +109,17 @@ TEST(a_user_who_may_not_install_gets_one_line_with_the_command) {
 }
 
 /* Every group has one line, and what apt-get prints is not shown. Of the tools this machine may have any. */
-TEST(the_set_up_of_the_tests_prints_one_line_for_each_group) {
+TEST(the_set_up_prints_one_line_for_each_group) {
     make_machine();
-    CHECK_EQ_INT(set_up(NEEDED, "uid=0", "--tests"), 0);
+    CHECK_EQ_INT(set_up("lua5.4\\nzlib\\n", "uid=0", "--tests"), 0);
     char *said = test_read_file(test_path("err"), NULL);
-    CHECK(said && strstr(said, "installing with apt-get for the tests (libraries): libjpeg-dev libjansson-dev "
-                               "libfreetype-dev libopenexr-dev libwebp-dev\n"));
-    CHECK(said && strstr(said, "installing with apt-get for the tests (window): libsdl2-dev"));
-    CHECK(said && strstr(said, "installing with apt-get for the tests (machines): libopenmpi-dev"));
+    CHECK(said && strncmp(said, "installing with apt-get (build): libpng-dev\n", 44) == 0);
+    CHECK(said && strstr(said, "installing with apt-get (libraries): libjpeg-dev libjansson-dev libfreetype-dev "
+                               "libopenexr-dev libwebp-dev\n"));
+    CHECK(said && strstr(said, "installing with apt-get (window): libsdl2-dev"));
+    CHECK(said && strstr(said, "installing with apt-get (machines): libopenmpi-dev"));
     for (const char *line = said; line && line[0] != '\0'; line = strchr(line, '\n') + 1)
-        CHECK(strncmp(line, "installing with apt-get for the tests (", 39) == 0);
+        CHECK(strncmp(line, "installing with apt-get (", 25) == 0);
     free(said);
 }
 
@@ -142,8 +144,8 @@ static void make_gallery(const char *plan) {
     test_write_text(test_path("plan"), plan);
     if (asprintf(&line,
                  "cd '%s' && mkdir -p tools data/path data/csg data/functions data/library data/classic && "
-                 "cp '%s/render_all.sh' . && cp plan data/gallery.txt && "
-                 "printf '#!/bin/sh\\n' >tools/setup.sh && chmod +x tools/setup.sh && "
+                 "cp '%s/render_all.sh' . && cp '%s/data/gallery.html' data && cp plan data/gallery.txt && "
+                 "printf '#!/bin/sh\\necho set up $@\\n' >tools/setup.sh && chmod +x tools/setup.sh && "
                  "printf 'all:\\n' >Makefile && "
                  "for f in $(sed -n 's/ [0-9]*$//p' plan | grep ^data) data/path/new.lua data/csg/make_it.lua; do "
                  "echo '-- TITLE: '$(basename $f .lua) '& more' >$f; done && "
@@ -152,11 +154,12 @@ static void make_gallery(const char *plan) {
                  "for word in \"$@\"; do case $word in *%%02d.png) out=${word%%%%%%02d*}; esac; done\n"
                  "case $out in *broken*) exit 1;; *sleeper*) [ -z \"$GRAY_SCENE_LIMIT\" ] || sleep 100;; *clock*) echo "
                  "picture >${out}02.png;; *path*) "
-                 "echo printed;; esac\n"
+                 "echo printed;; *14demo*) printf 'header, 16 bytes\\0\\0\\1\\220\\0\\0\\1\\54' >${out}01.png; exit "
+                 "0;; esac\n"
                  "echo picture >${out}01.png\n"
                  "END\n"
                  "chmod +x gray",
-                 test_folder(), root) < 0)
+                 test_folder(), root, root) < 0)
         exit(1);
     CHECK(system(line) == 0);
     free(line);
@@ -164,12 +167,34 @@ static void make_gallery(const char *plan) {
 
 /* Runs it; out.txt has what it prints. */
 static int render_all(void) {
-    char *line = NULL;
-    if (asprintf(&line, "cd '%s' && sh render_all.sh >out.txt 2>err.txt", test_folder()) < 0)
-        exit(1);
-    int status = system(line);
-    free(line);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return test_run_shell("sh render_all.sh", ">out.txt 2>err.txt");
+}
+
+static void check_has(const char *name, const char *words) {
+    char *text = test_read_file(test_path(name), NULL);
+    if (!text || !strstr(text, words))
+        test_fail(__FILE__, __LINE__, "%s does not have \"%s\"", name, words);
+    free(text);
+}
+
+TEST(a_minimal_set_up_is_an_option_of_rendering_all_scenes) {
+    make_gallery("[A]\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
+    CHECK_EQ_INT(test_run_shell("sh render_all.sh --minimal", ">out.txt"), 0);
+    check_has("out.txt", "\nset up --minimal\n");
+    CHECK_EQ_INT(test_run_shell("sh render_all.sh --small", "2>err.txt"), 2);
+    check_has("err.txt", "Usage: ./render_all.sh [--minimal]\n");
+}
+
+/* The picture of 14demo has 400 x 300 pixels. */
+TEST(the_gallery_has_the_shape_of_each_picture_and_the_command_that_made_it) {
+    make_gallery("[A]\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
+    CHECK_EQ_INT(render_all(), 0);
+    check_has("gallery/index.html",
+              "<figure style=\"--shape: 1.33333\">\n<a class=\"picture\" href=\"14demo.png\"><img "
+              "src=\"14demo.png\" width=\"400\" height=\"300\" alt=\"14demo &amp; more\"");
+    check_has("gallery/index.html", "./gray --size 1280x960 -ss 4 -al-samples 8 -o gallery/14demo-%02d.png <a "
+                                    "href=\"../data/14demo.lua\">data/14demo.lua</a></code>");
+    check_has("out.txt", "\ndone: open gallery/index.html in a browser; docs/start.md leads to your first scene; ");
 }
 
 TEST(rendering_all_scenes_says_how_long_it_takes_and_puts_the_best_first) {
@@ -203,6 +228,7 @@ TEST(a_scene_that_fails_is_named_at_the_end) {
     char *err = test_read_file(test_path("err.txt"), NULL);
     CHECK(err && strstr(err, "render_all.sh: data/broken.lua failed with status 1\n"));
     CHECK(err && strstr(err, "render_all.sh: these failed: data/broken.lua; "));
+    check_has("gallery/index.html", ">no picture: render_all.sh: data/broken.lua failed with status 1");
     free(err);
 }
 

@@ -1,5 +1,5 @@
-/* Every demo and every classic scene of the repository in a tiny size: they render, and the pictures are not empty.
- * make test runs them with sanitizers. */
+/* Every demo and every classic scene of the repository in a tiny size, from another folder: they render without a
+ * warning or a notice, and the pictures are not empty. make test runs them with sanitizers. */
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -75,17 +75,16 @@ static void smoke_with(const char *options, const char *folder, const char *end,
     for (int k = 0; k < count; k++) {
         char arguments[8192];
         (void)snprintf(arguments, sizeof arguments,
-                       "-q -D quick=true --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s "
-                       "%s/%s/%s",
-                       root, k, options, root, folder, names[k]);
+                       "--progress=none -D quick=true --size 64x48 --default samples=1 --default area_samples=1 "
+                       "--default spp=1 -o %d-%%02d.png %s %s/%s/%s",
+                       k, options, root, folder, names[k]);
         if (heavy == is_heavy(names[k]) && !is_maker(names[k]) && !is_module(names[k])) {
             struct test_result result = test_gray(NULL, arguments);
-            if (result.status != 0)
+            if (result.status != 0 || result.err[0])
                 test_fail(__FILE__, __LINE__, "%s/%s: status %d: %s", folder, names[k], result.status, result.err);
             else
                 check_pictures(names[k], k);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
         }
         free(names[k]);
     }
@@ -95,7 +94,7 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     smoke_with("", folder, end, heavy);
 }
 
-TEST(smoke_every_demo_renders_in_small) {
+TEST(smoke_every_demo_renders_in_small_from_any_folder_without_a_warning) {
     smoke("data", "demo.lua", false);
 }
 
@@ -148,6 +147,10 @@ TEST(smoke_scenes_of_shapes_meshes_and_bump_maps_render_in_small) {
 TEST(smoke_scenes_of_combined_solids_render_in_small) {
     smoke("data/csg", ".lua", false);
     smoke("data/functions", ".lua", false);
+}
+
+TEST(smoke_path_traced_demos_render_in_small_from_any_folder_without_a_warning) {
+    smoke("data/path", ".lua", false);
 }
 
 TEST(smoke_animations_and_drawn_pictures_render_in_small) {

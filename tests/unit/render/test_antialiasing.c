@@ -11,18 +11,11 @@ enum { SIDE = 48 };
 
 static const double pi = 3.14159265358979323846;
 
-static struct test_picture picture(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_picture(path);
-}
-
 static void renders(const char *scene, const char *arguments) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static double value(const struct test_picture *p, uint32_t x, uint32_t y) {
@@ -64,7 +57,7 @@ struct line_seen {
 /* In the middle of the picture, which the line leaves through its sides, or through top and bottom. */
 static struct line_seen see_line(const char *name, double degrees, double width) {
     enum { MARGIN = 2 };
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     bool steep = degrees > 45 && degrees < 135;
     double sum = 0, shown = 0, a = degrees * pi / 180;
     for (uint32_t along = MARGIN; along < SIDE - MARGIN; along++) {
@@ -143,7 +136,7 @@ TEST(thin_lines_show_in_every_projection) {
                        cameras[i], cameras[i]);
         renders(scene, "--aa-pattern rotated scene.lua");
         for (int which = 0; which < 2; which++) {
-            struct test_picture p = picture(which ? "c.png" : "t.png");
+            struct test_picture p = test_read_picture(test_path(which ? "c.png" : "t.png"));
             int shown = 0;
             for (uint32_t x = 17; x < 31; x++) {
                 double column = 0;
@@ -168,7 +161,7 @@ TEST(no_ball_of_half_a_pixel_is_lost_at_100_positions) {
         "gr.render{node=root, file='t.png', width=110, height=110, eye={0,0,10}, view={0,0,-1}, up={0,1,0}, "
         "projection='orthographic', view_height=110, ambient={1,1,1}, background={0,0,0}}\n",
         "--aa-pattern rotated scene.lua");
-    struct test_picture p = picture("t.png");
+    struct test_picture p = test_read_picture(test_path("t.png"));
     double sum = 0;
     int lost = 0;
     for (int i = 0; i < 10; i++) {
@@ -205,8 +198,9 @@ static bool is_red(const uint8_t *c) {
 TEST(pixels_that_are_not_marked_keep_the_first_pass_and_those_of_the_grid_are_marked_too) {
     renders(MIXED, "--aa-pattern grid -write-aa-targets old- scene.lua");
     renders(MIXED, "--aa-pattern rotated -write-pre-aa pre- -write-aa-targets new- scene.lua");
-    struct test_picture pre = picture("pre-t.png"), old = picture("old-t.png"), new = picture("new-t.png"),
-                        done = picture("t.png");
+    struct test_picture pre = test_read_picture(test_path("pre-t.png")),
+                        old = test_read_picture(test_path("old-t.png")),
+                        new = test_read_picture(test_path("new-t.png")), done = test_read_picture(test_path("t.png"));
     int touched = 0, missing = 0, shown = 0, more = 0;
     for (size_t i = 0; i < 3 * (size_t)117 * 83; i += 3) {
         bool red = is_red(new.rgb + i);
@@ -227,7 +221,7 @@ TEST(pixels_that_are_not_marked_keep_the_first_pass_and_those_of_the_grid_are_ma
 
 TEST(tolerances_above_every_difference_mark_nothing) {
     renders(MIXED, "--aa-pattern rotated -side-tolerance 3 -corner-tolerance 3 -write-pre-aa pre- scene.lua");
-    struct test_picture pre = picture("pre-t.png"), done = picture("t.png");
+    struct test_picture pre = test_read_picture(test_path("pre-t.png")), done = test_read_picture(test_path("t.png"));
     CHECK(memcmp(pre.rgb, done.rgb, 3 * (size_t)117 * 83) == 0);
     free(pre.rgb);
     free(done.rgb);
@@ -237,19 +231,21 @@ TEST(tolerances_above_every_difference_mark_nothing) {
 
 TEST(rotated_pictures_are_the_same_for_threads_crops_accelerators_and_full_where_they_are_marked) {
     renders(MIXED, "--aa-pattern rotated -j 1 -write-aa-targets targets- scene.lua");
-    struct test_picture whole = picture("t.png"), targets = picture("targets-t.png");
+    struct test_picture whole = test_read_picture(test_path("t.png")),
+                        targets = test_read_picture(test_path("targets-t.png"));
     static const char *const same[] = {"-j 4", "--accel bvh -j 2", "--isa base -j 3"};
     for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
         char arguments[100];
         (void)snprintf(arguments, sizeof arguments, "--aa-pattern rotated %s -o same.png scene.lua", same[i]);
         renders(MIXED, arguments);
-        struct test_picture p = picture("same.png");
+        struct test_picture p = test_read_picture(test_path("same.png"));
         CHECK(memcmp(p.rgb, whole.rgb, 3 * (size_t)117 * 83) == 0);
         free(p.rgb);
     }
     renders(MIXED, "--aa-pattern rotated --crop 41,13,50,37 -o crop.png scene.lua");
     renders(MIXED, "--aa-pattern rotated -full -o full.png scene.lua");
-    struct test_picture crop = picture("crop.png"), full = picture("full.png");
+    struct test_picture crop = test_read_picture(test_path("crop.png")),
+                        full = test_read_picture(test_path("full.png"));
     int wrong = 0;
     for (size_t y = 0; y < 37; y++)
         wrong += memcmp(crop.rgb + 3 * y * 50, whole.rgb + 3 * ((y + 13) * 117 + 41), (size_t)3 * 50) != 0;
@@ -275,7 +271,7 @@ TEST(upright_edges_have_n_squared_steps) {
             "gr.render{node=r, file='t.png', width=20, height=20, eye={0,0,10}, fov=90, ambient={1,1,1}, "
             "background={0,0,0}}\n",
             arguments);
-        struct test_picture p = picture("t.png");
+        struct test_picture p = test_read_picture(test_path("t.png"));
         double covered = floor(0.28 * n * n + 0.5) / (n * n);
         for (uint32_t y = 2; y < 18; y++)
             CHECK_NEAR(value(&p, 10, y), covered, 0.51 / 255);

@@ -132,9 +132,8 @@ TEST(an_exr_picture_has_its_layers_in_itself_with_every_value) {
                     {"samples.N", AOV_SAMPLES, 0},
                     {"lights.N", AOV_LIGHTS, 0}};
     struct stage s;
-    char path[600];
     int width, height;
-    (void)snprintf(path, sizeof path, "%s/out.exr", test_folder());
+    const char *path = test_path("out.exr");
     stage_begin(&s, 2);
     stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.2, 0.4, 0.6), vec3_all(0), 1));
     stage_point_light(&s, vec3_make(0, 5, 20), vec3_all(1));

@@ -128,15 +128,9 @@ static const char scene[] =
     "    projection = projection, ambient = {0.5, 0.5, 0.5}, lights = {}} end\n"
     "for _, p in ipairs{'perspective', 'orthographic', 'fisheye', 'panorama'} do picture(p .. '.png', p) end\n";
 
-static struct test_picture picture_of(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_picture(path);
-}
-
 /* Pixels of a picture that differ from the one without lines. */
 static int differing(const char *name, const struct test_picture *plain) {
-    struct test_picture p = picture_of(name);
+    struct test_picture p = test_read_picture(test_path(name));
     int count = 0;
     for (uint32_t i = 0; p.rgb && i < 64 * 48; i++)
         count += memcmp(p.rgb + 3 * i, plain->rgb + 3 * i, 3) != 0;
@@ -152,15 +146,13 @@ TEST(lines_are_drawn_in_every_projection_and_for_every_accelerator) {
     struct test_picture plain[4];
     struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     for (int i = 0; i < 4; i++)
-        plain[i] = picture_of(names[i]);
+        plain[i] = test_read_picture(test_path(names[i]));
     for (int k = 0; k < 4; k++) {
         result = test_gray_scene(NULL, options[k], NULL);
         CHECK_EQ_INT(result.status, 0);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         for (int i = 0; i < 4; i++)
             CHECK(differing(names[i], &plain[i]) > 20);
     }
@@ -169,12 +161,10 @@ TEST(lines_are_drawn_in_every_projection_and_for_every_accelerator) {
         CHECK_EQ_INT(differing(names[i], &plain[i]), 0);
         free(plain[i].rgb);
     }
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(NULL, "--overlay boxes --checkpoint auto scene.lua", NULL);
     CHECK_EQ_INT(result.status, 2);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(lines_over_a_picture_are_the_same_for_any_number_of_threads) {

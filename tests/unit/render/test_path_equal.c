@@ -37,8 +37,7 @@ static struct pictures pictures_of(const struct pair *pair) {
     CHECK(length > 0 && (size_t)length < sizeof scene);
     struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct pictures p;
     size_t size;
     p.a = test_read_file(test_path("a.pfm"), &p.size);

@@ -213,7 +213,7 @@ static void check_brute_force(struct effort effort, uint64_t paths, double preci
 }
 
 TEST(brute_force_agrees_where_all_lights_have_bodies_or_are_skies) {
-    check_brute_force((struct effort){8, 64, 1}, 60000, 0.03);
+    check_brute_force((struct effort){8, 24, 1}, 24000, 0.05);
 }
 TEST_LONG(brute_force_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
     check_brute_force((struct effort){16, 1024, 3}, 1280000, 0.001);
@@ -242,7 +242,7 @@ static void check_bsdf_sampling(struct effort both, struct effort bsdf_effort, d
 }
 
 TEST(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies) {
-    check_bsdf_sampling((struct effort){8, 160, 1}, (struct effort){8, 320, 1}, 0.02);
+    check_bsdf_sampling((struct effort){8, 48, 1}, (struct effort){8, 96, 1}, 0.04);
 }
 TEST_LONG(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
     check_bsdf_sampling((struct effort){16, 640, 3}, (struct effort){16, 2560, 3}, 0.001);
@@ -347,8 +347,8 @@ static void check_corridor(bool mesh, struct effort by_tree, struct effort by_un
 }
 
 TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
-    check_corridor(false, (struct effort){8, 256, 1}, (struct effort){8, 4096, 1}, 0.01);
-    check_corridor(true, (struct effort){8, 256, 1}, (struct effort){8, 4096, 1}, 0.01);
+    check_corridor(false, (struct effort){8, 64, 1}, (struct effort){8, 1024, 1}, 0.02);
+    check_corridor(true, (struct effort){8, 64, 1}, (struct effort){8, 1024, 1}, 0.02);
 }
 TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
     check_corridor(false, (struct effort){8, 2048, 3}, (struct effort){8, 16384, 3}, 0.001);

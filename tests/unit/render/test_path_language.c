@@ -78,7 +78,7 @@ static void check_light_as_whitted(enum light_kind kind, bool emissive, double t
     begin_shadow(&s, kind, emissive);
     double want = whitted_mean(&s, 8, 8);
     CHECK(want > 0.05);
-    CHECK_NEAR(path_mean(&s, 256, 1), want, tolerance * want);
+    CHECK_NEAR(path_mean(&s, 128, 1), want, tolerance * want);
     stage_end(&s);
 }
 
@@ -173,8 +173,7 @@ TEST(ambient_light_is_nothing_to_paths_and_one_notice_says_so) {
     CHECK(memcmp(a.rgb, b.rgb, (size_t)3 * a.width * a.height) == 0);
     free(a.rgb);
     free(b.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- skies --- */
@@ -200,8 +199,7 @@ TEST(a_chosen_background_lights_the_scene_and_the_gradient_that_nobody_chose_doe
     free(none.rgb);
     free(gradient.rgb);
     free(colour.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
@@ -366,7 +364,7 @@ static struct node *add_unseen_square(struct stage *s) {
     return square;
 }
 
-TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_through_it) {
+TEST_TIMES(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_through_it, 8) {
     double area_light[2], mesh_light[2], point[2];
     for (int pane = 0; pane < 2; pane++) {
         struct stage s;
@@ -384,10 +382,10 @@ TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_throug
         light->emissive = true;
         light->radius = 0.8;
         light->colour = vec3_all(4);
-        area_light[pane] = path_mean(&s, 1024, 8);
+        area_light[pane] = path_mean(&s, 512 * times, 8);
         s.light_count = 0;
         stage_move(&s, add_unseen_square(&s), 0, 2, 0);
-        mesh_light[pane] = path_mean(&s, 1024, 8);
+        mesh_light[pane] = path_mean(&s, 256 * times, 8);
         stage_end(&s);
     }
     CHECK(point[0] > 0.1);
@@ -403,7 +401,7 @@ static double corner_factor(double a, double b, double h) {
 }
 
 /* A vertical mirror shows the floor the image of the light. Cameras see it in no mirror. */
-TEST(scattered_rays_meet_a_mesh_light_that_is_not_in_the_scene) {
+TEST_TIMES(scattered_rays_meet_a_mesh_light_that_is_not_in_the_scene, 3) {
     const double direct = 4 * corner_factor(1, 1, 3), image = 2 * (corner_factor(5, 1, 3) - corner_factor(3, 1, 3));
     for (int strategy = PATH_STRATEGY_MIS; strategy <= PATH_STRATEGY_BSDF; strategy++) {
         for (int photons = 0; photons < 2; photons++) {
@@ -418,15 +416,17 @@ TEST(scattered_rays_meet_a_mesh_light_that_is_not_in_the_scene) {
             s.settings.path_strategy = (enum path_strategy)strategy;
             s.settings.caustics.photons = photons * 400000;
             s.settings.caustics.radius = 0.3;
-            const struct effort effort = {ESTIMATE_SIZE_MAX, 2048, 1};
+            const int samples = times > 1 ? 2048 : strategy == PATH_STRATEGY_BSDF ? 1024 : 320;
+            const struct effort effort = {ESTIMATE_SIZE_MAX, samples, times};
             if (photons) { /* the noise of the photons is equal in all pixels */
-                const struct effort less = {ESTIMATE_SIZE_MAX, effort.samples / 16, 1};
+                const struct effort less = {ESTIMATE_SIZE_MAX, 128, 1};
                 double mean = estimate_render(&s, &less, 2, 1).mean;
                 CHECK_NEAR(mean, direct + image, 0.01 * (direct + image));
             } else {
                 estimate_check_mean("a mesh light that is not in the scene, and its image in a mirror", direct + image,
                                     &s, &effort, 2);
             }
+            s.settings.caustics.photons /= 100;
             s.camera = (struct camera){{1, 4, 0}, {1, -0.5, 0}, {0, 1, 0}, 0.01};
             CHECK(path_mean(&s, 1, 1) < 0.9); /* the mirror shows the camera a highlight and not the square */
             stage_end(&s);
@@ -491,7 +491,7 @@ TEST(negative_colours_are_kept) {
     material->phong.two_sided = true;
     (void)stage_sphere(&s, s.root, material);
     s.camera.eye = vec3_all(0);
-    CHECK_NEAR(path_mean(&s, 1024, 1000), 1 / 1.5, 0.003);
+    CHECK_NEAR(path_mean(&s, 512, 1000), 1 / 1.5, 0.003);
     stage_end(&s);
 }
 
@@ -505,8 +505,7 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     CHECK_EQ_INT(result.status, 0);
     const char *warning = strstr(result.err, "more light than it receives");
     CHECK(warning && !strstr(warning + 1, "more light than it receives"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     struct stage s;
     stage_begin(&s, 1);
     struct material *material = stage_phong(&s, vec3_all(2), vec3_all(0), 1);
@@ -535,8 +534,7 @@ TEST(the_warning_of_materials_that_make_light_knows_the_texels_of_pictures) {
         struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
         CHECK_EQ_INT(result.status, 0);
         CHECK((strstr(result.err, "more light than it receives") != NULL) == bright);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -556,8 +554,7 @@ TEST(an_emitter_without_bounds_has_one_notice) {
         const char *notice = strstr(result.err, "has no bounds");
         CHECK(strstr(result.err, "'floor' emits light") != NULL);
         CHECK(notice && !strstr(notice + 1, "has no bounds"));
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

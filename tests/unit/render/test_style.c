@@ -32,8 +32,7 @@ static void render(const char *scene, const char *options, struct light *out) {
     struct test_result result = test_gray_scene(scene, line, NULL);
     if (result.status != 0 || !read_light("out.pfm", out))
         test_fail(__FILE__, __LINE__, "%s: status %d: %s", options, result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* A unit ball seen along -z without perspective: pixel (x, y) is its point (px, py, sqrt(1 - px^2 - py^2)). */

@@ -18,8 +18,7 @@ static void gives(const char *arguments, int status, const char *text) {
     if (result.status != status || !strstr(result.err, text))
         test_fail(__FILE__, __LINE__, "%s: status %d, not %d; printed: %s; expected: %s", arguments, result.status,
                   status, result.err, text);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void check_pixel(const struct test_picture *picture, uint32_t x, uint32_t y, int r, int g, int b) {
@@ -138,15 +137,13 @@ TEST(a_dialect_reads_its_own_folder_inside_the_sandbox) {
     struct test_result result = test_gray(folder, "-q --dialect ../far/d.lua s/a.lua");
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     /* A link leads to the file, not to its folder. */
     CHECK(symlink("../far/d.lua", test_path("w/link.lua")) == 0);
     result = test_gray(folder, "-q --dialect link.lua s/a.lua");
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "link.lua:1: require: cannot find module 'part'"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_dialect_belongs_to_the_scene_in_parts_and_checkpoints) {

@@ -14,8 +14,7 @@ static void says(const char *scene, const char *text) {
         test_fail(__FILE__, __LINE__, "%s says %s, not %s", scene, result.err, text);
     if (!text && result.err[0] != '\0')
         test_fail(__FILE__, __LINE__, "%s says %s", scene, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 #define RENDER(rest)                                                                                                   \
@@ -53,8 +52,7 @@ TEST(a_colour_in_bytes_is_a_warning) {
     struct test_result result = test_gray_scene("gr.material({200, 50, 0}) gr.material({2, 2, 2})", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.err, "warning: gr.material: kd {200, 50, 0} looks like bytes"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void notes(const char *scene, const char *text) {
@@ -62,8 +60,7 @@ static void notes(const char *scene, const char *text) {
     CHECK_EQ_INT(result.status, 0);
     if (!strstr(result.err, text))
         test_fail(__FILE__, __LINE__, "%s prints %s, not %s", scene, result.err, text);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void notes_not(const char *scene, const char *text) {
@@ -71,8 +68,7 @@ static void notes_not(const char *scene, const char *text) {
     CHECK_EQ_INT(result.status, 0);
     if (strstr(result.err, text))
         test_fail(__FILE__, __LINE__, "%s prints %s", scene, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(colours_in_bytes_of_lights_and_pictures_are_warnings_too) {
@@ -142,14 +138,12 @@ TEST(a_script_without_a_picture_says_so) {
     struct test_result result = test_gray_scene("gr.sphere('ball')", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     says("gr.sphere('ball')", NULL); /* not with -q */
     result = test_gray_scene(RENDER(""), "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(!strstr(result.err, "no picture"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void check_corner(const char *scene, int r, int g, int b) {
@@ -218,6 +212,5 @@ TEST(errors_of_lua_suggest_names_and_name_the_sandbox) {
     says("local t = {} t.x()", "attempt to call a nil value (field 'x')\n");
     struct test_result result = test_gray_scene("os.execute('ls', 1, x.y)", "--no-sandbox -q scene.lua", NULL);
     CHECK(!strstr(result.err, "the sandbox has no"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

@@ -120,26 +120,22 @@ TEST(errors_before_and_after_the_frames_of_an_animation_name_no_frame) {
         struct test_result result = test_gray_scene(texts[i], "-q --frames 2-3 scene.lua", NULL);
         CHECK_EQ_INT(result.status, 1);
         CHECK(strstr(result.err, ": no\n") != NULL);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
     struct test_result result =
         test_gray_scene("if gr.frame == 3 then error('no') end\n", "--frames 2-3 scene.lua", NULL);
     CHECK(strstr(result.err, "scene.lua:1: no (frame 3)\n") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_script_that_renders_some_frames_is_not_reported_to_render_nothing) {
     struct test_result result = test_gray_scene(PLAIN "gr.render(show)\n", "--frames 2-3 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK(!strstr(result.err, "no picture was rendered"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene("local x\n", "--frames 2-3 scene.lua", NULL);
     CHECK_TEXT(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_command_line) {
@@ -153,18 +149,15 @@ TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_
             strstr(result.err,
                    "gray: -o x.##.png: x.01.png, the only name for frame 1, is already another picture of this run") ==
             result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
     /* Scripts choose names of their own, and frames of a turntable are counted. */
     struct test_result result = test_gray_scene(texts[0], "-q --frames 2 scene.lua", NULL);
     CHECK_TEXT(result.err, "");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(texts[0], "-q --turntable 2 -o x.##.png scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(traces_and_dumps_of_frames_have_the_names_of_their_files) {
@@ -174,12 +167,10 @@ TEST(traces_and_dumps_of_frames_have_the_names_of_their_files) {
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.out, "scene.0009.png, pixel 1,1 of 4 x 3") == result.out);
     CHECK(strstr(result.out, "\nscene.0012.png, pixel 1,1 of 4 x 3") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(PLAIN "gr.render(show)\n", "--turntable 2 --dump-scene --json scene.lua", NULL);
     CHECK(strstr(result.out, "\"picture\":\"x.0002.png\"") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(wrong_animations_are_errors_that_name_the_frame) {
@@ -217,8 +208,7 @@ TEST(wrong_animations_are_errors_that_name_the_frame) {
     struct test_result result = test_gray_scene(four, "-q --frames 500 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "gr.frames: --frames selects frame 500, but the last frame is 4\n") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* The eye goes around the middle of the ball at (2, 0, 0), in a circle of radius 9, and always looks at it. */
@@ -246,8 +236,7 @@ TEST(a_script_without_gr_frames_runs_once_for_each_frame) {
                                                 "-q --frames 2-6/2 --fps 4 -o x.##.png scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.out, "1\t0\t0\n2\t0.25\t0.2\n4\t0.75\t0.6\n6\t1.25\t1\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     for (int k = 1; k <= 6; k++) {
         char name[32];
         (void)snprintf(name, sizeof name, "x.%02d.png", k);
@@ -263,13 +252,11 @@ TEST(the_limit_of_time_is_that_of_one_frame) {
                                     "while k == LAST or os.clock() - from < 0.15 do end return show end}\n";
     struct test_result result = test_gray_scene(text, "-q --script-time 0.4 -D LAST=0 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(text, "-q --script-time 0.4 -D LAST=3 -o n##.png scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "used up its 0.4 s of processor time (--script-time allows more) (frame 3)") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(the_command_line_limits_and_raises_the_number_of_frames) {
@@ -277,12 +264,10 @@ TEST(the_command_line_limits_and_raises_the_number_of_frames) {
     struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "200000 frames are more than 100000 (--picture-count allows more)") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(text, "-q --picture-count 200000 --frames 2-3 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     free(test_read_file(test_path("x.0003.png"), NULL));
 }
 
@@ -319,8 +304,7 @@ static char *stream_of(const char *use, const char *options) {
     struct test_result result = run_crowd(use, options);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", use, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     return test_read_file(test_path("out.y4m"), NULL);
 }
 
@@ -345,8 +329,7 @@ TEST(memory_of_frames_is_freed_and_what_older_objects_use_stays) {
         test_gray_scene("gr.render{node = gr.node('n'), file = 't.png', width = 4, height = 4, eye = {0, 0, 1}, "
                         "view = {0, 0, -1}, lights = {}}",
                         "-q -o t.png scene.lua", NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
         char *freed = stream_of(uses[i], "-D KEEP=false"), *kept = stream_of(uses[i], "-D KEEP=true");
         if (!freed || !kept || memcmp(freed, kept, SIZE) != 0)
@@ -357,6 +340,5 @@ TEST(memory_of_frames_is_freed_and_what_older_objects_use_stays) {
     free(stream_of("", "-D KEEP=false --script-memory 16M"));
     result = run_crowd("", "-D KEEP=true --script-memory 16M");
     CHECK(result.status != 0 && strstr(result.err, "--script-memory") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

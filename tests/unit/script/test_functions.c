@@ -130,8 +130,7 @@ TEST(a_nan_at_a_hit_is_reported_once_with_the_point) {
             CHECK_TEXT(line, first);
         free(first);
         first = strdup(line);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
     free(first);
 }
@@ -279,8 +278,8 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     fails("fn(function(p) while true do pcall(function() local x = p.x while x > 0 do x = x - 1 end end)"
           " if p.x > 0 then return 1 end end end)",
           "more than 4096 times");
-    const struct script_options hasty = {.library_folder = "lua", .time_limit = 0.5};
-    check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
+    const struct script_options hasty = {.library_folder = "lua", .time_limit = 0.2};
+    check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.2 s"}, &hasty);
 }
 
 TEST(a_recorded_function_prints_in_its_first_call) {
@@ -293,8 +292,7 @@ TEST(a_recorded_function_prints_in_its_first_call) {
         "-q scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.out, "called\ta number of a recorded function\na b\nmore\ntone\nafter\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Depth first, 4,096 paths of 1,980 decisions would come before the error. */
@@ -308,9 +306,9 @@ TEST(a_function_of_too_many_long_paths_is_refused_after_few_calls) {
 }
 
 TEST(a_function_of_many_long_paths_is_recorded) {
-    runs("fn(function(p) local x = p.x for i = 1, 40 do x = sin(x) * p.y + p.z end"
+    runs("fn(function(p) local x = p.x for i = 1, 10 do x = sin(x) * p.y + p.z end"
          " for i = 1, 12 do if gr.noise(p * i) > 0.3 then x = x + 2 ^ i end end return x end)");
-    runs("fn(function(p) for i = 1, 700 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
+    runs("fn(function(p) for i = 1, 400 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
 }
 
 TEST(an_entry_of_a_table_is_a_float_where_one_of_them_is) {
@@ -492,7 +490,7 @@ static void check_generated(int count, int seed) {
 }
 
 TEST(generated_functions_are_recorded_as_lua_computes_them) {
-    check_generated(150, 1);
+    check_generated(50, 1);
 }
 
 /* Ten tests of 10,000 functions: a run that was stopped goes on with the next one. */
@@ -523,8 +521,7 @@ static void picture_of(const char *fields, const char *name, const char *options
     struct test_result result = test_gray_scene(text, line, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", fields, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     *bytes = test_read_file(test_path(name), size);
 }
 
@@ -569,8 +566,7 @@ TEST(an_implicit_solid_of_a_loop_is_that_of_its_formula) {
     CHECK(a && b && size_a == size_b && memcmp(a, b, size_a) == 0);
     free(a);
     free(b);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(every_input_of_a_material_takes_a_function) {
@@ -669,8 +665,7 @@ static void solid_picture(const char *node, char **bytes, size_t *size) {
     struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: %s", node, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     *bytes = test_read_file(test_path("a.png"), size);
 }
 
@@ -715,8 +710,7 @@ TEST(the_operations_of_loops_are_listed_below_them) {
                            "        r0 ... = r4\n"
                            "    r2 = loop 0: r0\n"
                            "    result r2\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Each prints a line that begins with its source. */
@@ -746,8 +740,7 @@ TEST(functions_of_textures_solids_lights_skies_and_fogs_are_listed_once) {
         at += strlen(words);
     }
     CHECK(!strstr(at, "scene.lua:"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(the_operations_of_functions_are_listed) {
@@ -761,12 +754,10 @@ TEST(the_operations_of_functions_are_listed) {
                            "    r1 = multiply r0 2\n"
                            "    r1 = add r1 1\n"
                            "    result r1\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     result = test_gray_scene(text, "--dump-expr --json scene.lua", NULL);
     CHECK_TEXT(result.out, "{\"picture\":\"a.png\",\"functions\":[{\"source\":\"scene.lua:1\",\"operations\":2,"
                            "\"constants\":2,\"registers\":2,\"code\":[\"r0 = p.x\",\"r1 = multiply r0 2\","
                            "\"r1 = add r1 1\",\"result r1\"]}]}\n");
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

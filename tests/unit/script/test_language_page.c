@@ -124,8 +124,7 @@ TEST(language_page_has_examples_that_render_without_a_warning) {
         bool is_without_library = strstr(result.err, "it was made without ") != NULL;
         if (!is_without_library && (result.status != 0 || strstr(result.err, "warning")))
             test_fail(__FILE__, __LINE__, "%s\n%s", begin, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         free(scene);
         block = end + 3;
     }

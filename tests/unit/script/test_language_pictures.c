@@ -10,12 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct test_picture picture(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_picture(path);
-}
-
 /* The claims are of colours at the centres of pixels, in pictures so small that all of a scene is small. */
 static void renders(const char *scene, const char *options) {
     char arguments[400];
@@ -23,8 +17,7 @@ static void renders(const char *scene, const char *options) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static const uint8_t *pixel(const struct test_picture *p, uint32_t x, uint32_t y) {
@@ -208,7 +201,7 @@ static const char *spheres_scene(char text[TEXT]) {
 
 static void compare(const char *name, struct v eye, double fov, const struct stack *stack,
                     const struct limits *limits) {
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     struct v view = unit((struct v){-.05, -.03, -2}), right = unit(cross(view, (struct v){.1, 1, .2}));
     struct v up = cross(right, view);
     double half = tan(fov * 3.14159265358979323846 / 360);
@@ -257,7 +250,7 @@ TEST(light_mirrors_glass_and_nested_media_are_the_formulas_at_every_pixel) {
     "local function hole(m) return gr.nh_sphere(m, {.5,.5,1}, .2) end\n"
 
 static void expect_colours(const char *name, uint32_t inner, uint32_t outer) {
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     const uint8_t *in = pixel(&p, 16, 16), *out = pixel(&p, 12, 12);
     uint32_t found_in = (uint32_t)in[0] << 16 | (uint32_t)in[1] << 8 | in[2];
     uint32_t found_out = (uint32_t)out[0] << 16 | (uint32_t)out[1] << 8 | out[2];
@@ -306,24 +299,21 @@ TEST(an_operand_that_is_shown_elsewhere_keeps_its_own_material_there) {
     CHECK_EQ_INT(result.status, 0);
     CHECK(strstr(result.err, "node 'shared' has no material and is shown in plain gray"));
     expect_colours("a.png", 0x808080, 0x808080);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- images and patterns --- */
 
 /* An image of w x h texels with distinct colours: red counts columns, green rows. */
 static void write_texels(const char *name, uint32_t w, uint32_t h) {
-    char path[600];
     uint8_t *rgb = malloc(3 * (size_t)w * h);
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
     for (uint32_t k = 0; rgb && k < w * h; k++) {
         rgb[3 * k] = (uint8_t)(k % w * (255 / w));
         rgb[3 * k + 1] = (uint8_t)(k / w * (255 / h));
         rgb[3 * k + 2] = 77;
     }
     png_image image = {.version = PNG_IMAGE_VERSION, .width = w, .height = h, .format = PNG_FORMAT_RGB};
-    CHECK(rgb && png_image_write_to_file(&image, path, 0, rgb, 0, NULL));
+    CHECK(rgb && png_image_write_to_file(&image, test_path(name), 0, rgb, 0, NULL));
     free(rgb);
 }
 
@@ -344,7 +334,7 @@ static void check_cube_face(const char *name, double low, double high, int face)
         {{-9, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 9, 0}, {0, -1, 0}, {0, 0, -1}}, {{0, -9, 0}, {0, 1, 0}, {0, 0, 1}},
     };
     struct v view = cameras[face].view, right = cross(view, cameras[face].up), up = cameras[face].up;
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     double distance = 9 - (face % 2 ? -low : high), half = tan(20 * 3.14159265358979323846 / 360);
     int wrong = 0, seen = 0;
     for (uint32_t y = 0; y < 40 && p.rgb; y++) {
@@ -392,7 +382,7 @@ enum sphere_mapping { PROJECT, FLIPPED, CLASSIC };
 
 static void check_sphere(const char *name, double angle, enum sphere_mapping mapping) {
     const double pi = 3.14159265358979323846;
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     struct v view = {-sin(angle), 0, -cos(angle)}, right = cross(view, (struct v){0, 1, 0}), up = {0, 1, 0};
     struct v eye = {8 * sin(angle), 0, 8 * cos(angle)};
     double half = tan(15 * pi / 360);
@@ -443,7 +433,7 @@ TEST(images_on_spheres_follow_both_formulas_from_every_side) {
 
 /* The picture shows x and y from -2 to 2 of the plane z = 0. */
 static void check_pattern(const char *name, bool wood, int interpolation, bool turned) {
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     int wrong = 0, seen = 0;
     for (uint32_t y = 0; y < 40 && p.rgb; y++) {
         for (uint32_t x = 0; x < 40; x++) {
@@ -498,7 +488,7 @@ TEST(patterns_stick_to_the_object_before_any_transform_in_combined_solids_too) {
 /* --- nodes, switches, backgrounds --- */
 
 static void expect_rgb(const char *name, uint32_t x, uint32_t y, double r, double g, double b) {
-    struct test_picture p = picture(name);
+    struct test_picture p = test_read_picture(test_path(name));
     const double want[3] = {r, g, b};
     const uint8_t *found = pixel(&p, x, y);
     for (int k = 0; k < 3; k++)
@@ -589,16 +579,15 @@ TEST(a_joint_is_drawn_at_its_initial_angles) {
 }
 
 TEST(meshes_take_images_by_their_vt_with_v_counted_from_below) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/q.obj", test_folder());
-    test_write_text(path, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    test_write_text(test_path("q.obj"),
+                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
     write_texels("t.png", 5, 3);
     renders("local q = gr.mesh('q', 'q.obj') q:set_material(gr.material({1,1,1},{0,0,0},1))\n"
             "q:set_texture(gr.texture{file='t.png', filter='nearest'})\n"
             "gr.render{node=q, file='p.png', width=40, height=40, eye={.5,.5,1}, fov=90, ambient={1,1,1}, "
             "background={0,0,0}, side_tolerance=9, corner_tolerance=9}\n",
             "");
-    struct test_picture p = picture("p.png");
+    struct test_picture p = test_read_picture(test_path("p.png"));
     int wrong = 0;
     for (uint32_t y = 10; y < 30; y++)
         for (uint32_t x = 10; x < 30; x++)
@@ -609,10 +598,8 @@ TEST(meshes_take_images_by_their_vt_with_v_counted_from_below) {
 
 TEST(the_alpha_of_an_image_mixes_with_the_base_and_gamma_chunks_are_ignored) {
     static const uint8_t rgba[4] = {200, 100, 0, 102};
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
     png_image image = {.version = PNG_IMAGE_VERSION, .width = 1, .height = 1, .format = PNG_FORMAT_RGBA};
-    CHECK(png_image_write_to_file(&image, path, 0, rgba, 0, NULL)); /* writes an sRGB chunk, too */
+    CHECK(png_image_write_to_file(&image, test_path("a.png"), 0, rgba, 0, NULL)); /* writes an sRGB chunk, too */
     renders("local m = gr.td_cube_material(gr.material({0,.5,1},{0,0,0},1), 'a.png')\n"
             "local c = gr.cube(m)\n"
             "gr.render{node=c, file='t.png', width=1, height=1, eye={.5,.5,3}, ambient={1,1,1}}\n",
@@ -661,11 +648,11 @@ TEST(every_spelling_of_a_shape_gives_the_same_picture) {
                              "{-1,-1,-4}, {0,1,0}, 40, {.2,.2,.2}, {gr.light({3,4,5}, {.9,.9,.9}, {1,0,0})}) end\n",
                              same[k][j], j);
         renders(scene, "--transform-order new");
-        struct test_picture first = picture("0.png");
+        struct test_picture first = test_read_picture(test_path("0.png"));
         for (int j = 1; j < 6 && same[k][j]; j++) {
             char name[20];
             (void)snprintf(name, sizeof name, "%d.png", j);
-            struct test_picture p = picture(name);
+            struct test_picture p = test_read_picture(test_path(name));
             if (!p.rgb || !first.rgb || memcmp(p.rgb, first.rgb, 3 * 40 * 30) != 0)
                 test_fail(__FILE__, __LINE__, "%s and %s differ", same[k][0], same[k][j]);
             free(p.rgb);
@@ -687,11 +674,11 @@ TEST(decorators_compose_in_any_order) {
         "gr.render(r, i .. '.png', 30, 30, {0,0,5}, {0,0,-1}, {0,1,0}, 25, {.6,.6,.6}, {gr.light({3,4,5}, {.5,.5,.5}, "
         "{1,0,0})}) end\n",
         "-ss 1");
-    struct test_picture first = picture("1.png");
+    struct test_picture first = test_read_picture(test_path("1.png"));
     for (int i = 2; i <= 6; i++) {
         char name[20];
         (void)snprintf(name, sizeof name, "%d.png", i);
-        struct test_picture p = picture(name);
+        struct test_picture p = test_read_picture(test_path(name));
         bool same = memcmp(p.rgb, first.rgb, 3 * 30 * 30) == 0;
         if (same != (i <= 4))
             test_fail(__FILE__, __LINE__, "picture %d is %s", i, same ? "the same" : "different");

@@ -43,8 +43,7 @@ static void render_some(struct dirent **names, int first, int count) {
         if (strstr(names[k]->d_name, ".lua") && !is_there("%s.png", name) && !is_there("%s-lenient.png", name))
             test_fail(__FILE__, __LINE__, "%s gives no picture", names[k]->d_name);
     }
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(every_scene_of_another_program_gives_a_picture_under_lenient) {
@@ -72,8 +71,7 @@ static void says(const char *scene, const char *options, int status, const char 
     if (result.status != status || !strstr(result.err, text))
         test_fail(__FILE__, __LINE__, "status %d, not %d; printed: %s; expected: %s", result.status, status, result.err,
                   text);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 #define BALL "local r = gr.node('r') r:add_child(gr.sphere('ball'))\n"
@@ -112,8 +110,7 @@ TEST(an_error_says_that_lenient_would_get_over_it_where_it_would) {
         CHECK_EQ_INT(result.status, 1);
         if ((strstr(result.err, hint) != NULL) != rows[i].is_forgivable)
             test_fail(__FILE__, __LINE__, "%s: %s", rows[i].scene, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -128,6 +125,22 @@ TEST(fractional_indices_and_a_view_of_zero_are_survived_with_one_warning_each) {
                *view = strstr(result.err, "view is zero");
     CHECK(index && !strstr(index + 1, "fractions of indices"));
     CHECK(view && !strstr(view + 1, "view is zero"));
+    test_free_result(&result);
+}
+
+/* Also in a function that is recorded. */
+TEST(functions_of_numbers_and_vectors_warn_under_lenient_and_take_0_for_what_they_refuse) {
+    static const char scene[] = "assert(gr.noise(10.5, 10) == gr.noise(10.5, 10, 0))\n"
+                                "assert(gr.turbulence(.1, .2, .3, 99) == 0 and gr.lookup({}, 1) == 0)\n"
+                                "assert(gr.clamp(7, 2, nil) == 0 and select('#', gr.cells(1, 1)) == 3)\n"
+                                "local f = gr.fn(function(p) return gr.noise(p.x, p.y) end)\n"
+                                "assert(not pcall(gr.loop, 2, 1, function() error('mine') end))\n";
+    struct test_result result = test_gray_scene(scene, "--lenient scene.lua", NULL);
+    CHECK(strstr(result.err, "scene.lua:1: warning: gr.noise: argument 3: a number or a vector is needed: it is 0\n"));
+    CHECK(strstr(result.err, "scene.lua:2: warning: gr.turbulence: argument 4: "));
+    CHECK(strstr(result.err, "scene.lua:2: warning: gr.lookup: argument 1: table expected, got number: the result is"));
+    CHECK(strstr(result.err, "scene.lua:4: warning: gr.noise: argument 3: "));
+    CHECK(!strstr(result.err, "assertion failed"));
     free(result.out);
     free(result.err);
 }
@@ -157,8 +170,7 @@ TEST(arguments_in_another_order_mean_the_same_under_lenient) {
                 pairs[i][k]);
             struct test_result result = test_gray_scene(scene, "-q --lenient scene.lua", NULL);
             CHECK_EQ_INT(result.status, 0);
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
             bytes[k] = test_read_file(in("x.png"), &sizes[k]);
         }
         if (!bytes[0] || !bytes[1] || sizes[0] != sizes[1] || memcmp(bytes[0], bytes[1], sizes[0]) != 0)
@@ -182,8 +194,7 @@ TEST(fields_of_other_names_are_taken_by_their_type_under_lenient) {
                        calls[k]);
         struct test_result result = test_gray_scene(scene, "-q --lenient scene.lua", NULL);
         CHECK_EQ_INT(result.status, 0);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         bytes[k] = test_read_file(in("x.png"), &sizes[k]);
         CHECK(bytes[k] && remove(in("x.png")) == 0);
     }
@@ -198,6 +209,5 @@ TEST(lenient_reports_frames_that_an_animation_does_not_have_once) {
     struct test_result result = test_gray_scene(scene, "--lenient --frames 7-9 --size 8x8 scene.lua", NULL);
     const char *warning = strstr(result.err, "--frames selects frame 9, but the last frame is 3");
     CHECK(warning && !strstr(warning + 1, "--frames selects"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

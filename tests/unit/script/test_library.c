@@ -16,8 +16,7 @@ static void claims_hold(const char *name) {
     struct test_result result = test_gray(NULL, arguments);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: status %d: %s", name, result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(library_solids_have_the_numbers_of_the_textbook_and_are_closed) {
@@ -93,8 +92,7 @@ TEST(library_examples_of_the_documentation_run) {
         struct test_result result = test_gray_scene(begin, "-q --check scene.lua", NULL);
         if (result.status != 0)
             test_fail(__FILE__, __LINE__, "%s\n%s", begin, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         block = end + 3;
         count++;
     }

@@ -3,6 +3,7 @@
 #include "tests/harness.h"
 
 #include "base/arena.h"
+#include "base/document.h"
 #include "script/document.h"
 #include "settings/foreign_words.h"
 
@@ -65,8 +66,7 @@ TEST(a_mistake_is_answered_with_what_to_write) {
             said = said && strstr(result.err, mistakes[i].words[k]);
         if (!said)
             test_fail(__FILE__, __LINE__, "%s: status %d: %s", mistakes[i].text, result.status, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 
@@ -77,8 +77,7 @@ static void warns(const char *text, const char *words) {
     struct test_result result = test_gray_scene(text, "scene.lua", NULL);
     if (result.status != 0 || (words ? !strstr(result.err, words) : strstr(result.err, "warning") != NULL))
         test_fail(__FILE__, __LINE__, "%s: status %d: %s", text, result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(names_of_coordinates_and_of_arguments_are_taken) {
@@ -88,8 +87,7 @@ TEST(names_of_coordinates_and_of_arguments_are_taken) {
           NULL);
     struct test_result result = test_gray_scene(BEGIN "scene:translate{x = 1, z = 0}", "scene.lua", NULL);
     CHECK(result.status == 1 && strstr(result.err, "y is missing"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_value_that_is_probably_not_meant_is_a_warning) {
@@ -127,8 +125,7 @@ static void model_says(const char *name, const char *content, const char *words)
     CHECK(result.status == 1);
     if (!strstr(result.err, words))
         test_fail(__FILE__, __LINE__, "%s: %s", name, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_file_that_is_no_model_is_named) {
@@ -161,8 +158,10 @@ static void check_names(const char *use, const char *before, const char *manual)
 
 TEST(what_foreign_words_lead_to_exists) {
     struct arena arena = {0};
-    const char *manual = script_manual(&arena), *use;
-    CHECK(manual != NULL);
+    struct document document = {.arena = &arena};
+    script_describe_function(&document, NULL);
+    const char *manual = document.text, *use;
+    CHECK(!document.failed && manual);
     for (size_t i = 0; manual && (use = foreign_use_at(i)) != NULL; i++) {
         check_names(use, "gr.", manual);
         check_names(use, "node:", manual);

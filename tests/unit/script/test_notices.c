@@ -27,8 +27,7 @@ static void prints(const char *options, const char *scene, const char *texts) {
             test_fail(__FILE__, __LINE__, "%s: %s prints %s, not %s", options, scene, result.err, text);
         at += length + (at[length] == '|');
     }
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(an_option_without_effect_has_one_notice) {
@@ -48,8 +47,7 @@ TEST(an_option_without_effect_has_one_notice) {
     struct test_result result = test_gray_scene(BALL "for i = 1, 2 do\n" PICTURE "} end", "--spp 256 scene.lua", NULL);
     const char *first = strstr(result.err, "--spp");
     CHECK(first && !strstr(first + 1, "--spp"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_field_without_effect_has_one_notice_for_its_line) {
@@ -153,8 +151,7 @@ TEST(syntax_errors_have_the_habit_that_they_come_from) {
         struct test_result result = test_gray_scene(cases[i][0], "scene.lua", NULL);
         CHECK_EQ_INT(result.status, 1);
         CHECK(strchr(result.err, '\n') == strrchr(result.err, '\n')); /* no traceback of C alone */
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

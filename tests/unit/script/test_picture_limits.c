@@ -15,8 +15,7 @@
 #define RENDER(name) "gr.render{node=n, file=" name ", width=8, height=8, eye={0, 0, 9}}"
 
 static void forget(struct test_result result) {
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static bool ends_in(const char *name, const char *ending) {

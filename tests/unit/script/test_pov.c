@@ -169,8 +169,6 @@ TEST_LONG(silhouettes_depths_and_surfaces_of_every_shape_equal_those_of_pov_ray)
     }
     CHECK(scenes >= 25);
     free(script);
-    free(pictures.out);
-    free(pictures.err);
-    free(texts.out);
-    free(texts.err);
+    test_free_result(&pictures);
+    test_free_result(&texts);
 }

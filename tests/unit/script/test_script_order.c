@@ -128,11 +128,9 @@ static void write_in(const char *folder, const char *name, const char *text) {
 }
 
 static void expect_file(const char *name, const char *library, enum transform_order order, const char *reason) {
-    char path[600];
     struct order_finding finding;
     struct error error;
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(order_detect(path, library, NULL, &finding, &error));
+    CHECK(order_detect(test_path(name), library, NULL, &finding, &error));
     CHECK_EQ_INT(finding.order, order);
     CHECK_TEXT(finding.reason, reason);
 }

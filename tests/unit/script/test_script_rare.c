@@ -64,20 +64,15 @@ static const struct corner corners[] = {
 };
 
 static void put(const char *name, const char *text) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_text(path, text);
+    test_write_text(test_path(name), text);
 }
 
 static void make_folder(const char *name) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(mkdir(path, 0777) == 0);
+    CHECK(mkdir(test_path(name), 0777) == 0);
 }
 
 static void make_huge(const char *name, off_t size) {
-    char path[512];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    const char *path = test_path(name);
     test_write_text(path, "");
     CHECK(truncate(path, size) == 0);
 }
@@ -269,9 +264,7 @@ TEST(modules_of_the_library_find_each_other_and_not_those_of_the_scene) {
         {"package.path = nil outer.get('inner')", "package.path must be a string"},
         {"package.path = '' outer.get('inner')", "cannot find module 'inner'"},
     };
-    char folder[512];
-    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
-    const struct script_options options = {.transform_order = SCRIPT_ORDER_AUTO, .library_folder = folder};
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_AUTO, .library_folder = test_path("lib")};
     write_library();
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         check_corner("outer = require('outer') ", &all[i], &options);
@@ -294,10 +287,8 @@ TEST(byte_code_without_globals_is_loaded_where_there_is_no_sandbox) {
          "assert(loadfile('byte.out', 'b', {})() == 7)",
          NULL},
     };
-    char folder[512];
-    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
     const struct script_options options = {
-        .transform_order = SCRIPT_ORDER_NEW, .library_folder = folder, .no_sandbox = true};
+        .transform_order = SCRIPT_ORDER_NEW, .library_folder = test_path("lib"), .no_sandbox = true};
     make_folder("lib");
     check_corner("", &all[0], &options);
 }
@@ -305,7 +296,6 @@ TEST(byte_code_without_globals_is_loaded_where_there_is_no_sandbox) {
 TEST(modules_beside_and_above_are_named_by_relative_paths) {
     static const char beside[] = "package.path = './?.lua' require('module')",
                       above[] = "package.path = '../?.lua' assert(require('above') == 8)";
-    char path[512];
     struct listener listener = {.renders = 0};
     struct error error;
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW};
@@ -320,8 +310,7 @@ TEST(modules_beside_and_above_are_named_by_relative_paths) {
     CHECK(strncmp(error.text, "module.lua:1: ", 14) == 0);
     CHECK(chdir("scenes") == 0);
     CHECK(listen_to_text(&listener, above, &options, &error));
-    (void)snprintf(path, sizeof path, "%s/scenes/scene.lua", test_folder());
-    CHECK(listen_to(&listener, path, &options, &error, NULL));
+    CHECK(listen_to(&listener, test_path("scenes/scene.lua"), &options, &error, NULL));
 }
 
 /* A file without read permission, opened by a user other than root: the message contains the reason of the system. */
@@ -373,10 +362,9 @@ TEST(arguments_of_mesh_calls_decide_the_transform_order) {
 }
 
 static struct order_finding order_of_scene(const char *name, const char *text, const char *library) {
-    char path[512];
     struct order_finding finding;
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    const char *path = test_path(name);
     if (text)
         test_write_text(path, text);
     CHECK(order_detect(path, library, NULL, &finding, &error));
@@ -475,9 +463,7 @@ TEST(memory_may_end_on_the_rarest_paths) {
 }
 
 TEST(calls_to_the_system_may_fail_on_the_rarest_paths) {
-    char folder[512];
-    (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
-    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = folder};
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = test_path("lib")};
     write_files();
     write_library();
     fail_after_picture("gr.mesh{file = 'flag.obj'}", FAULT_OF_CALL, NULL, NULL);

@@ -39,13 +39,31 @@ static void says(const char *scene, const char *options, int status, const char 
     if (result.status != status || !strstr(result.err, line))
         test_fail(__FILE__, __LINE__, "status %d, not %d; printed: %s; expected: %s", result.status, status, result.err,
                   line);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void begin(void) {
     folder("w");
     folder("w/s");
+}
+
+#define WITH_PICTURE(name)                                                                                             \
+    "local m = gr.material{kd = gr.texture{file = '" name "'}}\n"                                                      \
+    "gr.render{node = gr.sphere('s'):set_material(m), file = 't.png', width = 2, height = 2, eye = {0, 0, 5}, "        \
+    "ambient = {1, 1, 1}}\n"
+
+/* Their folder stands beside lua/, or below share/gray where gray is installed. */
+TEST(pictures_that_come_with_gray_are_found_last_and_from_any_folder) {
+    begin();
+    struct test_result result = run(WITH_PICTURE("painting.png"), "");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    test_free_result(&result);
+    says(WITH_PICTURE("no.png"), "", 1, "cannot find 'no.png'");
+    says(WITH_PICTURE("../../lua/painting.png"), "", 1, "lies outside the folders that scenes may read");
+    folder("w/s/more");
+    file("w/s/more/painting.png", "of the scene");
+    says(WITH_PICTURE("painting.png"), "", 1, "'painting.png' was found as 's/more/painting.png'");
 }
 
 TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
@@ -58,8 +76,7 @@ TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
     CHECK_EQ_INT(result.status, 0);
     const char *notice = strstr(result.err, "s/scene.lua:1: 'plane.obj' was found as 's/Assets/Obj/plane.obj'");
     CHECK(notice && !strstr(notice + 40, "was found as"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     folder("w/meshes");
     file("w/meshes/cow.obj", triangle);
     says("local n = gr.mesh('a', '/u/cs488/data/cow.obj')\n" PICTURE("n"), "", 0, "was found as 's/../meshes/cow.obj'");
@@ -91,8 +108,7 @@ TEST(materials_and_pictures_that_mesh_files_name_are_found_too) {
     for (int i = 0; i < 4; i++)
         if (!strstr(result.err, lines[i]))
             test_fail(__FILE__, __LINE__, "%s is not in %s", lines[i], result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 #ifdef HAVE_JANSSON
     file("w/s/m.gltf",
          "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
@@ -203,8 +219,7 @@ TEST(names_that_lead_out_are_refused_alike_with_and_without_a_file_there) {
             char *at = strstr(result.err, name);
             CHECK(at && strstr(at, "lies outside the folders that scenes may read"));
             (void)snprintf(there[k], sizeof there[k], "%.300s", at ? at + strlen(name) : "");
-            free(result.out);
-            free(result.err);
+            test_free_result(&result);
             CHECK(unlink(in(here)) == 0);
         }
         CHECK_TEXT(there[0], there[1]);

@@ -9,12 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct test_picture picture(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_picture(path);
-}
-
 static const uint8_t *pixel(const struct test_picture *p, uint32_t x, uint32_t y) {
     return p->rgb + 3 * ((size_t)y * p->width + x);
 }
@@ -23,8 +17,7 @@ static void renders(const char *scene, const char *arguments) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- anti-aliasing --- */
@@ -52,7 +45,8 @@ static void check_marks(const char *options, double side, double corner) {
     (void)snprintf(arguments, sizeof arguments,
                    "--aa-pattern grid -write-pre-aa pre- -write-aa-targets aim- %s scene.lua", options);
     renders(MANY_BALLS, arguments);
-    struct test_picture pre = picture("pre-t.png"), aim = picture("aim-t.png"), done = picture("t.png");
+    struct test_picture pre = test_read_picture(test_path("pre-t.png")),
+                        aim = test_read_picture(test_path("aim-t.png")), done = test_read_picture(test_path("t.png"));
     int wrong = 0, sure = 0, touched = 0;
     for (int y = 0; y < 83; y++) {
         for (int x = 0; x < 117; x++) {
@@ -99,7 +93,7 @@ TEST(samples_of_a_pixel_are_the_centres_of_n_by_n_cells) {
                     "gr.render{node=r, file='t.png', width=20, height=20, eye={0,0,10}, fov=90, ambient={1,1,1}, "
                     "background={0,0,0}}\n",
                     arguments);
-            struct test_picture p = picture("t.png");
+            struct test_picture p = test_read_picture(test_path("t.png"));
             double share = (double)cases[k].covered / cases[k].n;
             CHECK_EQ_INT(pixel(&p, 10, 5)[1], (int)floor(255 * share + 0.5));
             CHECK_EQ_INT(pixel(&p, 9, 5)[1], 255);
@@ -114,7 +108,7 @@ TEST(the_corner_of_a_pixel_is_where_old_programs_took_their_sample) {
             "gr.render{node=r, file='t.png', width=20, height=20, eye={0,0,10}, fov=90, ambient={1,1,1}, "
             "background={0,0,0}, side_tolerance=9, corner_tolerance=9}\n",
             "--pixel-sample corner scene.lua");
-    struct test_picture p = picture("t.png");
+    struct test_picture p = test_read_picture(test_path("t.png"));
     CHECK_EQ_INT(pixel(&p, 10, 5)[0], 255);
     CHECK_EQ_INT(pixel(&p, 11, 5)[0], 0);
     free(p.rgb);
@@ -127,7 +121,7 @@ TEST(bytes_are_255_c_rounded_at_the_half_after_clamping) {
     for (int i = 0; i < 10; i++) {
         char name[20];
         (void)snprintf(name, sizeof name, "%d.png", i);
-        struct test_picture p = picture(name);
+        struct test_picture p = test_read_picture(test_path(name));
         CHECK_EQ_INT(pixel(&p, 0, 0)[0], i * 28);
         CHECK_EQ_INT(pixel(&p, 0, 0)[1], i * 28 + 1);
         CHECK_EQ_INT(pixel(&p, 0, 0)[2], i == 0 ? 0 : 255);
@@ -155,7 +149,7 @@ TEST(the_share_of_an_area_light_is_counted_in_cells_and_true_to_one_column) {
                 "gr.render{node=r, file='t.png', width=101, height=3, eye={0,3,0}, view={0,-1,0}, up={0,0,-1}, "
                 "fov=2, background={0,0,0}, lights={gr.area_light({-1,10,-1}, {2,0,0}, {0,0,2}, {1,1,1}, {0,0,0})}}\n",
                 arguments);
-        struct test_picture p = picture("t.png");
+        struct test_picture p = test_read_picture(test_path("t.png"));
         for (uint32_t x = 0; x < 101 && p.rgb; x++) {
             /* the pixel's place on the ground and the light's visible part: rays pass right of (0, 4) and of (0, 5) */
             double half = tan(3.14159265358979323846 / 180), at = (x + .5 - 50.5) * 2 * half / 3 * 3;
@@ -242,8 +236,7 @@ TEST(three_hundred_pictures_with_one_moving_node_build_the_mesh_once) {
     CHECK_EQ_INT(pictures, 300);
     CHECK(rest < 299 * first / 20); /* each of the other renders takes less than a twentieth */
     CHECK(number_after(result.out, "\"triangles\":") == 2 * 199 * 199);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_hundred_thousand_nodes_are_scripted_and_drawn) {
@@ -254,16 +247,13 @@ TEST(a_hundred_thousand_nodes_are_scripted_and_drawn) {
                         "gr.render(r, 'p.png', 64, 64, {0,0,0}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n",
                         "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* --- names and files --- */
 
 TEST(the_library_works_in_scripts_that_use_the_names_of_luas_own_libraries) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/tetra.obj", test_folder());
-    test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    test_write_text(test_path("tetra.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     renders(
         "table = gr.node('table')\n"
         "local load, say = require, print\n"
@@ -305,11 +295,10 @@ TEST(missing_folders_are_made_and_whole_numbers_in_names_lose_their_fraction) {
     CHECK_EQ_INT(result.status, 0);
     const char *notice = strstr(result.err, "lose their .0");
     CHECK(notice && !strstr(notice + 1, "lose their .0"));
-    struct test_picture p = picture("a/b3/x3.png");
+    struct test_picture p = test_read_picture(test_path("a/b3/x3.png"));
     CHECK(p.width == 2);
     free(p.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(check_reports_every_picture_that_cannot_be_made_with_the_line_of_its_call) {
@@ -325,19 +314,14 @@ TEST(check_reports_every_picture_that_cannot_be_made_with_the_line_of_its_call) 
     CHECK(strstr(result.err, "scene.lua:3: gr.render: node 'open' is an operand of CSG but its mesh is open"));
     CHECK(strstr(result.err, "scene.lua:4: gr.render: view: the point to look at must differ from the eye\n"));
     CHECK(strstr(result.err, "scene.lua:6: gr.sphere: "));
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/3.png", test_folder());
-    CHECK(access(path, F_OK) != 0);
-    free(result.out);
-    free(result.err);
+    CHECK(access(test_path("3.png"), F_OK) != 0);
+    test_free_result(&result);
 }
 
 /* --- large meshes --- */
 
 TEST_LONG(an_obj_of_a_million_triangles_is_a_picture_in_seconds_and_200_bytes_a_triangle) {
     enum { SIDE = 709 };
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/big.obj", test_folder());
     size_t room = (size_t)80 << 20, used = 0;
     char *text = malloc(room);
     if (!text)
@@ -352,7 +336,7 @@ TEST_LONG(an_obj_of_a_million_triangles_is_a_picture_in_seconds_and_200_bytes_a_
             used += (size_t)snprintf(text + used, room - used, "f %d %d %d\nf %d %d %d\n", a, a + 1, a + SIDE + 1, a,
                                      a + SIDE + 1, a + SIDE);
         }
-    test_write_file(path, text, used);
+    test_write_file(test_path("big.obj"), text, used);
     free(text);
     struct test_result result = test_gray_scene(
         "local r, s = gr.node('r'), gr.mesh('h', 'big.obj') s:set_material(gr.material({1,0,0},{.5,.5,.5},20)) "
@@ -365,20 +349,15 @@ TEST_LONG(an_obj_of_a_million_triangles_is_a_picture_in_seconds_and_200_bytes_a_
     CHECK(triangles > 1e6);
     if (!strstr(GRAY_CONFIG, "san"))
         CHECK(peak < 200 * triangles); /* the complete process, including reading the text */
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static void write_in(const char *name, const char *text) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_text(path, text);
+    test_write_text(test_path(name), text);
 }
 
 static void make_folder(const char *name) {
-    char path[600];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(mkdir(path, 0777) == 0);
+    CHECK(mkdir(test_path(name), 0777) == 0);
 }
 
 /* Each folder gets a mesh file with as many triangles as its rank: the count shows which file was read. */
@@ -401,8 +380,7 @@ TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_thei
         struct test_result result = test_gray(NULL, "--stats=json a/s/scene.lua");
         CHECK_EQ_INT(result.status, 0);
         CHECK_EQ_INT((int)number_after(result.out, "\"triangles\":"), (int)k + 1);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
         char path[600];
         (void)snprintf(path, sizeof path, "%s/%s", test_folder(), files[k]);
         CHECK(unlink(path) == 0);
@@ -417,11 +395,10 @@ TEST(pictures_can_be_named_after_their_script) {
              "gr.render(gr.node('n'), name .. '.png', 3, 2, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {0,0,0}, {})\n");
     struct test_result result = test_gray(NULL, "ball.lua");
     CHECK_EQ_INT(result.status, 0);
-    struct test_picture p = picture("ball.png");
+    struct test_picture p = test_read_picture(test_path("ball.png"));
     CHECK(p.width == 3 && p.height == 2);
     free(p.rgb);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_name_that_no_picture_can_have_is_an_error_of_the_scene_at_its_line) {
@@ -435,6 +412,5 @@ TEST(a_name_that_no_picture_can_have_is_an_error_of_the_scene_at_its_line) {
     CHECK(strstr(result.out, "false\tscene.lua:2: gr.render: scene.lua/x.png: "));
     CHECK(strstr(result.out, "false\tscene.lua:3: gr.render: scene.lua/y/x.png: "));
     CHECK(strncmp(result.err, "scene.lua:4: gr.render: scene.lua/x.png: ", 41) == 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }

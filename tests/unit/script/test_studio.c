@@ -9,8 +9,7 @@ static void renders(const char *scene, const char *arguments) {
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "%s: status %d, %s", scene, result.status, result.err);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 static bool says_studio(const char *scene) {
@@ -20,8 +19,7 @@ static bool says_studio(const char *scene) {
     const char *first = strstr(result.err, notice);
     bool says = first != NULL;
     CHECK(!says || !strstr(first + 1, notice)); /* once */
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     return says;
 }
 
@@ -81,10 +79,11 @@ static struct appearance appearance_of(const struct test_picture *picture) {
 static void check_appearance(const char *scene, const char *arguments, int brightest) {
     renders(scene, arguments);
     struct test_picture picture = test_read_picture(test_path("scene.png"));
-    CHECK_EQ_INT(picture.width, 960);
-    CHECK_EQ_INT(picture.height, 540);
+    uint32_t rows = strstr(arguments, "--size") ? 135 : 540;
+    CHECK_EQ_INT(picture.height, rows);
+    CHECK_EQ_INT(picture.width, rows * 16 / 9);
     struct appearance shown = appearance_of(&picture);
-    double height = (shown.bottom - shown.top + 1) / 540.0, above = shown.top / 540.0;
+    double height = (double)(shown.bottom - shown.top + 1) / rows, above = (double)shown.top / rows;
     if (height < 0.66 || height > 0.76 || above < 0.1 || above > 0.2)
         test_fail(__FILE__, __LINE__, "%s: the subject is from row %u to %u", scene, shown.top, shown.bottom);
     if (shown.brightest < brightest || shown.clipped > 0.002 || shown.darkest < 60 || shown.mean < 120)
@@ -98,13 +97,14 @@ static void check_appearance(const char *scene, const char *arguments, int brigh
 
 TEST(three_lines_give_a_lit_and_framed_picture) {
     check_appearance("gr.render{node = gr.sphere{}}", "-q scene.lua", 180);
-    check_appearance("gr.render{node = gr.sphere{}}", "-q --integrator path --spp 9 scene.lua", 200);
+    check_appearance("gr.render{node = gr.sphere{}}", "-q --size 240x135 --integrator path --spp 9 scene.lua", 200);
     check_appearance("local white = gr.material{kd = {1, 1, 1}}\nlocal ball = gr.sphere{material = white}\n"
                      "gr.render{node = ball}",
-                     "-q scene.lua", 220);
+                     "-q --size 240x135 scene.lua", 220);
     /* The same at any size. */
-    check_appearance("gr.render{node = gr.sphere{radius = 1e-6, centre = {0, 5e-6, 0}}}", "-q scene.lua", 180);
-    check_appearance("gr.render{node = gr.sphere{radius = 1e6}}", "-q scene.lua", 180);
+    check_appearance("gr.render{node = gr.sphere{radius = 1e-6, centre = {0, 5e-6, 0}}}", "-q --size 240x135 scene.lua",
+                     180);
+    check_appearance("gr.render{node = gr.sphere{radius = 1e6}}", "-q --size 240x135 scene.lua", 180);
 }
 
 TEST(a_camera_is_fitted_to_any_scene_and_any_size) {
@@ -253,8 +253,7 @@ TEST(a_table_after_a_positional_form_has_only_fields_that_are_no_arguments) {
         CHECK_EQ_INT(result.status, cases[i].says ? 1 : 0);
         if (cases[i].says && !strstr(result.err, cases[i].says))
             test_fail(__FILE__, __LINE__, "%s: %s", scene, result.err);
-        free(result.out);
-        free(result.err);
+        test_free_result(&result);
     }
 }
 

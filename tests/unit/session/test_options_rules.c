@@ -54,7 +54,6 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
         pixel[] = "--pixel renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint "
                   "or --resume",
         display[] = "--display cannot be combined with -gui, --check or --shard, and term not with -o -",
-        partial[] = "--partial cannot be combined with -gui, --shard, --mpi, --no-fork or -o -",
         mpi[] = "--mpi cannot be combined with --shard, --shard-pictures, --no-fork or --check",
         window[] = "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
         watch[] = "--watch cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
@@ -68,7 +67,6 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
     exclude("--display tev", "-gui|--check|--shard 1/2", display);
     exclude("--display term", "-o -", display);
     expect("--display tev -o - x", NULL);
-    exclude("--partial", "-gui|--shard 1/2|--mpi|--no-fork|-o -", partial);
     exclude("--mpi", "--shard 1/2|--shard-pictures 1/2|--no-fork|--check", mpi);
     exclude("-gui", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|--check|--aov all",
             window);

@@ -241,7 +241,7 @@ TEST(marks_of_direction_are_shown_as_control_characters_are) {
         (void)snprintf(text, sizeof text, "a%sb", marks[i]);
         FILE *stream = open_memstream(&out, &size);
         text_print_line(stream, text);
-        text_print_lines(stream, text);
+        text_print_message(stream, TEXT_ERROR, text);
         text_print(stream, text);
         CHECK(fclose(stream) == 0);
         CHECK_TEXT(out, "a?b\na?b\na?b");

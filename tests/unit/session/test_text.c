@@ -15,6 +15,10 @@ static char *printed(void (*print)(FILE *, const char *), const char *text) {
     return out;
 }
 
+static void print_error(FILE *stream, const char *text) {
+    text_print_message(stream, TEXT_ERROR, text);
+}
+
 static void expect(void (*print)(FILE *, const char *), const char *text, const char *wanted) {
     char *out = printed(print, text);
     CHECK_TEXT(out, wanted);
@@ -29,7 +33,7 @@ TEST(well_formed_utf8_of_every_length_stays) {
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         (void)snprintf(line, sizeof line, "%s\n", texts[i]);
         expect(text_print_line, texts[i], line);
-        expect(text_print_lines, texts[i], line);
+        expect(print_error, texts[i], line);
         expect(text_print, texts[i], texts[i]);
     }
     expect(text_print_json, "\xC3\xA4 \xE2\x82\xAC \xF4\x8F\xBF\xBF", "\"\xC3\xA4 \xE2\x82\xAC \xF4\x8F\xBF\xBF\"");
@@ -66,7 +70,7 @@ TEST(nothing_steers_a_terminal) {
         expect(text_print_line, text, "?x\n");
     }
     expect(text_print_line, "a\n  b", "a?  b\n");
-    expect(text_print_lines, "a\n  b\nc\n d\n", "a\n  b?c? d?\n");
+    expect(print_error, "a\n  b\nc\n d\n", "a\n  b?c? d?\n");
     expect(text_print, "a\nb\x1b[1m\r", "a\nb?[1m?");
     expect(text_print_json, "a\"\\\n\x7f\x01", "\"a\\\"\\\\\\u000a\\u007f\\u0001\"");
 }

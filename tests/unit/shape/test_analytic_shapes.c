@@ -513,11 +513,11 @@ static void check_form(enum form form, int shapes, int rays, struct counts *n) {
     arena_destroy(&arena);
 }
 
-TEST(analytic_shapes_are_crossed_on_their_surface_and_no_crossing_is_missed) {
+TEST_TIMES(analytic_shapes_are_crossed_on_their_surface_and_no_crossing_is_missed, 20) {
     for (int form = 0; form < FORMS; form++) {
         struct counts n;
-        check_form((enum form)form, 40, form >= SUPER_ROUND && form <= SUPER_MIXED ? 200 : 500, &n);
-        if (n.off || n.normals || n.order || n.missed || n.error || n.crossings < 1500)
+        check_form((enum form)form, 20 * times, form >= SUPER_ROUND && form <= SUPER_MIXED ? 80 : 200, &n);
+        if (n.off || n.normals || n.order || n.missed || n.error || n.crossings < 300 * times)
             test_fail(
                 __FILE__, __LINE__,
                 "%s: %ld crossings on %ld rays; %ld off the surface (worst %g), %ld normals, %ld out of order, %ld "
@@ -636,7 +636,7 @@ TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
         if (form == HALF_SPACE || form == QUADRIC_ENDLESS)
             continue;
         bool known = form != QUADRIC_SADDLE && form != QUADRIC_OPEN && form != POLYGON;
-        for (int turn = 0; turn < 6; turn++) {
+        for (int turn = 0; turn < 3; turn++) {
             struct shape s = random_shape((enum form)form, &random, &arena);
             struct transform map = turn == 0 ? transform_identity() : random_transform(&random, 3);
             struct box box = shape_bounds_under(&s, &map.forward), own = shape_bounds(&s), padded = box_pad(box);
@@ -647,7 +647,7 @@ TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
             for (int side = 0; side < 6; side++)
                 reached[side] = -INFINITY;
             long outside = 0;
-            int samples = form == SUPER_STAR || form == THIN_TORUS ? 30000 : 6000; /* thin tips are hard to hit */
+            int samples = form == SUPER_STAR || form == THIN_TORUS ? 20000 : 4000; /* thin tips are hard to hit */
             if (form == POLYGON) {
                 struct box corners = box_empty();
                 for (size_t i = 0; i < sizeof outline_points / sizeof outline_points[0]; i++)
@@ -873,13 +873,13 @@ TEST(polygons_that_are_none_are_refused_with_the_reason) {
 
 /* ---- CSG ---- */
 
-TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
+TEST_TIMES(csg_of_all_analytic_solids_equals_point_by_point_evaluation, 30) {
     enum { MAX = 8 };
     struct test_random random = {10};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 1000));
     long segments = 0, insides = 0, wrong = 0, order = 0, inward = 0, unbounded = 0;
-    for (int tree = 0; tree < 400; tree++) {
+    for (int tree = 0; tree < 150 * times; tree++) {
         struct arena arena = {0};
         struct error error = {0};
         struct csg_leaf leaves[MAX];
@@ -943,6 +943,6 @@ TEST(csg_of_all_analytic_solids_equals_point_by_point_evaluation) {
     CHECK_EQ_INT(wrong, 0);
     CHECK_EQ_INT(order, 0);
     CHECK_EQ_INT(inward, 0);
-    CHECK(insides > 30000 && unbounded > 1000);
+    CHECK(insides > 10000 * times && unbounded > 300 * times);
     geom_scratch_destroy(&scratch);
 }

@@ -456,21 +456,21 @@ static void check_line_of(const struct geometry *geometry, struct test_random *r
     }
 }
 
-TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_first_crossing) {
+TEST_TIMES(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_first_crossing, 30) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(1 + kind)};
         struct failures n = {0};
-        for (int i = 0; i < 120; i++) {
+        for (int i = 0; i < 60 * times; i++) {
             struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
             CHECK(geometry.csg ? kind == SHAPE_KIND_COUNT : (int)geometry.shape.kind == kind);
-            for (int ray = 0; ray < 150; ray++)
+            for (int ray = 0; ray < 80; ray++)
                 check_line_of(&geometry, &random, &scratch, &n);
         }
         shape_makers_destroy(&makers);
-        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 1000)
+        if (n.order || n.nearest || n.any || n.box || n.points || n.normals || n.layout || n.crossings < 300 * times)
             test_fail(__FILE__, __LINE__,
                       "%s, %ld crossings: %ld out of order, %ld nearest, %ld any, %ld beyond the box, %ld points, %ld "
                       "normals, %ld layouts",
@@ -479,19 +479,19 @@ TEST(every_shape_is_crossed_where_its_points_and_its_box_say_and_met_at_the_firs
     geom_scratch_destroy(&scratch);
 }
 
-TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
+TEST_TIMES(every_shape_under_a_random_map_lies_in_its_box_there, 30) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 4000));
     for (int kind = 0; kind < GEOMETRY_KIND_COUNT; kind++) {
         struct shape_makers makers = {0};
         struct test_random random = {(uint64_t)(100 + kind)};
         long outside = 0, crossings = 0;
-        for (int i = 0; i < 120; i++) {
+        for (int i = 0; i < 60 * times; i++) {
             struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
             struct transform map = make_transform(&random, 2);
             struct box box = geometry_bounds_under(&geometry, &map.forward);
             box = (struct box){vec3_sub(box.min, vec3_all(1e-8)), vec3_add(box.max, vec3_all(1e-8))};
-            for (int k = 0; k < 80; k++) {
+            for (int k = 0; k < 50; k++) {
                 struct vec3 origin = random_vec3(&random, 4);
                 struct ray ray = ray_from(origin, vec3_sub(random_vec3(&random, 0.8), origin));
                 struct crossing_list list = list_of_geometry(&geometry, &ray, &scratch);
@@ -502,7 +502,7 @@ TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
             }
         }
         shape_makers_destroy(&makers);
-        if (outside || crossings < 500)
+        if (outside || crossings < 150 * times)
             test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", kind_name(kind), outside, crossings);
     }
     geom_scratch_destroy(&scratch);
@@ -579,23 +579,29 @@ static void add_to(struct sums *sums, double x) {
     sums->squares += x * x;
 }
 
-/* Within five standard errors, which are small; true for any mean if the expected value is not known. */
+/* The standard error of the mean is small; true if the expected value is not known. */
+static bool is_precise(const struct sums *sums, double factor, double expected) {
+    double mean = sums->sum / sums->count, variance = sums->squares / sums->count - mean * mean;
+    return isnan(expected) || factor * sqrt(variance / sums->count) < 0.04 * expected;
+}
+
+/* Within five standard errors; true for any mean if the expected value is not known. */
 static bool agrees(const struct sums *sums, double factor, double expected) {
     double mean = sums->sum / sums->count, variance = sums->squares / sums->count - mean * mean;
-    double deviation = factor * sqrt(variance / sums->count);
-    return isnan(expected) || (fabs(factor * mean - expected) < 5 * deviation && deviation < 0.04 * expected);
+    return isnan(expected) || fabs(factor * mean - expected) < 5 * factor * sqrt(variance / sums->count);
 }
 
 /* Integral geometry (Santalo 1976, I.4 and IV.14): of lines that cross a ball of radius R evenly from all sides, the
  * mean length inside a solid times pi R^2 is its volume, the mean number of crossings times 2 pi R^2 the area of its
  * surface. The ball encloses the shape's box. */
 static void measure(const struct made_geometry *made, struct test_random *random, struct geom_scratch *scratch) {
-    enum { LINES = 60000 };
+    enum { LINES = 60000, FEW = 10000 };
     struct box box = geometry_bounds(&made->geometry);
     struct vec3 middle = vec3_scale(vec3_add(box.min, box.max), 0.5);
     double radius = vec3_length(vec3_sub(box.max, box.min)) / 2, across = M_PI * radius * radius;
     struct sums inside = {0}, crossings = {0};
-    for (int i = 0; i < LINES; i++) {
+    bool precise = false;
+    for (int i = 0; i < LINES && !precise; i++) {
         double z = test_uniform(random, -1, 1), turn = test_uniform(random, 0, 2 * M_PI), r = sqrt(1 - z * z);
         struct vec3 direction = {r * cos(turn), r * sin(turn), z}, side, up;
         planar_across(direction, &side, &up);
@@ -608,8 +614,10 @@ static void measure(const struct made_geometry *made, struct test_random *random
             length += scratch->items[k].t - scratch->items[k - 1].t;
         add_to(&inside, length);
         add_to(&crossings, list.count);
+        precise = i % FEW == FEW - 1 && is_precise(&inside, across, made->volume) &&
+                  is_precise(&crossings, 2 * across, made->area);
     }
-    if (!agrees(&inside, across, made->volume) || !agrees(&crossings, 2 * across, made->area))
+    if (!precise || !agrees(&inside, across, made->volume) || !agrees(&crossings, 2 * across, made->area))
         test_fail(__FILE__, __LINE__, "%s: volume %g, %g by lines; area %g, %g by lines",
                   geometry_kind_name(&made->geometry), made->volume, across * inside.sum / inside.count, made->area,
                   2 * across * crossings.sum / crossings.count);

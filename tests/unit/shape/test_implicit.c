@@ -279,7 +279,7 @@ static void find_holes(int first, int functions, long rays, int samples) {
 }
 
 TEST(lines_are_inside_of_implicit_solids_where_their_functions_are_below_zero) {
-    find_holes(0, 50, 40, 100);
+    find_holes(0, FUNCTION_KINDS + 5, 20, 100); /* each kind, and each way to join two of them */
 }
 
 /* One test for each function, so that they share the processors and each can be repeated. */
@@ -342,7 +342,7 @@ static uint32_t half_nan(struct function_maker *m, int kind) {
     }
 }
 
-TEST(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_work) {
+TEST_TIMES(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_work, 10) {
     struct test_random random = {9};
     struct geom_scratch scratch;
     struct error error = {0};
@@ -355,7 +355,7 @@ TEST(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_
         struct implicit_input in = {.program = function_end(&m, half_nan(&m, kind), &arena), .bounds = unit};
         struct shape shape = implicit_shape(&arena, &in);
         struct holes holes = {0};
-        for (int k = 0; k < 100; k++) {
+        for (int k = 0; k < 30 * times; k++) {
             struct ray ray = random_ray(&random);
             check_line(&shape, in.program, &ray, 100, &scratch, &holes);
         }

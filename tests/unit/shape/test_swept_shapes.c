@@ -3,18 +3,18 @@
 #include "csg/csg_build.h"
 #include "tests/unit/swept_makers.h"
 
-TEST(swept_shapes_cross_random_lines_where_points_say_so_under_random_affine_maps) {
+TEST_TIMES(swept_shapes_cross_random_lines_where_points_say_so_under_random_affine_maps, 20) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
     for (int maker = 0; maker < MAKERS; maker++) {
         struct test_random random = {(uint64_t)(100 + maker)};
         struct tally tally = {0};
-        for (int turn = 0; turn < 120; turn++) {
+        for (int turn = 0; turn < 40 * times; turn++) {
             struct arena arena = {0};
             struct shape shape = make((enum maker)maker, &arena, &random);
             double size = size_of(&shape);
             struct box bounds = shape_bounds(&shape);
-            for (int i = 0; i < 150; i++) {
+            for (int i = 0; i < 80; i++) {
                 struct transform map = random_transform(&random);
                 struct vec3 q = {test_uniform(&random, bounds.min.x, bounds.max.x),
                                  test_uniform(&random, bounds.min.y, bounds.max.y),
@@ -28,7 +28,7 @@ TEST(swept_shapes_cross_random_lines_where_points_say_so_under_random_affine_map
             }
             arena_destroy(&arena);
         }
-        CHECK(tally.crossings > 5000 && tally.slopes > 2000);
+        CHECK(tally.crossings > 1000 * (uint64_t)times && tally.slopes > 500 * (uint64_t)times);
         check_tally(&tally, maker_names[maker]);
     }
     geom_scratch_destroy(&scratch);
@@ -383,7 +383,7 @@ TEST(swept_shapes_never_show_pictures_mirrored) {
 }
 
 /* The box under a map holds the crossings, and another one, one percent smaller, does not. */
-TEST(swept_shapes_have_tight_boxes_under_affine_maps) {
+TEST_TIMES(swept_shapes_have_tight_boxes_under_affine_maps, 10) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 256));
     for (int maker = 0; maker < MAKERS; maker++) {
@@ -391,7 +391,7 @@ TEST(swept_shapes_have_tight_boxes_under_affine_maps) {
             continue;
         struct test_random random = {(uint64_t)(500 + maker)};
         int outside = 0, loose = 0;
-        for (int turn = 0; turn < 40; turn++) {
+        for (int turn = 0; turn < 10 * times; turn++) {
             struct arena arena = {0};
             struct shape shape = make((enum maker)maker, &arena, &random);
             struct transform map = random_transform(&random);

@@ -217,13 +217,10 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
 
 static char *picture_of(const char *scene, const char *name, size_t *size) {
     struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
-    char path[4096];
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
-    free(result.out);
-    free(result.err);
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return test_read_file(path, size);
+    test_free_result(&result);
+    return test_read_file(test_path(name), size);
 }
 
 static void same_picture(const char *a, const char *b, bool same) {
@@ -285,8 +282,7 @@ TEST(changes_of_missing_nodes_are_reported_once_and_left_out) {
     CHECK_EQ_INT(result.status, 0);
     const char *reported = strstr(result.err, "the node 'no such' (77) is skipped");
     CHECK(reported && !strstr(reported + 15, "the node"));
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(reports_count_nodes_that_were_added_in_the_window_from_1) {
@@ -302,8 +298,7 @@ TEST(reports_count_nodes_that_were_added_in_the_window_from_1) {
     CHECK(strstr(result.err, "an edit of the node 'cone' (added 5) is skipped: it no longer exists") != NULL);
     CHECK(strstr(result.err, "an edit of the material (own copy 3) is skipped") != NULL);
     CHECK(strstr(result.err, "an edit of the material (77) is skipped") != NULL);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 struct collected {
@@ -354,8 +349,7 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
                    c.text, SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT));
     struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
     change_list_destroy(&list);
 }
 

@@ -463,9 +463,7 @@ static void need_display(void) {
 
 static void gives(const char *line, int status) {
     int got = shell(line);
-    char path[4096];
-    (void)snprintf(path, sizeof path, "%s/err.txt", test_folder());
-    char *said = test_read_file(path, NULL);
+    char *said = test_read_file(test_path("err.txt"), NULL);
     if (got != status)
         test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d:\n%s", line, got, status, said ? said : "");
     free(said);

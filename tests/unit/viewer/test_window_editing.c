@@ -34,9 +34,7 @@ static const char helpers[] =
     "there out.png; cp out.png first.png; titled ready\n";
 
 static void file(const char *name, const char *text) {
-    char path[4096];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    test_write_text(path, text);
+    test_write_text(test_path(name), text);
 }
 
 static int shell(const char *line) {

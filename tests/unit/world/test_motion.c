@@ -67,6 +67,61 @@ TEST(a_spin_turns_about_the_axis_of_the_node_at_its_rate) {
     }
 }
 
+/* A node that spins about its own axis, before its rotation about x. */
+TEST(a_spin_goes_on_over_the_frames_of_an_animation) {
+    static const char scene[] =
+        "local red, light = gr.material{kd = {.8, .3, .2}}, gr.light{position = {5, 5, 9}, colour = {1, 1, 1}}\n"
+        "local function picture(name, cube)\n"
+        "  return {node = gr.node('r'):add_child(cube), width = 40, height = 30, file = name, eye = {0, 0, 6}, "
+        "lights = {light}, shutter = {0, 0}}\n"
+        "end\n"
+        "local cube = gr.cube{material = red}:rotate('x', 20):spin('y', 40)\n"
+        "local whole = picture('a.png', cube)\n"
+        "gr.frames{count = 4, fps = 2, draw = function() return whole end}\n"
+        "for k = 0, 3 do\n"
+        "  gr.render(picture('b' .. k .. '.png', gr.cube{material = red}:rotate('y', 20 * k):rotate('x', 20)))\n"
+        "end\n";
+    struct test_result result = test_gray_scene(scene, "-q --transform-order new scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    for (int k = 0; k < 4; k++) {
+        char frame[32], still[32];
+        (void)snprintf(frame, sizeof frame, "a.%04d.png", k + 1);
+        (void)snprintf(still, sizeof still, "b%d.png", k);
+        CHECK(test_same_files(frame, still));
+    }
+}
+
+/* Its shutter is open from 0 to 1, unless `shutter` closes it. */
+TEST(functions_of_the_time_read_it_in_a_picture_in_which_nothing_moves) {
+    static const char scene[] =
+        "local glow = gr.material{kd = {0, 0, 0}, emission = gr.fn(function(p, s) return s.time end)}\n"
+        "local fog = gr.fog_field({-2, -2, -2}, {4, 4, 2}, function(p, s) return 100 * s.time end, {1, 1, 1})\n"
+        "local function picture(name, more)\n"
+        "  local all = {node = gr.sphere{material = glow}, file = name, width = 8, height = 8, eye = {0, 0, 2}, "
+        "lights = {}, samples = 8, full = true, background = {0, 0, 0}}\n"
+        "  for k, v in pairs(more) do all[k] = v end gr.render(all)\n"
+        "end\n"
+        "picture('whitted.png', {}) picture('closed.png', {shutter = {.5, .5}})\n"
+        "picture('path.png', {integrator = 'path', samples = 16})\n"
+        "picture('fog.png', {node = gr.sphere{material = glow}:translate(9, 0, 0), fog = fog})\n";
+    static const struct {
+        const char *name;
+        int low, high;
+    } pictures[] = {{"whitted.png", 126, 129}, {"closed.png", 0, 0}, {"path.png", 170, 205}, {"fog.png", 230, 255}};
+    struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    test_free_result(&result);
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++) {
+        struct test_picture picture = test_read_picture(test_path(pictures[i].name));
+        int value = picture.rgb[3 * (4 * 8 + 4)];
+        if (value < pictures[i].low || value > pictures[i].high)
+            test_fail(__FILE__, __LINE__, "%s: %d", pictures[i].name, value);
+        free(picture.rgb);
+    }
+}
+
 TEST(the_box_of_a_spinning_node_contains_it_at_all_times) {
     struct test_random random = {8};
     for (int i = 0; i < 200; i++) {

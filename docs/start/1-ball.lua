@@ -1,0 +1,1 @@
+gr.render{node = gr.sphere{}}

@@ -1,0 +1,3 @@
+local things = require 'things'
+
+gr.render{node = things.all, width = 640, height = 400}

@@ -1,0 +1,9 @@
+local things = require 'things'
+
+local lamp = gr.area_light{corner = {-4, 5, 1}, v1 = {2, 0, 0}, v2 = {0, 0, 2}, colour = {0.9, 0.87, 0.8}}
+
+gr.render{
+    node = things.all, width = 640, height = 400,
+    eye = {0, 4.6, 6}, target = {0, 0.6, 0}, fov = 34,
+    background = {0.3, 0.33, 0.38}, ambient = {0.3, 0.3, 0.33}, lights = {lamp},
+}

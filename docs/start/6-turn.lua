@@ -1,0 +1,13 @@
+local things = require 'things'
+
+local lamp = gr.area_light{corner = {-4, 5, 1}, v1 = {2, 0, 0}, v2 = {0, 0, 2}, emission = {24, 22, 20}}
+
+gr.frames{seconds = 2, fps = 15, loop = true, draw = function(t)
+    things.marbles:reset():rotate('y', 360 * t)
+    return {
+        node = things.all, width = 320, height = 200,
+        eye = {0, 4.6, 6}, target = {0, 0.6, 0}, fov = 34,
+        background = {0.2, 0.23, 0.28}, lights = {lamp},
+        integrator = 'path', spp = 16, denoise = true,
+    }
+end}
