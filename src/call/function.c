@@ -58,76 +58,42 @@ bool form_next(const struct script_function *function, const char **form, int *i
 }
 
 const char *kind_words(enum argument_kind kind) {
-    switch (kind) {
-    case KIND_NUMBER:
-        return "a number";
-    case KIND_WHOLE:
-        return "a whole number";
-    case KIND_BOOLEAN:
-        return "true or false";
-    case KIND_TEXT:
-        return "a string";
-    case KIND_FILE:
-        return "the name of a file";
-    case KIND_OUTPUT:
-        return "the name of a file";
-    case KIND_CHOICE:
-        return "a word";
-    case KIND_AXIS:
-        return "'x', 'y' or 'z'";
-    case KIND_POINT:
-        return "a point {x, y, z}";
-    case KIND_DIRECTION:
-        return "a direction {x, y, z}";
-    case KIND_COLOUR:
-        return "a colour {r, g, b}";
-    case KIND_TRIPLE:
-        return "a table of 3 numbers";
-    case KIND_INTERVAL:
-        return "a table of two rising numbers";
-    case KIND_SIZE:
-        return "a number or a table of 3 numbers";
-    case KIND_QUATERNION:
-        return "a table of 4 numbers {w, x, y, z}";
-    case KIND_PAIR:
-        return "a number or a table of 2 numbers";
-    case KIND_NODE:
-        return "a node";
-    case KIND_MATERIAL:
-        return "a material";
-    case KIND_MATERIALS:
-        return "a table of materials";
-    case KIND_IMAGE:
-        return "the name of a picture file or a texture";
-    case KIND_BACKGROUND:
-        return "a colour {r, g, b}, a sky, a function or 'gradient'";
-    case KIND_FOG:
-        return "a fog";
-    case KIND_CAUSTICS:
-        return "a number of photons or {photons = ..., radius = ...}";
-    case KIND_STOPS:
-        return "a table of stops {height, r, g, b}";
-    case KIND_NODES:
-        return "a table of nodes";
-    case KIND_LIGHTS:
-        return "a table of lights";
-    case KIND_POINTS:
-        return "a table of points {x, y, z}";
-    case KIND_PAIRS:
-        return "a table of pairs {u, v}";
-    case KIND_FACES:
-        return "a table of tuples of indices";
-    case KIND_NUMBERS:
-        return "a number or a table of numbers";
-    case KIND_ROWS:
-        return "a table of tables of numbers";
-    case KIND_CURVES:
-        return "a table of tables of pairs {x, z}";
-    case KIND_FUNCTION:
-    case KIND_CALLBACK:
-        return "a function";
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
+    static const char *const words[KIND_COUNT] = {
+        [KIND_NUMBER] = "a number",
+        [KIND_WHOLE] = "a whole number",
+        [KIND_BOOLEAN] = "true or false",
+        [KIND_TEXT] = "a string",
+        [KIND_FILE] = "the name of a file",
+        [KIND_OUTPUT] = "the name of a file",
+        [KIND_CHOICE] = "a word",
+        [KIND_AXIS] = "'x', 'y' or 'z'",
+        [KIND_POINT] = "a point {x, y, z}",
+        [KIND_DIRECTION] = "a direction {x, y, z}",
+        [KIND_COLOUR] = "a colour {r, g, b}",
+        [KIND_TRIPLE] = "a table of 3 numbers",
+        [KIND_INTERVAL] = "a table of two rising numbers",
+        [KIND_SIZE] = "a number or a table of 3 numbers",
+        [KIND_QUATERNION] = "a table of 4 numbers {w, x, y, z}",
+        [KIND_PAIR] = "a number or a table of 2 numbers",
+        [KIND_NODE] = "a node",
+        [KIND_MATERIAL] = "a material",
+        [KIND_MATERIALS] = "a table of materials",
+        [KIND_IMAGE] = "the name of a picture file or a texture",
+        [KIND_BACKGROUND] = "a colour {r, g, b}, a sky, a function or 'gradient'",
+        [KIND_FOG] = "a fog",
+        [KIND_CAUSTICS] = "a number of photons or {photons = ..., radius = ...}",
+        [KIND_STOPS] = "a table of stops {height, r, g, b}",
+        [KIND_NODES] = "a table of nodes",
+        [KIND_LIGHTS] = "a table of lights",
+        [KIND_POINTS] = "a table of points {x, y, z}",
+        [KIND_PAIRS] = "a table of pairs {u, v}",
+        [KIND_FACES] = "a table of tuples of indices",
+        [KIND_NUMBERS] = "a number or a table of numbers",
+        [KIND_ROWS] = "a table of tables of numbers",
+        [KIND_CURVES] = "a table of tables of pairs {x, z}",
+        [KIND_FUNCTION] = "a function",
+        [KIND_CALLBACK] = "a function",
+    };
+    assert(words[kind]);
+    return words[kind];
 }
