@@ -102,7 +102,10 @@ SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
 MAIN := src/host/program.c
 MPI_MAIN := src/host/main_mpi.c
 GUI_MAIN := src/host/main_gui.c
-OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN),$(SOURCES)))
+# Lua and tables in src, which become constants of the program: their lines.
+EMBEDDED := $(sort $(wildcard src/*/*.lua src/*/*.txt))
+EMBEDDED_OBJECTS := $(EMBEDDED:%=$(BUILD)/%.o)
+OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN),$(SOURCES))) $(EMBEDDED_OBJECTS)
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
 GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
@@ -204,6 +207,15 @@ $(BUILD)/%.o: %.c $(FLAGS_STAMP)
 	$(Q)$(COMPILE) -o $@ $< 2>$(@:.o=.warned); status=$$?; cat $(@:.o=.warned) >&2; \
 	    [ -s $(@:.o=.warned) ] || rm -f $(@:.o=.warned); exit $$status
 endif
+# The file NAME.lua is the constant NAME_lua, its lines; NAME.txt is NAME_txt, the entries of its lines, which tabs divide,
+# without lines of comments. A check that only reads makes no object.
+STRINGS.lua = s/[\\"]/\\&/g; s/.*/"&\\n",/
+STRINGS.txt = /^\#/d; s/[\\"]/\\&/g; s/\t/", "/g; s/.*/"&",/
+$(EMBEDDED_OBJECTS): $(BUILD)/%.o: % $(FLAGS_STAMP)
+	@mkdir -p $(@D)
+	$(call say,CC,$<)
+	$(Q){ echo 'const char *const $(subst .,_,$(notdir $<))[] = {'; sed '$(STRINGS$(suffix $<))' $<; echo '0};'; } >$(@:.o=.c)
+	$(Q)$(CC) $(CFLAGS) -c -o $@ $(@:.o=.c) && touch $@
 $(FLAGS_STAMP): force
 	@mkdir -p $(@D)
 	@echo '$(CC) $(CPPFLAGS) $(CFLAGS)' | cmp -s - $@ || echo '$(CC) $(CPPFLAGS) $(CFLAGS)' > $@

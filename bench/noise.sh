@@ -3,8 +3,8 @@
 # of a tile is the square root of the mean of (a - b)^2 / (b^2 + 0.01) over its pixels and channels.
 # Prints a line for each scene (tiles, the median and the largest error over X), and how many tiles are within 1.25 X;
 # exit status 1: less than 99 %.
-# Arguments: scripts; GRAY: the program (gray); NOISE: X (0.1); SIZE: of the pictures (64x64); SPP: of the references
-# (4096); SEEDS: pictures of a scene (3); WORK: a folder where all pictures are kept (a temporary one).
+# Arguments: scripts; GRAY: the program (gray); NOISE: X (0.1); SIZE: of the pictures (64x32); SPP: of the references
+# (2048); SEEDS: pictures of a scene (3); WORK: a folder where all pictures are kept (a temporary one).
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-gray}
 noise=${NOISE:-0.1}
@@ -13,16 +13,16 @@ work=${WORK:-$(mktemp -d)}
 [ $# -gt 0 ] || set -- data/0[1245678]demo.lua data/09demo.lua data/12demo.lua data/13demo.lua data/classic/chess.lua \
     data/classic/cows.lua data/classic/dodeca.lua data/classic/henge.lua data/classic/hier.lua data/classic/puppet.lua \
     data/classic/snowman.lua data/classic/solar.lua data/classic/stairs.lua data/csg/bottle.lua data/csg/chess.lua \
-    data/functions/creature.lua data/functions/lamp.lua data/functions/planet.lua data/light.lua data/meshes.lua \
-    data/path/cornell.lua data/path/plates.lua data/path/table.lua data/solids.lua data/swept.lua
+    data/functions/creature.lua data/functions/planet.lua data/light.lua data/meshes.lua data/path/cornell.lua \
+    data/path/plates.lua data/path/table.lua data/solids.lua data/swept.lua
 mkdir -p "$work" || exit 1
 for script in "$@"; do
     name=$(echo "${script%.lua}" | tr / -)
     for seed in reference $(seq "${SEEDS:-3}"); do
         quality="--seed $seed --noise $noise"
-        [ "$seed" != reference ] || quality="--seed 99 --spp ${SPP:-4096}"
+        [ "$seed" != reference ] || quality="--seed 99 --spp ${SPP:-2048}"
         # shellcheck disable=SC2086
-        [ -f "$work/$name.$seed.pfm" ] || "$gray" -q --integrator path --size "${SIZE:-64x64}" $quality \
+        [ -f "$work/$name.$seed.pfm" ] || "$gray" -q --integrator path --size "${SIZE:-64x32}" $quality \
             -o "$work/$name.$seed.pfm" "$script" >"$work/out" 2>&1 || { cat "$work/out" >&2; exit 1; }
     done
     echo "$name"

@@ -1170,6 +1170,7 @@ function gr.glyphs(font, text) end
 ---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not implemented.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
+---@field classic? boolean classic (true or false; default false): Whether Whitted's integrator shades it as a similar gr.material, which is faster.
 
 ---A layered surface of metal, glass, glossy diffuse, clear coat and fuzz: OpenPBR Surface 1.1.
 ---@param base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; for metals the reflectance at normal incidence.
@@ -1184,6 +1185,7 @@ function gr.openpbr_material(base_color) end
 ---@field tangent? gr.triple tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
 ---@field normal? string|gr.texture|function normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
+---@field classic? boolean classic (true or false; default false): Whether Whitted's integrator shades it as a similar gr.material, which is faster.
 
 ---A metal with its measured reflectance.
 ---@param metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.
@@ -1191,6 +1193,108 @@ function gr.openpbr_material(base_color) end
 ---@return gr.material
 ---@overload fun(fields: gr.metal_material.fields): gr.material
 function gr.metal_material(metal, roughness) end
+
+---@class gr.mirror.fields
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.95, 0.95, 0.95}): Colour of the reflection.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+
+---A mirror.
+---@param colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.95, 0.95, 0.95}): Colour of the reflection.
+---@param roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@return gr.material
+---@overload fun(fields: gr.mirror.fields): gr.material
+function gr.mirror(colour, roughness) end
+
+---@class gr.glass.fields
+---@field colour? gr.triple|string colour (a colour {r, g, b}, >= 0; default {1, 1, 1}): Colour of white light after depth.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@field ior? number ior (a number, 1 to 4; default 1.5): Index of refraction.
+---@field depth? number depth (a number, > 0; default 1): Distance inside after which light has colour.
+---@field thin? boolean thin (true or false; default false): Whether the surface is a pane: nothing is inside.
+
+---Clear, tinted or frosted glass.
+---@param colour? gr.triple|string colour (a colour {r, g, b}, >= 0; default {1, 1, 1}): Colour of white light after depth.
+---@param roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@return gr.material
+---@overload fun(fields: gr.glass.fields): gr.material
+function gr.glass(colour, roughness) end
+
+---@class gr.metal.fields
+---@field metal? 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'; default 'aluminium'): Its name.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0.15): Roughness; 0 is polished.
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; optional): Reflectance at normal incidence, instead of metal.
+---@field brushed? number|gr.texture|function brushed (a number or a texture, 0 to 1; default 0): How much smoother it is along the texture coordinate u, as after brushing.
+
+---A metal by its name or its colour.
+---@param metal? 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'; default 'aluminium'): Its name.
+---@param roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0.15): Roughness; 0 is polished.
+---@return gr.material
+---@overload fun(fields: gr.metal.fields): gr.material
+function gr.metal(metal, roughness) end
+
+---@class gr.plastic.fields
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0.15): Roughness; 0 is polished.
+
+---Glossy or dull plastic.
+---@param colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@param roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0.15): Roughness; 0 is polished.
+---@return gr.material
+---@overload fun(fields: gr.plastic.fields): gr.material
+function gr.plastic(colour, roughness) end
+
+---@class gr.paint.fields
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@field finish? 'matt'|'satin'|'gloss'|'car' finish ('matt'|'satin'|'gloss'|'car'; default 'satin'): Its gloss; car: metal flakes below a clear coat.
+
+---Paint, matt to glossy, or that of a car.
+---@param colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@param finish? 'matt'|'satin'|'gloss'|'car' finish ('matt'|'satin'|'gloss'|'car'; default 'satin'): Its gloss; car: metal flakes below a clear coat.
+---@return gr.material
+---@overload fun(fields: gr.paint.fields): gr.material
+function gr.paint(colour, finish) end
+
+---@class gr.cloth.fields
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@field weave? 'cotton'|'velvet'|'silk' weave ('cotton'|'velvet'|'silk'; default 'cotton'): The kind of cloth.
+
+---Cotton, velvet or silk.
+---@param colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Its colour.
+---@param weave? 'cotton'|'velvet'|'silk' weave ('cotton'|'velvet'|'silk'; default 'cotton'): The kind of cloth.
+---@return gr.material
+---@overload fun(fields: gr.cloth.fields): gr.material
+function gr.cloth(colour, weave) end
+
+---@class gr.studio.fields: gr.render.fields
+---@field node gr.node node (a node): What the picture shows; it stands on the floor.
+---@field sweep? boolean sweep (true or false; default true): Whether there is a floor that bends up into a wall.
+---@field floor? gr.triple|string|gr.texture|function floor (a colour {r, g, b} or a texture, >= 0; default {0.6, 0.6, 0.6}): Colour of floor and wall.
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of all light.
+---@field key? number key (a number, >= 0; default 1): Factor of the large light from the left above.
+---@field fill? number fill (a number, >= 0; default 1): Factor of the light from the right.
+---@field rim? number rim (a number, >= 0; default 1): Factor of the light from behind.
+---@field turn? number turn (a number, in degrees; default 0): Rotation of the lights about the vertical, to the right.
+
+---The fields for gr.render of a picture in a studio: a sweep, three area lights, and a camera that fits; all other fields of gr.render are added.
+---@param node gr.node node (a node): What the picture shows; it stands on the floor.
+---@return gr.render.fields
+---@overload fun(fields: gr.studio.fields): gr.render.fields
+function gr.studio(node) end
+
+---@class gr.daylight.fields: gr.render.fields
+---@field sun? gr.triple|{azimuth: number, elevation: number} sun (a direction {x, y, z} or {azimuth = ..., elevation = ...}; default {azimuth = 140, elevation = 40}): Direction to the sun: azimuth from north over east, elevation above the horizon; -z is north.
+---@field place? string|number[] place (a string or two numbers; optional): Instead of sun: a city, or {latitude, longitude} in degrees, north and east positive.
+---@field time? number|number[] time (a number or a table of numbers; default {2025, 6, 21, 15, 0}): With place: {year, month, day, hour, minute} of the clock there.
+---@field zone? number zone (a number, >= -14 and <= 14, in hours; default that of place, without summer time): Difference of that clock to Greenwich; positive is east.
+---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.
+---@field ground? gr.triple|string ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): Colour below the horizon.
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of all light; with the default exposure it has no effect.
+
+---The fields for gr.render of a picture in daylight: the sun with its disc, the clear sky, and exposure; all other fields of gr.render are added.
+---@param sun? gr.triple|{azimuth: number, elevation: number} sun (a direction {x, y, z} or {azimuth = ..., elevation = ...}; default {azimuth = 140, elevation = 40}): Direction to the sun: azimuth from north over east, elevation above the horizon; -z is north.
+---@return gr.render.fields
+---@overload fun(fields: gr.daylight.fields): gr.render.fields
+function gr.daylight(sun) end
 
 ---@class gr.light.fields
 ---@field colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}): Colour and strength, or a function of the unit direction in which light leaves.
@@ -1687,7 +1791,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
 ---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
+---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
@@ -1723,7 +1827,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field exposure? 'auto'|number exposure (a number or 'auto', >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written; auto: as a light meter measures.
 ---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
@@ -1771,7 +1875,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): Root node of the picture.
 ---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
+---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
@@ -1807,7 +1911,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field exposure? 'auto'|number exposure (a number or 'auto', >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written; auto: as a light meter measures.
 ---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
@@ -1840,7 +1944,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
 ---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
+---@param sky string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
@@ -1967,7 +2071,7 @@ function node:translate(x, y, z) end
 
 ---@class gr.node.render.fields
 ---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
+---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
@@ -2003,7 +2107,7 @@ function node:translate(x, y, z) end
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field exposure? 'auto'|number exposure (a number or 'auto', >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written; auto: as a light meter measures.
 ---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.

@@ -6,6 +6,7 @@
 #include "base/suggestion.h"
 #include "base/unreachable.h"
 #include "call/display_colour.h"
+#include "call/named_numbers_internal.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
@@ -15,6 +16,8 @@
 #include <lauxlib.h>
 #include <math.h>
 #include <string.h>
+
+extern const char *const makers_txt[];
 
 /* The position of a value, for messages: name, name[i], name[i][j]. */
 struct argument_path {
@@ -33,52 +36,17 @@ static const char *argument_path_text(const struct argument_path *argument_path,
     return out;
 }
 
-/* How a value of a kind is made, by the Lua type that is given in its place: the first row that fits. */
-enum { ANY_TYPE = -2, LIST_OF_NODES = 50, HANDLE = 100 };
-static const struct {
-    enum argument_kind kind;
-    int given; /* a type of Lua, LIST_OF_NODES or ANY_TYPE; of handles HANDLE + their type */
-    const char *words;
-} made[] = {
-    {KIND_MATERIAL, ANY_TYPE, "gr.material{kd = {r, g, b}} makes a material"},
-    {KIND_MATERIALS, ANY_TYPE, "write {name = material}, or a list {material, ...}"},
-    {KIND_FOG, ANY_TYPE, "gr.uniform_fog{density = ..., colour = {r, g, b}} makes a fog"},
-    {KIND_NODE, HANDLE + HANDLE_LIGHT, "lights belong in the field lights of gr.render"},
-    {KIND_NODE, HANDLE + HANDLE_MATERIAL, "a shape has the material, as in gr.sphere(material)"},
-    {KIND_NODE, LIST_OF_NODES,
-     "gr.node{children = {...}} makes one node of a list, and add_child takes one node each time"},
-    {KIND_NODE, LUA_TTABLE, "gr.mesh(material, verts, faces) makes a node of tables of numbers"},
-    {KIND_NODE, LUA_TFUNCTION, "call the function, as in gr.sphere(material)"},
-    {KIND_NODE, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
-    {KIND_NODES, HANDLE + HANDLE_NODE, "write it in braces, as in {node}"},
-    {KIND_NODES, ANY_TYPE, "gr.node{...}, gr.sphere{...} and other shapes make nodes"},
-    {KIND_LIGHTS, HANDLE + HANDLE_LIGHT, "write it in braces, as in {light}"},
-    {KIND_LIGHTS, ANY_TYPE, "gr.light{position = {x, y, z}, colour = {r, g, b}} makes a light"},
-    {KIND_IMAGE, ANY_TYPE, "gr.texture('file.png') makes a texture"},
-    {KIND_BACKGROUND, HANDLE + HANDLE_TEXTURE, "gr.sky_map{image = texture} makes a sky"},
-    {KIND_COLOUR, HANDLE + HANDLE_MATERIAL, "a material is the argument of a shape, as in gr.sphere(material)"},
-    {KIND_COLOUR, LUA_TSTRING, "red is {1, 0, 0} or '#ff0000'"},
-    {KIND_COLOUR, LUA_TNUMBER, "white is {1, 1, 1}"},
-    {KIND_POINT, LUA_TNUMBER, "write the three numbers in braces"},
-    {KIND_DIRECTION, LUA_TNUMBER, "write the three numbers in braces"},
-    {KIND_TEXT, HANDLE + HANDLE_NODE, "nodes in a node are its children, as in gr.node{children = {...}}"},
-    {KIND_TEXT, LIST_OF_NODES, "nodes in a node are its children, as in gr.node{children = {...}}"},
-    {KIND_BOOLEAN, LUA_TSTRING, "they are written without quotes"},
-    {KIND_FUNCTION, ANY_TYPE, "write function(p) return ... end"},
-    {KIND_CALLBACK, ANY_TYPE, "write function(t) return ... end"},
-};
-
-static int given_type(lua_State *L, int index) {
+/* The type of Lua or of the handle; of a list of nodes "nodes". */
+static const char *given_type(lua_State *L, int index) {
     const struct handle *handle = handle_at(L, index);
     if (handle)
-        return HANDLE + (int)handle->type;
-    int type = lua_type(L, index);
-    if (type != LUA_TTABLE)
-        return type;
+        return handle_key(handle->type);
+    if (!lua_istable(L, index))
+        return luaL_typename(L, index);
     lua_rawgeti(L, index, 1);
     handle = handle_at(L, -1);
     lua_pop(L, 1);
-    return handle && handle->type == HANDLE_NODE ? LIST_OF_NODES : type;
+    return handle && handle->type == HANDLE_NODE ? "nodes" : "table";
 }
 
 _Noreturn static void wrong_type(struct script_context *c, const struct argument_path *argument_path,
@@ -87,15 +55,13 @@ _Noreturn static void wrong_type(struct script_context *c, const struct argument
     lua_State *L = c->sandbox.lua;
     const struct script_parameter *p = argument_path->parameter;
     index = lua_absindex(L, index);
-    const char *given = value_words(L, index);
-    int type = given_type(L, index);
+    const char *given = value_words(L, index), *type = given_type(L, index);
     bool is_whole = argument_path->i == 0 || p->kind == KIND_NODES || p->kind == KIND_LIGHTS;
-    bool is_file = is_whole && type == LUA_TSTRING && (p->flags & OR_TEXTURE) && strchr(lua_tostring(L, index), '.');
-    if (is_file)
+    if (is_whole && (p->flags & OR_TEXTURE) && lua_type(L, index) == LUA_TSTRING && strchr(lua_tostring(L, index), '.'))
         snprintf(hint, sizeof hint, "; gr.texture('%.100s') makes a texture of a file", lua_tostring(L, index));
-    for (size_t i = 0; is_whole && i < sizeof made / sizeof *made && hint[0] == '\0'; i++)
-        if (made[i].kind == p->kind && (made[i].given == ANY_TYPE || made[i].given == type))
-            snprintf(hint, sizeof hint, "; %s", made[i].words);
+    for (const char *const *row = makers_txt; is_whole && *row && !hint[0]; row += 3)
+        if (strcmp(row[0], kind_name(p->kind)) == 0 && (strcmp(row[1], "any") == 0 || strcmp(row[1], type) == 0))
+            snprintf(hint, sizeof hint, "; %s", row[2]);
     sandbox_raise(&c->sandbox, "%s must be %s, not %s%s", argument_path_text(argument_path, words), wanted, given,
                   hint);
 }
@@ -150,35 +116,13 @@ static double read_whole(struct script_context *c, int index, const struct argum
     return x;
 }
 
-/* Pushes {1, 2, 3} of {x = 1, y = 2, z = 3}, or of the letters of a colour or a quaternion; false: there are no such
- * names, and nothing is pushed. */
-static bool push_named_tuple(lua_State *L, int index, int count) {
-    static const char *const names[] = {"xyz", "rgb", "wxyz", "xz", "xy", "uv"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        int found = 0;
-        if (strlen(names[i]) != (size_t)count)
-            continue;
-        lua_createtable(L, count, 0);
-        for (; found < count; found++) {
-            lua_pushlstring(L, &names[i][found], 1);
-            if (lua_rawget(L, index) == LUA_TNIL)
-                break;
-            lua_rawseti(L, -2, found + 1);
-        }
-        if (found == count)
-            return true;
-        lua_settop(L, lua_gettop(L) - (found < count ? 2 : 1));
-    }
-    return false;
-}
-
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */
 static void read_tuple(struct script_context *c, int index, struct argument_path argument_path, int count,
                        double *out) {
     lua_State *L = c->sandbox.lua;
     char words[128];
     lua_Unsigned length = lua_rawlen(L, index);
-    if (length == 0 && push_named_tuple(L, index, count)) {
+    if (length == 0 && named_numbers_push(L, index, count)) {
         read_tuple(c, lua_gettop(L), argument_path, count, out);
         lua_pop(L, 1);
         return;
@@ -214,13 +158,18 @@ static struct vec3 read_vector(struct script_context *c, int index, const struct
     return (struct vec3){x[0], x[1], x[2]};
 }
 
-static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+static struct vec3 read_pair(struct script_context *c, int index, const struct argument_path *argument_path) {
     double x[2];
-    char words[128];
     read_row(c, index, argument_path, 2, x);
-    if (x[0] > x[1])
-        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
     return (struct vec3){x[0], x[1], 0};
+}
+
+static struct vec3 read_interval(struct script_context *c, int index, const struct argument_path *argument_path) {
+    struct vec3 pair = read_pair(c, index, argument_path);
+    char words[128];
+    if (pair.x > pair.y)
+        sandbox_raise(&c->sandbox, "%s must not end before it begins", argument_path_text(argument_path, words));
+    return pair;
 }
 
 /* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
@@ -636,6 +585,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
     }
     switch (p->kind) {
     case KIND_NUMBER:
+        if (p->choices && p->choices[0] && lua_type(L, index) == LUA_TSTRING && !lua_isnumber(L, index)) {
+            value->number = p->high + 1 + read_choice(c, index, &argument_path);
+            return true;
+        }
         value->number = read_number(c, index, &argument_path);
         if (p->unit && strcmp(p->unit, "degrees") == 0)
             context_warn_of_radians(c, p->name, value->number);
@@ -649,7 +602,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->boolean = lua_toboolean(L, index);
         return true;
     case KIND_TEXT:
-        value->text = read_text(c, index, &argument_path);
+        if ((p->flags & OR_PAIR) && lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
+            value->text = read_text(c, index, &argument_path);
         return true;
     case KIND_FILE:
         value->text = read_file_name(c, index, &argument_path);
@@ -679,6 +635,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_TRIPLE:
+        if ((p->flags & OR_COMPASS) && compass_read(c, index, p->name, &value->vector))
+            return true;
         value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_SIZE:
@@ -698,13 +656,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     }
     case KIND_PAIR:
-        if (lua_istable(L, index)) {
-            double pair[2];
-            read_tuple(c, index, argument_path, 2, pair);
-            value->vector = vec3_make(pair[0], pair[1], 0);
-        } else {
+        if (lua_istable(L, index))
+            value->vector = read_pair(c, index, &argument_path);
+        else
             value->vector.x = value->vector.y = read_number(c, index, &argument_path);
-        }
         return true;
     case KIND_NODE:
         value->node = read_handle(c, index, &argument_path, HANDLE_NODE);
@@ -716,10 +671,13 @@ static bool read_value(struct script_context *c, int index, const struct script_
         read_materials(c, index, argument_path, value);
         return true;
     case KIND_IMAGE:
-        if (lua_isstring(L, index)) {
+        handle = handle_at(L, index);
+        if ((p->flags & OR_SKY) && handle && handle->type == HANDLE_SKY)
+            value->sky = handle->pointer;
+        else if (lua_isstring(L, index))
             value->text = read_file_name(c, index, &argument_path);
+        if (value->sky || value->text)
             return true;
-        }
         value->texture = read_handle(c, index, &argument_path, HANDLE_TEXTURE);
         value->image = value->texture ? image_of(value->texture) : NULL;
         if (value->texture && !value->image)
@@ -852,46 +810,13 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
+#define KIND_LIKE(kind, name, words, annotation, like) [kind] = (like),
+
 bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsigned flags) {
-    static const int wanted[KIND_COUNT] = {
-        [KIND_NUMBER] = LIKE_NUMBER,
-        [KIND_WHOLE] = LIKE_NUMBER,
-        [KIND_BOOLEAN] = LIKE_BOOLEAN,
-        [KIND_TEXT] = LIKE_TEXT,
-        [KIND_FILE] = LIKE_TEXT,
-        [KIND_OUTPUT] = LIKE_TEXT,
-        [KIND_CHOICE] = LIKE_TEXT,
-        [KIND_AXIS] = LIKE_TEXT,
-        [KIND_POINT] = LIKE_TABLE,
-        [KIND_DIRECTION] = LIKE_TABLE,
-        [KIND_COLOUR] = LIKE_TABLE | LIKE_TEXT,
-        [KIND_TRIPLE] = LIKE_TABLE,
-        [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_INTERVAL] = LIKE_TABLE,
-        [KIND_QUATERNION] = LIKE_TABLE,
-        [KIND_PAIR] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODE] = 1 << HANDLE_NODE,
-        [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
-        [KIND_MATERIALS] = LIKE_TABLE,
-        [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
-        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY,
-        [KIND_FOG] = 1 << HANDLE_FOG,
-        [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODES] = LIKE_TABLE,
-        [KIND_LIGHTS] = LIKE_TABLE,
-        [KIND_POINTS] = LIKE_TABLE,
-        [KIND_PAIRS] = LIKE_TABLE,
-        [KIND_STOPS] = LIKE_TABLE,
-        [KIND_FACES] = LIKE_TABLE,
-        [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_ROWS] = LIKE_TABLE,
-        [KIND_CURVES] = LIKE_TABLE,
-        [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
-        [KIND_CALLBACK] = LIKE_FUNCTION,
-    };
-    assert(wanted[kind]); /* every kind has a case */
+    static const int wanted[] = {KIND_LIST(KIND_LIKE)};
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
-                   (flags & OR_CURVE ? LIKE_FUNCTION : 0);
+                   (flags & OR_CURVE ? LIKE_FUNCTION : 0) | (flags & OR_PAIR ? LIKE_TABLE : 0) |
+                   (flags & OR_SKY ? 1 << HANDLE_SKY : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }

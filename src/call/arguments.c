@@ -36,15 +36,15 @@ static bool has_field(const void *context, const char *name) {
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) /* `self` is no field */
         if (strcmp(function->parameters[k].name, name) == 0)
             return true;
-    return false;
+    return function->passes && has_field(function->passes->rows, name);
 }
 
 static bool form_has(const struct script_function *function, const char *form, int parameter) {
-    int index;
-    bool optional, found = false;
-    while (!found && form_next(function, &form, &index, &optional))
-        found = index == parameter;
-    return found;
+    int index = -1;
+    bool optional;
+    while (index != parameter && form_next(function, &form, &index, &optional))
+        ;
+    return index == parameter;
 }
 
 /* "; with names: gr.sphere{material = ..., centre = ..., radius = ...}": the fields but the name, the first ones of
@@ -57,15 +57,11 @@ static const char *table_form_words(const struct script_function *function, char
     if (function->owner == OWNER_NODE)
         return out;
     snprintf(out, 256, "; with names: %s{", function_title(function, title));
-    int shown = 0;
-    for (int k = 0; k < function->parameter_count && shown <= SHOWN; k++) {
-        if (strcmp(function->parameters[k].name, "name") == 0)
-            continue;
-        const char *separator = shown > 0 ? ", " : "";
-        if (shown++ < SHOWN)
-            snprintf(out + strlen(out), 256 - strlen(out), "%s%s = ...", separator, function->parameters[k].name);
-        else
-            snprintf(out + strlen(out), 256 - strlen(out), ", ...");
+    for (int k = 0, shown = 0; k < function->parameter_count && shown <= SHOWN; k++) {
+        const char *name = function->parameters[k].name;
+        if (strcmp(name, "name") != 0 && ++shown)
+            snprintf(out + strlen(out), 256 - strlen(out), "%s%s%s", shown > 1 ? ", " : "",
+                     shown > SHOWN ? "..." : name, shown > SHOWN ? "" : " = ...");
     }
     snprintf(out + strlen(out), 256 - strlen(out), "}");
     return out;
@@ -192,6 +188,8 @@ _Noreturn static void unknown_field(struct script_context *c, const struct scrip
     int first = function->owner == OWNER_NODE, count = function->parameter_count - first;
     for (int k = first; k < function->parameter_count; k++)
         suggest_offer(&suggestion, function->parameters[k].name);
+    for (int k = 0; function->passes && k < function->passes->rows->parameter_count; k++)
+        suggest_offer(&suggestion, function->passes->rows->parameters[k].name);
     if (use || suggestion.best)
         sandbox_raise(&c->sandbox, "unknown field '%.100s'; did you mean '%s'?", field, use ? use : suggestion.best);
     enum { SHORT_LIST = 5 };
@@ -226,9 +224,9 @@ static void check_fields(struct script_context *c, const struct script_function 
  * nil on purpose, as in radius = RADIUS with -D. */
 static void check_nil_fields(struct script_context *c, const struct script_function *function, int table) {
     lua_State *L = c->sandbox.lua;
-    const char *names[PARAMETER_LIMIT + 1];
+    const char *names[PARAMETER_LIMIT];
     struct nil_field found;
-    int count = 0;
+    size_t count = 0;
     if (!sandbox_is_new_line(&c->sandbox, function)) /* a loop */
         return;
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
@@ -240,10 +238,9 @@ static void check_nil_fields(struct script_context *c, const struct script_funct
             names[count++] = p->name;
         lua_pop(L, 1);
     }
-    names[count] = NULL;
     int index;
     const struct script_parameter *rest = function_rest(function, &index);
-    if (!hint_find_nil_field(&c->sandbox, names, rest ? rest->name : NULL, &found))
+    if (!hint_find_nil_field(&c->sandbox, names, count, rest ? rest->name : NULL, &found))
         return;
     if (found.entry > 0)
         sandbox_raise(&c->sandbox, "%s[%d] is nil%s", found.field, found.entry, found.words);

@@ -24,10 +24,8 @@ void context_keep_functions(lua_State *L) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, &functions);
 }
 
-void context_push_function(lua_State *L, const char *name) {
+void context_push_functions(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &functions);
-    lua_getfield(L, -1, name);
-    lua_replace(L, -2);
 }
 
 bool context_is_gr(lua_State *L, int index) {

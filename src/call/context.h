@@ -27,14 +27,21 @@ struct script_context *context_of(lua_State *L);
 void context_begin_call(struct script_context *context, const struct script_function *function);
 
 /* The functions of gr, even if the script has replaced them, with --lenient: keeps the table on top, which is popped;
- * pushes one of them. */
+ * pushes it. */
 void context_keep_functions(lua_State *L);
-void context_push_function(lua_State *L, const char *name);
+void context_push_functions(lua_State *L);
 
 /* Whether a value is the table gr, as the first argument of gr:sphere(...) is. */
 bool context_is_gr(lua_State *L, int index);
 
-enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8, WARNED_RADIANS = 16, WARNED_SLOW = 32 };
+enum {
+    WARNED_EXTRA = 1,
+    WARNED_OTHER = 2,
+    WARNED_FRACTION = 4,
+    WARNED_BYTES = 8,
+    WARNED_RADIANS = 16,
+    WARNED_SLOW = 32
+};
 /* Warns once for each function and bit. */
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,8 +1,6 @@
 /* What every user of the descriptions of functions needs. */
 #include "call/function.h"
 
-#include "base/unreachable.h"
-
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
@@ -57,43 +55,15 @@ bool form_next(const struct script_function *function, const char **form, int *i
     }
 }
 
+#define KIND_NAME(kind, name, words, annotation, like) [kind] = (name),
+#define KIND_WORDS(kind, name, words, annotation, like) [kind] = (words),
+
+const char *kind_name(enum argument_kind kind) {
+    static const char *const names[] = {KIND_LIST(KIND_NAME)};
+    return names[kind];
+}
+
 const char *kind_words(enum argument_kind kind) {
-    static const char *const words[KIND_COUNT] = {
-        [KIND_NUMBER] = "a number",
-        [KIND_WHOLE] = "a whole number",
-        [KIND_BOOLEAN] = "true or false",
-        [KIND_TEXT] = "a string",
-        [KIND_FILE] = "the name of a file",
-        [KIND_OUTPUT] = "the name of a file",
-        [KIND_CHOICE] = "a word",
-        [KIND_AXIS] = "'x', 'y' or 'z'",
-        [KIND_POINT] = "a point {x, y, z}",
-        [KIND_DIRECTION] = "a direction {x, y, z}",
-        [KIND_COLOUR] = "a colour {r, g, b}",
-        [KIND_TRIPLE] = "a table of 3 numbers",
-        [KIND_INTERVAL] = "a table of two rising numbers",
-        [KIND_SIZE] = "a number or a table of 3 numbers",
-        [KIND_QUATERNION] = "a table of 4 numbers {w, x, y, z}",
-        [KIND_PAIR] = "a number or a table of 2 numbers",
-        [KIND_NODE] = "a node",
-        [KIND_MATERIAL] = "a material",
-        [KIND_MATERIALS] = "a table of materials",
-        [KIND_IMAGE] = "the name of a picture file or a texture",
-        [KIND_BACKGROUND] = "a colour {r, g, b}, a sky, a function or 'gradient'",
-        [KIND_FOG] = "a fog",
-        [KIND_CAUSTICS] = "a number of photons or {photons = ..., radius = ...}",
-        [KIND_STOPS] = "a table of stops {height, r, g, b}",
-        [KIND_NODES] = "a table of nodes",
-        [KIND_LIGHTS] = "a table of lights",
-        [KIND_POINTS] = "a table of points {x, y, z}",
-        [KIND_PAIRS] = "a table of pairs {u, v}",
-        [KIND_FACES] = "a table of tuples of indices",
-        [KIND_NUMBERS] = "a number or a table of numbers",
-        [KIND_ROWS] = "a table of tables of numbers",
-        [KIND_CURVES] = "a table of tables of pairs {x, z}",
-        [KIND_FUNCTION] = "a function",
-        [KIND_CALLBACK] = "a function",
-    };
-    assert(words[kind]);
+    static const char *const words[] = {KIND_LIST(KIND_WORDS)};
     return words[kind];
 }

@@ -5,6 +5,7 @@
 #define GRAY_CALL_FUNCTION_H
 
 #include "base/error.h"
+#include "base/list.h"
 #include "image/tone.h"
 #include "light/light.h"
 #include "light/sky.h"
@@ -19,44 +20,82 @@
 
 struct script_context;
 
-/* The kinds of arguments. The plain C form is in struct script_value. */
-enum argument_kind {
-    KIND_NUMBER,     /* number */
-    KIND_WHOLE,      /* number: a float with a whole value is fine */
-    KIND_BOOLEAN,    /* boolean */
-    KIND_TEXT,       /* text */
-    KIND_FILE,       /* text: a file to be read, looked for beside the scene */
-    KIND_OUTPUT,     /* text: a file to be written */
-    KIND_CHOICE,     /* choice: index into the words of parameter.choices */
-    KIND_AXIS,       /* choice: 0, 1, 2 */
-    KIND_POINT,      /* vector */
-    KIND_DIRECTION,  /* vector */
-    KIND_COLOUR,     /* vector */
-    KIND_TRIPLE,     /* vector: three numbers that are not a position */
-    KIND_SIZE,       /* vector: one number counts for all three */
-    KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
-    KIND_QUATERNION, /* vector = x, y, z, number = w: four numbers, w first */
-    KIND_PAIR,       /* vector, z = 0: two numbers, or one for both */
-    KIND_NODE,       /* node */
-    KIND_MATERIAL,   /* material */
-    KIND_MATERIALS,  /* materials, count; names as well, in byte order, or a list: names is NULL */
-    KIND_IMAGE,      /* image, or text: the name of its file */
-    KIND_BACKGROUND, /* vector, or text = "gradient", or sky, or program */
-    KIND_FOG,        /* fog */
-    KIND_CAUSTICS,   /* number: photons, vector.x: radius; a number alone is the photons */
-    KIND_NODES,      /* nodes, count */
-    KIND_LIGHTS,     /* lights, count */
-    KIND_POINTS,     /* points, count */
-    KIND_PAIRS,      /* pairs, count */
-    KIND_STOPS,      /* stops, count: tables of 4 numbers */
-    KIND_FACES,      /* starts, indices, count */
-    KIND_NUMBERS,    /* numbers, count; a number alone: single */
-    KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
-    KIND_CURVES,     /* starts, pairs, count: lists of pairs */
-    KIND_FUNCTION,   /* program: a function of Lua, recorded */
-    KIND_CALLBACK,   /* a function of Lua that is called; it stays on the stack */
-    KIND_COUNT,
-};
+/* The kinds of arguments: name, what the script must pass, the type in annotations (NULL: the choices), and the Lua
+ * types (argument.c). The plain C form is in struct script_value:
+ *   KIND_NUMBER: number; a word of parameter.choices: the number of a setting for it (setting.h)
+ *   KIND_WHOLE: number: a float with a whole value is fine
+ *   KIND_BOOLEAN: boolean
+ *   KIND_TEXT: text
+ *   KIND_FILE: text: a file to be read, looked for beside the scene
+ *   KIND_OUTPUT: text: a file to be written
+ *   KIND_CHOICE: choice: index into the words of parameter.choices
+ *   KIND_AXIS: choice: 0, 1, 2
+ *   KIND_POINT: vector
+ *   KIND_DIRECTION: vector
+ *   KIND_COLOUR: vector
+ *   KIND_TRIPLE: vector: three numbers that are not a position
+ *   KIND_SIZE: vector: one number counts for all three
+ *   KIND_INTERVAL: vector: x and y, two numbers, the second not below the first
+ *   KIND_QUATERNION: vector = x, y, z, number = w: four numbers, w first
+ *   KIND_PAIR: vector, z = 0: two numbers, or one for both
+ *   KIND_NODE: node
+ *   KIND_MATERIAL: material
+ *   KIND_MATERIALS: materials, count; names as well, in byte order, or a list: names is NULL
+ *   KIND_IMAGE: image, or text: the name of its file
+ *   KIND_BACKGROUND: vector, or text = "gradient", or sky, or program
+ *   KIND_FOG: fog
+ *   KIND_CAUSTICS: number: photons, vector.x: radius; a number alone is the photons
+ *   KIND_NODES: nodes, count
+ *   KIND_LIGHTS: lights, count
+ *   KIND_POINTS: points, count
+ *   KIND_PAIRS: pairs, count
+ *   KIND_STOPS: stops, count: tables of 4 numbers
+ *   KIND_FACES: starts, indices, count
+ *   KIND_NUMBERS: numbers, count; a number alone: single
+ *   KIND_ROWS: starts, numbers, count: lists of numbers of any length
+ *   KIND_CURVES: starts, pairs, count: lists of pairs
+ *   KIND_FUNCTION: program: a function of Lua, recorded
+ *   KIND_CALLBACK: a function of Lua that is called; it stays on the stack */
+#define KIND_LIST(X)                                                                                                   \
+    X(KIND_NUMBER, "number", "a number", "number", LIKE_NUMBER)                                                        \
+    X(KIND_WHOLE, "whole", "a whole number", "integer", LIKE_NUMBER)                                                   \
+    X(KIND_BOOLEAN, "boolean", "true or false", "boolean", LIKE_BOOLEAN)                                               \
+    X(KIND_TEXT, "text", "a string", "string", LIKE_TEXT)                                                              \
+    X(KIND_FILE, "file", "the name of a file", "string", LIKE_TEXT)                                                    \
+    X(KIND_OUTPUT, "output", "the name of a file", "string", LIKE_TEXT)                                                \
+    X(KIND_CHOICE, "choice", "a word", NULL, LIKE_TEXT)                                                                \
+    X(KIND_AXIS, "axis", "'x', 'y' or 'z'", NULL, LIKE_TEXT)                                                           \
+    X(KIND_POINT, "point", "a point {x, y, z}", "gr.triple", LIKE_TABLE)                                               \
+    X(KIND_DIRECTION, "direction", "a direction {x, y, z}", "gr.triple", LIKE_TABLE)                                   \
+    X(KIND_COLOUR, "colour", "a colour {r, g, b}", "gr.triple|string", LIKE_TABLE | LIKE_TEXT)                         \
+    X(KIND_TRIPLE, "triple", "a table of 3 numbers", "gr.triple", LIKE_TABLE)                                          \
+    X(KIND_SIZE, "size", "a number or a table of 3 numbers", "number|gr.triple", LIKE_TABLE | LIKE_NUMBER)             \
+    X(KIND_INTERVAL, "interval", "a table of two rising numbers", "number[]", LIKE_TABLE)                              \
+    X(KIND_QUATERNION, "quaternion", "a table of 4 numbers {w, x, y, z}", "number[]", LIKE_TABLE)                      \
+    X(KIND_PAIR, "pair", "a number or a table of 2 numbers", "number|number[]", LIKE_TABLE | LIKE_NUMBER)              \
+    X(KIND_NODE, "node", "a node", "gr.node", 1 << HANDLE_NODE)                                                        \
+    X(KIND_MATERIAL, "material", "a material", "gr.material", 1 << HANDLE_MATERIAL)                                    \
+    X(KIND_MATERIALS, "materials", "a table of materials", "table<string|integer, gr.material>", LIKE_TABLE)           \
+    X(KIND_IMAGE, "image", "the name of a picture file or a texture", "string|gr.texture",                             \
+      LIKE_TEXT | 1 << HANDLE_TEXTURE)                                                                                 \
+    X(KIND_BACKGROUND, "background", "a colour {r, g, b}, a sky, a function or 'gradient'",                            \
+      "gr.triple|string|gr.sky|gr.texture|function|'gradient'",                                                        \
+      LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY)                                                        \
+    X(KIND_FOG, "fog", "a fog", "gr.fog", 1 << HANDLE_FOG)                                                             \
+    X(KIND_CAUSTICS, "caustics", "a number of photons or {photons = ..., radius = ...}",                               \
+      "integer|{photons?: integer, radius?: number}", LIKE_TABLE | LIKE_NUMBER)                                        \
+    X(KIND_NODES, "nodes", "a table of nodes", "gr.node[]", LIKE_TABLE)                                                \
+    X(KIND_LIGHTS, "lights", "a table of lights", "gr.light[]", LIKE_TABLE)                                            \
+    X(KIND_POINTS, "points", "a table of points {x, y, z}", "gr.triple[]", LIKE_TABLE)                                 \
+    X(KIND_PAIRS, "pairs", "a table of pairs {u, v}", "number[][]", LIKE_TABLE)                                        \
+    X(KIND_STOPS, "stops", "a table of stops {height, r, g, b}", "number[][]", LIKE_TABLE)                             \
+    X(KIND_FACES, "faces", "a table of tuples of indices", "integer[][]", LIKE_TABLE)                                  \
+    X(KIND_NUMBERS, "numbers", "a number or a table of numbers", "number|number[]", LIKE_TABLE | LIKE_NUMBER)          \
+    X(KIND_ROWS, "rows", "a table of tables of numbers", "number[][]", LIKE_TABLE)                                     \
+    X(KIND_CURVES, "curves", "a table of tables of pairs {x, z}", "number[][][]", LIKE_TABLE)                          \
+    X(KIND_FUNCTION, "function", "a function", "function|gr.texture", LIKE_FUNCTION | 1 << HANDLE_TEXTURE)             \
+    X(KIND_CALLBACK, "callback", "a function", "function", LIKE_FUNCTION)
+enum argument_kind { KIND_LIST(LIST_MEMBER) KIND_COUNT };
 
 /* What gr.texture, gr.bump and their like made. */
 struct script_texture {
@@ -110,6 +149,9 @@ enum {
     OR_PROFILE = 512,
     OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
     OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
+    OR_COMPASS = 4096,  /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
+    OR_PAIR = 8192,     /* of KIND_TEXT: also accepts two numbers */
+    OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };
@@ -126,20 +168,21 @@ struct script_parameter {
 };
 
 enum function_owner { OWNER_GR, OWNER_NODE };
-enum result_kind {
-    RESULT_NOTHING,
-    RESULT_SELF,
-    RESULT_NODE,
-    RESULT_MATERIAL,
-    RESULT_LIGHT,
-    RESULT_TEXTURE,
-    RESULT_BOUNDS,
-    RESULT_FACES,
-    RESULT_FOG,
-    RESULT_SKY,
-    RESULT_GLYPHS,
-    RESULT_FRAMES /* nothing; calls the function of the animation */
-};
+/* RESULT_FRAMES: nothing; calls the function of the animation. */
+#define RESULT_KINDS(X)                                                                                                \
+    X(RESULT_NOTHING, "nothing")                                                                                       \
+    X(RESULT_SELF, "self")                                                                                             \
+    X(RESULT_NODE, "node")                                                                                             \
+    X(RESULT_MATERIAL, "material")                                                                                     \
+    X(RESULT_LIGHT, "light")                                                                                           \
+    X(RESULT_TEXTURE, "texture")                                                                                       \
+    X(RESULT_BOUNDS, "bounds")                                                                                         \
+    X(RESULT_FACES, "faces")                                                                                           \
+    X(RESULT_FOG, "fog")                                                                                               \
+    X(RESULT_SKY, "sky")                                                                                               \
+    X(RESULT_GLYPHS, "glyphs")                                                                                         \
+    X(RESULT_FRAMES, "frames")
+enum result_kind { RESULT_KINDS(LIST_MEMBER) };
 
 struct script_result {
     void *pointer;           /* of the type of the result kind; owned by the scene or the assets */
@@ -164,6 +207,9 @@ struct script_function {
     bool (*run)(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error);
     const char *help;
+    bool in_lua; /* after `run`, the function of that name in lua/words.lua makes the result */
+    /* Its first row: a function whose fields are accepted, too, and come back in a table. NULL: none. */
+    const struct function_rows *passes;
 };
 
 /* The rows of one file. */
@@ -188,5 +234,7 @@ bool function_renders(const struct script_function *function);
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What the script must pass: "a number", "a colour {r, g, b}". */
 const char *kind_words(enum argument_kind kind);
+/* "number", "colour". */
+const char *kind_name(enum argument_kind kind);
 
 #endif

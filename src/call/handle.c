@@ -18,7 +18,7 @@ const char *handle_words(enum handle_type type) {
     return words[type];
 }
 
-const void *handle_key(enum handle_type type) {
+const char *handle_key(enum handle_type type) {
     return type_names[type];
 }
 

@@ -41,6 +41,7 @@ const struct handle *handle_at(lua_State *L, int index);
 const char *handle_words(enum handle_type type);
 /* Pushes the table of the methods of nodes, by name: upvalue 1 of __index of their metatable. */
 void handle_push_methods(lua_State *L);
-const void *handle_key(enum handle_type type); /* the metatable is in the registry under this pointer */
+/* Its name in Lua; the metatable is in the registry under this pointer. */
+const char *handle_key(enum handle_type type);
 
 #endif

@@ -5,8 +5,8 @@
 #include "compat/dialect.h"
 
 #include "base/file.h"
-#include "base/suggestion.h"
 #include "call/handle.h"
+#include "sandbox/hints.h"
 
 #include <lauxlib.h>
 #include <stdio.h>
@@ -37,32 +37,6 @@ bool dialect_add_folder(const struct script_options *options, struct path_policy
     return path_policy_add(path_policy, slash ? file : ".", PATH_POLICY_IMPLIED, error);
 }
 
-/* The error of a dialect that the library does not have. */
-static bool unknown_dialect(struct sandbox *sandbox, struct error *error) {
-    const char *library = sandbox->options->library_folder, *name = sandbox->options->dialect;
-    struct path_policy_entry *entries;
-    char folder[PATH_SIZE], names[1024] = "";
-    struct suggestion suggestion;
-    size_t count = 0;
-    suggest_begin(&suggestion, name);
-    if (library && (size_t)snprintf(folder, sizeof folder, "%s/dialects", library) < sizeof folder)
-        count = path_policy_list(sandbox->path_policy, folder, 1000, &sandbox->call, &entries);
-    for (size_t i = 0; i < count; i++) {
-        const char *dot = strrchr(entries[i].name, '.');
-        if (!dot || strcmp(dot, ".lua") != 0)
-            continue;
-        const char *known = arena_format(&sandbox->call, "%.*s", (int)(dot - entries[i].name), entries[i].name);
-        if (!known)
-            return error_no_memory(error, "the names of the dialects");
-        suggest_offer(&suggestion, known);
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", known);
-    }
-    const char *meant = suggestion.best;
-    return error_set(error, ERROR_USAGE, "--dialect: there is no dialect '%.100s'%s%s%s; the library has %s", name,
-                     meant ? "; did you mean '" : "", meant ? meant : "", meant ? "'?" : "", names[0] ? names : "none");
-}
-
 bool dialect_find(struct sandbox *sandbox, struct error *error) {
     const char *dialect = sandbox->options->dialect;
     char file[PATH_SIZE];
@@ -71,7 +45,8 @@ bool dialect_find(struct sandbox *sandbox, struct error *error) {
         return true;
     bool found = dialect_file(sandbox->options, file, sizeof file);
     if (!is_file_name(dialect) && !(found && file_is_regular(file)))
-        return unknown_dialect(sandbox, error);
+        return error_set(error, ERROR_USAGE, "--dialect: there is no dialect '%.100s'%s", dialect,
+                         hint_of_dialect(sandbox, dialect));
     if (!found)
         return error_set(error, ERROR_USAGE, "--dialect: %.100s...: the path is too long", dialect);
     if (!file_map(file, FILE_LIMIT, &bytes, error)) /* reported like a scene that cannot be read */

@@ -1,8 +1,6 @@
 /* Calls with --lenient. The arguments are first read as usual. If that raises an error, or the function fails, the
- * error becomes a warning, and the arguments are matched again: by type to the positional form that takes most of them,
- * or by the letters of their names. Remaining arguments are converted, missing ones get a default, values out of
- * range the nearest one. If the function fails again, it gets only the arguments of its positional forms. If that fails
- * too, the result is a ghost: a group of the nodes of the call.
+ * error becomes a warning, and the arguments are matched again (lenient.lua). If the function fails again, it gets only
+ * the arguments of its positional forms. If that fails too, the result is a ghost: a group of the nodes of the call.
  *
  * Errors that a script must not catch pass through: limits, memory, errors of the machine. */
 #include "compat/lenient.h"
@@ -13,11 +11,12 @@
 #include "call/arguments.h"
 #include "compat/lenient_handles.h"
 #include "compat/lenient_picture.h"
-#include "compat/lenient_values_internal.h"
+#include "sandbox/embedded.h"
 
-#include <lauxlib.h>
 #include <stdarg.h>
 #include <string.h>
+
+extern const char *const lenient_lua[];
 
 /* Warnings. */
 
@@ -148,309 +147,185 @@ static bool read_all(struct script_context *c, const struct script_function *fun
     return read;
 }
 
-/* Matching. */
+/* What Lua calls (lenient.lua). Parameters and functions are their addresses. */
 
-enum { MATCHED_MAX = 24 };
-
-/* The arguments of a call and the parameters of a form; taken[p] is the argument of parameter p from 1, 0: none. */
-struct match {
-    const struct script_parameter *parameters[MATCHED_MAX];
-    bool is_optional[MATCHED_MAX];
-    int arguments[MATCHED_MAX]; /* stack indices */
-    int parameter_count, argument_count, score;
-    int fit[MATCHED_MAX][MATCHED_MAX], taken[MATCHED_MAX];
-    bool used[MATCHED_MAX + 1];
-};
-
-/* In order: the longest common subsequence by the sum of its fits. */
-static void match_in_order(struct match *m) {
-    int best[MATCHED_MAX + 1][MATCHED_MAX + 1] = {{0}};
-    for (int p = m->parameter_count - 1; p >= 0; p--) {
-        for (int a = m->argument_count - 1; a >= 0; a--) {
-            int both = m->fit[p][a] > 0 ? m->fit[p][a] + best[p + 1][a + 1] : 0;
-            int skip = best[p + 1][a] > best[p][a + 1] ? best[p + 1][a] : best[p][a + 1];
-            best[p][a] = both >= skip ? both : skip;
-        }
-    }
-    m->score = best[0][0];
-    for (int p = 0, a = 0; p < m->parameter_count && a < m->argument_count;) {
-        if (m->fit[p][a] > 0 && best[p][a] == m->fit[p][a] + best[p + 1][a + 1]) {
-            m->taken[p++] = ++a;
-            m->used[a] = true;
-        } else if (best[p][a] == best[p + 1][a]) {
-            p++;
-        } else {
-            a++;
-        }
-    }
-}
-
-static int fit_taken(const struct match *m, int p, int taken) {
-    return taken > 0 ? m->fit[p][taken - 1] : 0;
-}
-
-/* Matches the remaining arguments in any order, and exchanges two arguments where both then fit better. */
-static void match_rest(struct match *m) {
-    for (int p = 0; p < m->parameter_count; p++) {
-        for (int a = 1; a <= m->argument_count && !m->taken[p]; a++) {
-            if (m->used[a] || m->fit[p][a - 1] == 0)
-                continue;
-            m->taken[p] = a;
-            m->used[a] = true;
-            m->score += m->fit[p][a - 1];
-        }
-    }
-    for (int p = 0; p < m->parameter_count; p++) {
-        for (int q = p + 1; q < m->parameter_count; q++) {
-            int now = fit_taken(m, p, m->taken[p]) + fit_taken(m, q, m->taken[q]);
-            int then = fit_taken(m, p, m->taken[q]) + fit_taken(m, q, m->taken[p]);
-            bool fits =
-                (!m->taken[q] || fit_taken(m, p, m->taken[q])) && (!m->taken[p] || fit_taken(m, q, m->taken[p]));
-            if (then <= now || !fits)
-                continue;
-            int kept = m->taken[p];
-            m->taken[p] = m->taken[q];
-            m->taken[q] = kept;
-            m->score += then - now;
-        }
-    }
-}
-
-static void match_form(struct script_context *c, const struct script_function *function, const char *form,
-                       struct match *m) {
-    bool optional;
-    for (int index; m->parameter_count < MATCHED_MAX && form_next(function, &form, &index, &optional);) {
-        m->is_optional[m->parameter_count] = optional;
-        m->parameters[m->parameter_count++] = &function->parameters[index];
-    }
-    for (int p = 0; p < m->parameter_count; p++)
-        for (int a = 0; a < m->argument_count; a++)
-            m->fit[p][a] = lenient_fit(c->sandbox.lua, m->arguments[a], m->parameters[p]);
-    match_in_order(m);
-    match_rest(m);
-    for (int p = 0; p < m->parameter_count; p++)
-        m->score -= !m->taken[p] && !m->is_optional[p];
-}
-
-static bool wants_tuple(enum argument_kind kind) {
-    return kind == KIND_POINT || kind == KIND_DIRECTION || kind == KIND_COLOUR || kind == KIND_TRIPLE ||
-           kind == KIND_SIZE || kind == KIND_QUATERNION;
-}
-
-/* Pushes a table of the next unused numbers, at most `count`; nil if there is none. */
-static void push_loose_numbers(lua_State *L, struct match *m, int count) {
-    int found = 0;
-    lua_createtable(L, count, 0);
-    for (int a = 1; a <= m->argument_count && found < count; a++) {
-        if (m->used[a] || lua_type(L, m->arguments[a - 1]) != LUA_TNUMBER)
-            continue;
-        m->used[a] = true;
-        lua_pushvalue(L, m->arguments[a - 1]);
-        lua_rawseti(L, -2, ++found);
-    }
-    if (found == 1) { /* one for all */
-        lua_rawgeti(L, -1, 1);
-        lua_replace(L, -2);
-    } else if (found == 0) {
-        lua_pop(L, 1);
+static int read_value(lua_State *L) {
+    struct script_value *args = lua_touserdata(L, 1);
+    const struct script_function *function = lua_touserdata(L, 2);
+    lua_Integer k = lua_tointeger(L, 3) - 1;
+    struct protected_reading reading = {.parameter = &function->parameters[k], .args = &args[k]};
+    lua_pushcfunction(L, read_protected);
+    lua_pushlightuserdata(L, &reading);
+    lua_pushvalue(L, 4);
+    if (!survives(context_of(L), 2))
+        args[k] = (struct script_value){0};
+    if (args[k].given)
+        lua_pushinteger(L, args[k].count);
+    else
         lua_pushnil(L);
-    }
+    return 1;
 }
 
-/* Without any table, three numbers stand for each: all numbers are taken again, in order. */
-static void free_loose_numbers(lua_State *L, struct match *m) {
-    int numbers = 0, tuples = 0;
-    for (int a = 0; a < m->argument_count; a++) {
-        numbers += lua_type(L, m->arguments[a]) == LUA_TNUMBER;
-        if (lua_istable(L, m->arguments[a]))
-            return;
-    }
-    for (int p = 0; p < m->parameter_count; p++)
-        tuples += wants_tuple(m->parameters[p]->kind);
-    if (tuples == 0 || numbers < 3)
-        return;
-    for (int p = 0; p < m->parameter_count; p++) {
-        if (m->taken[p] && lua_type(L, m->arguments[m->taken[p] - 1]) == LUA_TNUMBER) {
-            m->used[m->taken[p]] = false;
-            m->taken[p] = 0;
-        }
-    }
+static int resembles(lua_State *L) {
+    const struct script_parameter *p = lua_touserdata(L, 1);
+    lua_pushboolean(L, argument_resembles(L, 2, p->kind, p->flags));
+    return 1;
 }
 
-/* Pushes the first unused argument that can be converted, or nil. */
-static void push_convertible(struct script_context *c, const struct script_function *function, struct match *m,
-                             const struct script_parameter *p, const struct script_value *args) {
-    lua_State *L = c->sandbox.lua;
-    bool nothing = c->lenient->nothing;
-    for (int a = 1; a <= m->argument_count; a++) {
-        if (m->used[a] || lua_isnil(L, m->arguments[a - 1]) || p->kind == KIND_BOOLEAN)
-            continue;
-        lenient_convert(c, m->arguments[a - 1], function, p, args);
-        bool empty = lua_istable(L, -1) && lua_rawlen(L, -1) == 0;
-        if (!lua_isnil(L, -1) && !empty) {
-            m->used[a] = true;
-            return;
-        }
-        lua_pop(L, 1);
-    }
-    c->lenient->nothing = nothing;
-    lua_pushnil(L);
-}
-
-/* Positional arguments become the fields of the table at `named`. wanted: the parameters that need a value. */
-static void name_positional(struct script_context *c, const struct script_function *function, int first, int named,
-                            bool wanted[PARAMETER_LIMIT]) {
-    lua_State *L = c->sandbox.lua;
-    struct match empty = {.argument_count = 0}, best = empty;
-    const struct script_value none[PARAMETER_LIMIT] = {{0}};
-    for (int i = first; i < named && empty.argument_count < MATCHED_MAX; i++)
-        if (i > first || !context_is_gr(L, i)) /* gr:sphere() */
-            empty.arguments[empty.argument_count++] = i;
-    for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
-        struct match m = empty;
-        match_form(c, function, function->forms[k], &m);
-        if (k == 0 || m.score > best.score)
-            best = m;
-    }
-    free_loose_numbers(L, &best);
-    for (int p = 0; p < best.parameter_count; p++) {
-        const struct script_parameter *parameter = best.parameters[p];
-        if (best.taken[p])
-            lua_pushvalue(L, best.arguments[best.taken[p] - 1]);
-        else if (wants_tuple(parameter->kind))
-            push_loose_numbers(L, &best, parameter->kind == KIND_QUATERNION ? 4 : 3);
-        else
-            push_convertible(c, function, &best, parameter, none);
-        if (lua_isnil(L, -1) && wants_tuple(parameter->kind)) {
-            lua_pop(L, 1);
-            push_convertible(c, function, &best, parameter, none);
-        }
-        lua_setfield(L, named, parameter->name);
-        wanted[parameter - function->parameters] = !best.is_optional[p];
-    }
-}
-
-/* The parameter of a field: with this name, with the same letters in any case, or with the most similar name. */
-static const struct script_parameter *meant_field(const struct script_function *function, const char *field) {
+/* The number of the parameter of a field, or nothing: with this name, with the same letters in any case, or with the
+ * most similar name. */
+static int meant_field(lua_State *L) {
+    const struct script_function *function = lua_touserdata(L, 1);
+    const char *field = lua_tostring(L, 2);
     struct suggestion suggestion;
+    int first = function->owner == OWNER_NODE, meant = -1;
     suggest_begin(&suggestion, field);
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        if (strcmp(function->parameters[k].name, field) == 0)
-            return &function->parameters[k];
+    for (int k = first; k < function->parameter_count; k++)
         suggest_offer(&suggestion, function->parameters[k].name);
-    }
-    for (int k = function->owner == OWNER_NODE; suggestion.best && k < function->parameter_count; k++)
-        if (function->parameters[k].name == suggestion.best)
-            return &function->parameters[k];
-    return NULL;
+    for (int k = function->parameter_count - 1; k >= first; k--)
+        if (function->parameters[k].name == suggestion.best || strcmp(function->parameters[k].name, field) == 0)
+            meant = k;
+    lua_pushinteger(L, meant + 1);
+    return meant >= 0;
 }
 
-/* The fields of the table at `table`, which is not changed, with the names of parameters. */
-static void name_fields(struct script_context *c, const struct script_function *function, int table, int named) {
-    lua_State *L = c->sandbox.lua;
-    for (int exact = 1; exact >= 0; exact--) {
-        for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
-            if (lua_type(L, -2) != LUA_TSTRING)
-                continue;
-            const struct script_parameter *p = meant_field(function, lua_tostring(L, -2));
-            if (!p || (strcmp(p->name, lua_tostring(L, -2)) == 0) != exact)
-                continue;
-            bool taken = lua_getfield(L, named, p->name) != LUA_TNIL;
-            lua_pop(L, 1);
-            if (taken)
-                continue;
-            lua_pushvalue(L, -1);
-            lua_setfield(L, named, p->name);
-        }
-    }
+static int is_gr(lua_State *L) {
+    lua_pushboolean(L, context_is_gr(L, 1));
+    return 1;
 }
 
-/* Whether the value at the top fits the parameter, independent of the name of its field. */
-static bool is_meant_by_type(lua_State *L, const struct script_parameter *p) {
-    const struct handle *handle = handle_at(L, -1);
-    switch ((int)p->kind) {
-    case KIND_NODE:
-        return handle && handle->type == HANDLE_NODE;
-    case KIND_MATERIAL:
-        return handle && handle->type == HANDLE_MATERIAL;
-    case KIND_LIGHTS: {
-        if (lua_istable(L, -1)) {
-            lua_rawgeti(L, -1, 1);
-            handle = handle_at(L, -1);
-            lua_pop(L, 1);
-        }
-        return handle && handle->type == HANDLE_LIGHT;
-    }
-    case KIND_OUTPUT:
-        return lua_type(L, -1) == LUA_TSTRING && strchr(lua_tostring(L, -1), '.');
-    }
-    return false;
+static int picture_name(lua_State *L) {
+    char name[PATH_SIZE];
+    context_picture_name(context_of(L), "-lenient.png", name, sizeof name);
+    lua_pushstring(L, name);
+    return 1;
 }
 
-/* Fields with unknown names, for parameters without a value; of several, the first in byte order. */
-static void name_fields_by_type(struct script_context *c, const struct script_function *function, int table,
-                                int named) {
-    lua_State *L = c->sandbox.lua;
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        const struct script_parameter *p = &function->parameters[k];
-        const char *first = NULL;
-        bool taken = lua_getfield(L, named, p->name) != LUA_TNIL;
-        lua_pop(L, 1);
-        if (taken)
-            continue;
-        for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
-            if (lua_type(L, -2) != LUA_TSTRING || !is_meant_by_type(L, p))
-                continue;
-            const char *name = lua_tostring(L, -2);
-            if (!meant_field(function, name) && (!first || strcmp(name, first) < 0))
-                first = name;
-        }
-        if (!first)
-            continue;
-        lua_getfield(L, table, first);
-        lua_setfield(L, named, p->name);
+static int push_root(lua_State *L) {
+    struct node *root = lenient_root(context_of(L));
+    if (root)
+        handle_push(L, HANDLE_NODE, root);
+    return root != NULL;
+}
+
+static int warn(lua_State *L) {
+    struct sandbox *sandbox = sandbox_of(L);
+    const struct running_function outer = sandbox->running;
+    lenient_warn(context_of(sandbox_enter(L)->lua), "%s", lua_tostring(L, 1));
+    sandbox->running = outer;
+    return 0;
+}
+
+static void set_text(lua_State *L, const char *name, const char *text) {
+    lua_pushstring(L, text);
+    lua_setfield(L, -2, name);
+}
+
+static void push_parameter(lua_State *L, const struct script_parameter *p) {
+    static const struct {
+        unsigned flag;
+        const char *name;
+    } flags[] = {{OPTIONAL, "optional"},          {LOW_OPEN, "low_open"}, {HIGH_OPEN, "high_open"},
+                 {NOT_ZERO, "not_zero"},          {OR_CURVE, "or_curve"}, {OR_TEXTURE, "or_texture"},
+                 {GHOST_IS_NONE, "ghost_is_none"}};
+    lua_newtable(L);
+    set_text(L, "name", p->name);
+    set_text(L, "kind", kind_name(p->kind));
+    set_text(L, "choices", p->choices);
+    lua_pushnumber(L, p->low);
+    lua_setfield(L, -2, "low");
+    lua_pushnumber(L, p->high);
+    lua_setfield(L, -2, "high");
+    lua_pushlightuserdata(L, (void *)(uintptr_t)p);
+    lua_setfield(L, -2, "row");
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
+        lua_pushboolean(L, (p->flags & flags[i].flag) != 0);
+        lua_setfield(L, -2, flags[i].name);
     }
 }
 
-/* Nodes after the positional arguments, or unnamed entries, for the parameter that accepts any number of nodes. */
-static void name_rest(struct script_context *c, const struct script_function *function, int first, int named) {
-    lua_State *L = c->sandbox.lua;
+/* Pushes the table of a function: its parameters, and its forms as lists of {parameter, optional}. It is kept. */
+static void push_description(lua_State *L, const struct script_function *function) {
+    static const char *const results[] = {RESULT_KINDS(LIST_WORD)};
+    bool optional;
     int index;
-    const struct script_parameter *rest = function_rest(function, &index);
-    if (!rest)
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, function) == LUA_TTABLE)
         return;
     lua_newtable(L);
-    for (int i = first; i < named; i++) {
-        lua_pushvalue(L, i);
-        lua_rawseti(L, -2, i - first + 1);
+    lua_replace(L, -2);
+    set_text(L, "name", function->name);
+    set_text(L, "owner", function->owner == OWNER_NODE ? "node" : "gr");
+    set_text(L, "result", results[function->result]);
+    const struct script_parameter *rest = function_rest(function, &index);
+    set_text(L, "rest", rest ? rest->name : NULL);
+    lua_pushboolean(L, function_renders(function));
+    lua_setfield(L, -2, "renders");
+    lua_pushinteger(L, function->owner == OWNER_NODE ? 2 : 1);
+    lua_setfield(L, -2, "first");
+    lua_pushlightuserdata(L, (void *)(uintptr_t)function);
+    lua_setfield(L, -2, "row");
+    for (int k = 0; k < function->parameter_count; k++) {
+        push_parameter(L, &function->parameters[k]);
+        lua_rawseti(L, -2, k + 1);
     }
-    lua_setfield(L, named, rest->name);
+    lua_newtable(L);
+    for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
+        const char *form = function->forms[k];
+        lua_newtable(L);
+        for (int n = 1; form_next(function, &form, &index, &optional); n++) {
+            lua_newtable(L);
+            lua_rawgeti(L, -4, index + 1);
+            lua_setfield(L, -2, "parameter");
+            lua_pushboolean(L, optional);
+            lua_setfield(L, -2, "optional");
+            lua_rawseti(L, -2, n);
+        }
+        lua_rawseti(L, -2, k + 1);
+    }
+    lua_setfield(L, -2, "forms");
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, function);
 }
 
-/* Reads the arguments from the table at `named`. */
-static void read_named(struct script_context *c, const struct script_function *function, int named,
-                       const bool wanted[PARAMETER_LIMIT], struct script_value *args) {
-    lua_State *L = c->sandbox.lua;
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        const struct script_parameter *p = &function->parameters[k];
-        lua_settop(L, named);
-        if (lua_getfield(L, named, p->name) != LUA_TNIL)
-            lenient_convert(c, named + 1, function, p, args);
-        if (lua_isnil(L, -1) && wanted[k])
-            lenient_default(c, function, p);
-        if (lua_isnil(L, -1))
-            continue;
-        lua_pushvalue(L, -1);
-        lua_setfield(L, named, p->name); /* keeps the string alive */
-        struct protected_reading reading = {.function = function, .parameter = p, .args = &args[k]};
-        lua_pushcfunction(L, read_protected);
-        lua_insert(L, -2);
-        lua_pushlightuserdata(L, &reading);
-        lua_insert(L, -2);
-        if (!survives(c, 2))
-            args[k] = (struct script_value){0};
-    }
+/* Pushes a function of lenient.lua. */
+static void push_lua(lua_State *L, const char *name) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, lenient_lua);
+    lua_getfield(L, -1, name);
+    lua_replace(L, -2);
 }
+
+void lenient_open(lua_State *L) {
+    static const luaL_Reg helpers[] = {{"read", read_value},
+                                       {"resembles", resembles},
+                                       {"meant_field", meant_field},
+                                       {"is_gr", is_gr},
+                                       {"picture_name", picture_name},
+                                       {"root", push_root},
+                                       {"warning", warn},
+                                       {"handle", lenient_handle_type},
+                                       {"new_ghost", lenient_ghost_new},
+                                       {"ghost_info", lenient_ghost_info},
+                                       {"add", lenient_ghost_add},
+                                       {NULL, NULL}};
+    embedded_run(L, lenient_lua, helpers);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, lenient_lua);
+    push_lua(L, "open");
+    lenient_push_metatables(L);
+    context_push_functions(L);
+    lua_getglobal(L, "gr");
+    lua_call(L, 3, 0);
+}
+
+bool lenient_own_field(lua_State *L) {
+    push_lua(L, "fields");
+    lua_pushvalue(L, 1);
+    if (lua_rawget(L, -2) != LUA_TTABLE)
+        return false;
+    lua_pushvalue(L, 2);
+    return lua_rawget(L, -2) != LUA_TNIL;
+}
+
+/* The call. */
 
 /* The index of a parameter that the function has. */
 static int index_of(const struct script_function *function, const char *name) {
@@ -460,51 +335,23 @@ static int index_of(const struct script_function *function, const char *name) {
     return index;
 }
 
-/* A missing factor of node:scale is equal to that of x. */
-static void complete_scale(const struct script_function *function, struct script_value *args) {
-    const struct script_value *x = &args[index_of(function, "x")];
-    if (args[index_of(function, "vector")].given || !x->given)
-        return;
-    for (int k = index_of(function, "y"); k <= index_of(function, "z"); k++)
-        if (!args[k].given)
-            args[k] = *x;
-}
-
-/* False: an argument without a default is missing. */
+/* False: an argument without a default is missing, or a shape has no extent. What keeps texts of the arguments stays on
+ * the stack. */
 static bool forgive(struct script_context *c, const struct script_function *function, int first,
                     struct script_value *args) {
     lua_State *L = c->sandbox.lua;
-    bool wanted[PARAMETER_LIMIT] = {false},
-         is_scale = function->owner == OWNER_NODE && strcmp(function->name, "scale") == 0;
-    int named = lua_gettop(L) + 1;
-    luaL_checkstack(L, 60, NULL);
-    memset(args + (function->owner == OWNER_NODE), 0,
-           (size_t)(function->parameter_count - (function->owner == OWNER_NODE)) * sizeof *args);
-    c->lenient->nothing = false;
-    lua_newtable(L);
-    if (arguments_have_names(L, function, first, named - 1)) {
-        name_fields(c, function, first, named);
-        name_fields_by_type(c, function, first, named);
-        for (int k = 0; k < function->parameter_count; k++)
-            wanted[k] = !(function->parameters[k].flags & OPTIONAL);
-    } else {
-        name_positional(c, function, first, named, wanted);
-        if (is_scale)
-            wanted[index_of(function, "y")] = wanted[index_of(function, "z")] = false;
-        name_rest(c, function, first, named);
-    }
-    read_named(c, function, named, wanted, args);
-    if (is_scale)
-        complete_scale(function, args);
-    lua_settop(L, named - 1);
-    for (int k = 0; k < function->parameter_count; k++) {
-        const struct script_parameter *p = &function->parameters[k];
-        bool may_miss =
-            (p->flags & (OPTIONAL | GHOST_IS_NONE)) || (function_renders(function) && p->kind == KIND_POINT);
-        if (wanted[k] && !args[k].given && !may_miss)
-            return false;
-    }
-    return true;
+    int last = lua_gettop(L), from = function->owner == OWNER_NODE;
+    memset(args + from, 0, (size_t)(function->parameter_count - from) * sizeof *args);
+    luaL_checkstack(L, last + 60, NULL);
+    push_lua(L, "forgive");
+    push_description(L, function);
+    lua_pushlightuserdata(L, args);
+    lua_pushboolean(L, arguments_have_names(L, function, first, last));
+    for (int i = first; i <= last; i++)
+        lua_pushvalue(L, i);
+    lua_call(L, 3 + (last - first + 1), 2);
+    c->sandbox.lua = L;
+    return lua_toboolean(L, -2);
 }
 
 /* Keeps only the arguments of the positional forms. */
@@ -521,48 +368,16 @@ static void drop_fields(const struct script_function *function, struct script_va
     }
 }
 
-/* The call. */
-
-static int push_lost(lua_State *L, const struct script_function *function, int first) {
-    struct script_context *c = context_of(L);
-    int last = lua_gettop(L);
-    switch (function->result) {
-    case RESULT_NOTHING:
-    case RESULT_FRAMES:
-        return 0;
-    case RESULT_SELF:
-        lua_pushvalue(L, 1);
-        return 1;
-    case RESULT_FACES:
-        lua_newtable(L);
-        lua_newtable(L);
-        return 2;
-    case RESULT_BOUNDS:
-        for (int k = 0; k < 2; k++) {
-            lua_createtable(L, 3, 0);
-            for (int d = 1; d <= 3; d++) {
-                lua_pushnumber(L, k);
-                lua_rawseti(L, -2, d);
-            }
-        }
-        return 2;
-    case RESULT_NODE:
-    case RESULT_MATERIAL:
-    case RESULT_LIGHT:
-    case RESULT_TEXTURE:
-    case RESULT_FOG:
-    case RESULT_SKY:
-    case RESULT_GLYPHS:
-        break;
-    }
-    luaL_checkstack(L, 20, NULL);
-    lenient_push_ghost(L, function->name, false);
-    if (strstr(function->name, "difference")) /* its first operand remains */
-        for (int i = first; i <= last && !lenient_ghost_as(c, handle_at(L, last + 1), HANDLE_NODE, false); i++)
-            lenient_ghost_take(c, last + 1, i, i);
-    else
-        lenient_ghost_take(c, last + 1, first, last);
-    return 1;
+/* Pushes what a call that failed returns; the arguments end at `last`. */
+static int push_lost(lua_State *L, const struct script_function *function, int last) {
+    lua_settop(L, last);
+    luaL_checkstack(L, last + 20, NULL);
+    push_lua(L, "lost");
+    push_description(L, function);
+    for (int i = 1; i <= last; i++)
+        lua_pushvalue(L, i);
+    lua_call(L, last + 1, LUA_MULTRET);
+    return lua_gettop(L) - last;
 }
 
 /* Runs the function with these arguments; an error of the scene becomes a warning. */
@@ -602,7 +417,7 @@ static struct node *self_of(struct script_context *c) {
 int lenient_call(struct script_context *c, const struct script_function *function, struct script_result *result) {
     lua_State *L = c->sandbox.lua;
     struct script_value args[PARAMETER_LIMIT] = {{0}};
-    int first = function->owner == OWNER_NODE ? 2 : 1;
+    int first = function->owner == OWNER_NODE ? 2 : 1, last = lua_gettop(L);
     bool complete = false;
     if (function->owner == OWNER_NODE) {
         struct node *node = self_of(c);
@@ -613,23 +428,21 @@ int lenient_call(struct script_context *c, const struct script_function *functio
             c->sandbox.running = (struct running_function){0};
             lenient_warn(c, "%s must be called with a colon on a node, as in n:%s(...), not on %s", title,
                          function->name, given);
-            lua_settop(L, lua_gettop(L) > 0 ? lua_gettop(L) : 1);
-            return push_lost(L, function, first);
+            return push_lost(L, function, last > 0 ? last : 1);
         }
         args[SELF] = (struct script_value){.given = true, .node = node};
         c->sandbox.running.subject = node->name;
     }
-    c->lenient->nothing = false;
     context_note_line(c);
     bool read = read_all(c, function, first, args, &complete);
     if (!read)
         warn_line(c, c->sandbox.raised);
     if (read && !complete && function->result != RESULT_NOTHING) /* an argument is a ghost, which was reported */
-        return push_lost(L, function, first);
+        return push_lost(L, function, last);
     bool done = read && complete && run(c, function, args, result);
     if (!done) {
-        if (!forgive(c, function, first, args) || c->lenient->nothing)
-            return push_lost(L, function, first);
+        if (!forgive(c, function, first, args))
+            return push_lost(L, function, last);
         done = run(c, function, args, result);
     }
     if (!done) {
@@ -644,7 +457,7 @@ int lenient_call(struct script_context *c, const struct script_function *functio
             c->lenient->root = root;
     }
     if (!done)
-        return push_lost(L, function, first);
+        return push_lost(L, function, last);
     take_material(c, function, first, result->pointer);
     note_result(c, function, args, result);
     return -1;

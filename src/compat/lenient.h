@@ -17,11 +17,14 @@ struct lenient {
     struct node *last; /* made or returned last */
     struct node *root; /* of the last gr.render that failed, or NULL */
     bool refused;      /* the name of a picture was refused: no other picture takes its place */
-    bool nothing;      /* the arguments of the call describe a shape without extent */
 };
 
 /* Creates it: the calls of the context are lenient. False without memory. */
 bool lenient_begin(struct script_context *context);
+/* Changes the metatables of handles, and the functions of gr on numbers and vectors, after all have been made. */
+void lenient_open(lua_State *L);
+/* Pushes the field at index 2 of the handle at index 1 if the script has set it. */
+bool lenient_own_field(lua_State *L);
 /* The call of a function of gr: never an error of the scene. -1: *result is its result; else a substitute has been
  * pushed, of that many values. */
 int lenient_call(struct script_context *context, const struct script_function *function, struct script_result *result);

@@ -4,18 +4,19 @@
 
 #include "call/context.h"
 
-/* Changes the metatables of handles; after all of them have been made. */
-void lenient_open(lua_State *L);
 void lenient_push_ghost(lua_State *L, const char *name, bool is_method);
 /* Pushes a loader for a module that does not exist, with a warning. */
 void lenient_replace_module(lua_State *L, const char *name);
-/* The node of the ghost, or NULL; if `make` is set, a missing node is created. */
+/* The node or material of the ghost, or NULL; if `make` is set, a missing node is created. */
 void *lenient_ghost_as(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
-/* Pushes the field at index 2 of the value at index 1 if the script has set it. */
-bool lenient_own_field(lua_State *L);
-/* __index of handles without methods: ignores fields that do not exist, with a warning. */
-int lenient_handle_index(lua_State *L);
-/* Adds the arguments `first` to `last`, and the entries of tables among them, to the ghost at stack index `at`. */
-void lenient_ghost_take(struct script_context *context, int at, int first, int last);
+/* Pushes the metatables by the names of their types. */
+void lenient_push_metatables(lua_State *L);
+
+/* What Lua calls (lenient.lua). The name of the type of a handle; nothing for other values. */
+int lenient_handle_type(lua_State *L);
+int lenient_ghost_new(lua_State *L);  /* (name, is a method) */
+int lenient_ghost_info(lua_State *L); /* its name, and whether it is a method */
+/* (ghost, value): adds a node as a child, and the first material. Returns whether the ghost has a node. */
+int lenient_ghost_add(lua_State *L);
 
 #endif

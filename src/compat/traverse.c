@@ -182,39 +182,7 @@ static int fixed_pairs(lua_State *L) {
     return 3;
 }
 
-/* table.foreach of Lua 5.0: f(key, value) until it returns something. Upvalue 1: the pairs above. */
-static int for_each(lua_State *L) {
-    luaL_checktype(L, 1, LUA_TTABLE);
-    luaL_checktype(L, 2, LUA_TFUNCTION);
-    lua_settop(L, 2);
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_pushvalue(L, 1);
-    lua_call(L, 1, 1); /* the iterator, at 3 */
-    lua_pushnil(L);
-    for (;;) {
-        lua_pushvalue(L, 3);
-        lua_pushvalue(L, 1);
-        lua_pushvalue(L, 4);
-        lua_call(L, 2, 2);
-        if (lua_isnil(L, -2))
-            return 0;
-        lua_pushvalue(L, -2);
-        lua_replace(L, 4);
-        lua_pushvalue(L, 2);
-        lua_insert(L, -3);
-        lua_call(L, 2, 1);
-        if (!lua_isnil(L, -1))
-            return 1;
-        lua_settop(L, 4);
-    }
-}
-
 void traverse_open(lua_State *L) {
     lua_pushcfunction(L, fixed_pairs);
     lua_setglobal(L, "pairs");
-    lua_getglobal(L, "table");
-    lua_pushcfunction(L, fixed_pairs);
-    lua_pushcclosure(L, for_each, 1);
-    lua_setfield(L, -2, "foreach");
-    lua_pop(L, 1);
 }

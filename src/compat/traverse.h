@@ -4,7 +4,7 @@
 
 #include <lua.h>
 
-/* Replaces pairs, and adds table.foreach of Lua 5.0. Runs protected and may raise. */
+/* Replaces pairs. Runs protected and may raise. */
 void traverse_open(lua_State *L);
 
 #endif

@@ -74,7 +74,7 @@ void completion_print(const struct options *options) {
                 script_each_name(print_topic, NULL);
             return;
         }
-        parts = parts || (!before && strcmp(words[i], "merge") == 0);
+        parts = parts || (!before && (strcmp(words[i], "merge") == 0 || strcmp(words[i], "compare") == 0));
         only_scripts = only_scripts || strcmp(words[i], "--") == 0;
         before = before && strcmp(words[i], "=") == 0                                  ? before
                  : option && !strchr(words[i], '=') && (divided || takes_word(option)) ? option
@@ -91,6 +91,6 @@ void completion_print(const struct options *options) {
     } else {
         (void)puts(parts ? "files" : "scenes");
         if (last <= 0)
-            (void)puts("merge\tjoin the parts of pictures");
+            (void)puts("merge\tjoin the parts of pictures\ncompare\tmeasure the difference of two pictures");
     }
 }

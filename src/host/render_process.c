@@ -1,6 +1,7 @@
 /* Scripts run one after the other in this process, so that meshes and images (assets) outlive the script that read
  * them. Each gr.render is a job: prepare, begin (names and film), build the world, render, deliver. The world lives
  * in the arena of the job, which is emptied for the next one. */
+#include "host/light_meter_internal.h"
 #include "host/render_process_internal.h"
 
 #include "base/clock.h"
@@ -130,6 +131,21 @@ static bool notes_changes(const struct picture_work *work) {
            !work->request->changed && !process->options->script.lenient;
 }
 
+struct world_input render_process_world_input(const struct picture_work *work) {
+    return (struct world_input){.scene = work->request->scene,
+                                .root = work->request->root,
+                                .lights = work->request->lights,
+                                .light_count = work->request->light_count,
+                                .sky = &work->request->sky,
+                                .shutter = work->job.settings.shutter,
+                                .accel = work->job.settings.accel,
+                                .linear_colours = settings_linear(&work->job.settings),
+                                .encodes = work->job.settings.tone.srgb,
+                                .classic = work->job.settings.integrator == INTEGRATOR_WHITTED,
+                                .warn = render_process_warn,
+                                .warn_context = work->process};
+}
+
 static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
                         struct error *error) {
     struct render_process *process = work->process;
@@ -140,19 +156,11 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
     process->runs_before = pool_progress(process->pool).runs;
     atomic_store(&control->build_done, 0);
     atomic_store(&control->build_step, 1);
-    const struct world_input input = {.scene = work->request->scene,
-                                      .root = work->request->root,
-                                      .lights = lights,
-                                      .light_count = light_count,
-                                      .sky = &work->request->sky,
-                                      .shutter = work->job.settings.shutter,
-                                      .accel = work->job.settings.accel,
-                                      .linear_colours = settings_linear(&work->job.settings),
-                                      .encodes = work->job.settings.tone.srgb,
-                                      .cache = is_frame(work) ? &process->world_cache : NULL,
-                                      .keeps_tables = notes_changes(work),
-                                      .warn = render_process_warn,
-                                      .warn_context = process};
+    struct world_input input = render_process_world_input(work);
+    input.lights = lights;
+    input.light_count = light_count;
+    input.cache = is_frame(work) ? &process->world_cache : NULL;
+    input.keeps_tables = notes_changes(work);
     bool ok = work->built = world_build(&work->world, &input, &process->job, process->pool, error);
     process->building = false;
     atomic_store(&control->build_step, 0);
@@ -331,6 +339,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     struct picture_request *picture = &work->picture_request;
     struct film *film = &work->film;
     const char *file = work->request->file;
+    if (!light_meter_measure(work, error))
+        return false;
     *picture = picture_request_of(process->options, job, work->request->frame);
     struct render_area area;
     char warning[256] = "";

@@ -69,4 +69,7 @@ struct picture_work {
     char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
 };
 
+/* For a world of the picture, without a cache. */
+struct world_input render_process_world_input(const struct picture_work *work);
+
 #endif

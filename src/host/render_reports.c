@@ -214,14 +214,9 @@ void render_process_report_samples(const struct picture_work *work) {
  * once for each line of a script with such a field. An option on the command line chooses the integrator for scenes
  * that were written for another one, so their fields get no notice then. */
 
-/* Whether the name of the file ends so. */
-static bool ends_in(const char *file, const char *ending) {
-    size_t length = strlen(file), end = strlen(ending);
-    return length >= end && strcasecmp(file + length - end, ending) == 0;
-}
-
 static bool is_linear_file(const struct picture_work *work, const char *file) {
-    bool linear = ends_in(file, ".pfm") || ends_in(file, ".hdr") || ends_in(file, ".exr");
+    const char *dot = strrchr(file, '.');
+    bool linear = dot && (!strcasecmp(dot, ".pfm") || !strcasecmp(dot, ".hdr") || !strcasecmp(dot, ".exr"));
     return linear && !work->picture_request.in_window && !work->process->options->display;
 }
 

@@ -17,9 +17,11 @@ static const struct phong *numbers_of(const struct material *material) {
     return &material_origin(material)->phong;
 }
 
-struct material material_flatten(const struct material *material) {
+struct material material_flatten(const struct material *material, bool classic) {
     struct material out = *material;
     out.phong = *numbers_of(material);
+    if (classic && out.openpbr && out.openpbr->classic && openpbr_classic(material, &out.phong, &out.fresnel))
+        out.openpbr = NULL;
     out.base = out.origin = NULL;
     out.older = NULL;
     out.name = NULL;
@@ -355,10 +357,13 @@ void material_eval(const struct material *material, const struct hit *hit, const
         eval_matte(numbers_of(material), hit, context, out);
         return;
     }
-    if (context->observer)
+    bool replaced = context->observer && !material->openpbr && context->authored->openpbr; /* by openpbr_classic */
+    if (context->observer && !replaced)
         material_inputs_observe(context->authored, hit, &inputs, context->observer, context->observer_context);
     else
         material_inputs_at(material, hit, &inputs);
+    if (replaced)
+        context->observer(context->observer_context, context->authored, &inputs);
     out->count = 0;
     out->albedo = inputs.kd;
     out->opacity = inputs.opacity;

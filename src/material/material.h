@@ -100,9 +100,10 @@ struct surface_inputs {
     bool fresnel;           /* material_eval, which has the media, replaces reflect and refract by F and 1 - F */
 };
 
-/* A copy that refers to no other material: it has its own copy of the numbers of the base at the end of its chain.
+/* A copy that refers to no other material: it has its own copy of the numbers of the base at the end of its chain, or
+ * with `classic`, those of openpbr_classic if the material wants them.
  * Tables of worlds have such copies, with indices instead of pointers (flatten_textures). */
-struct material material_flatten(const struct material *material);
+struct material material_flatten(const struct material *material, bool classic);
 /* The texture of an input, NULL where it is a number. */
 static inline const struct texture *material_texture(const struct material *material, enum material_input input) {
     return texture_at(material->textures, material->inputs[input]);

@@ -20,6 +20,7 @@ struct openpbr {
     struct vec3 fuzz_colour;
     bool deep; /* transmission_depth is above 0: the colour is that of the inside */
     bool thin_walled;
+    bool classic;                      /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */
     struct vec3 tangent, coat_tangent; /* in the world; 0: along u */
 };
 
@@ -28,6 +29,10 @@ struct openpbr openpbr_defaults(void);
 
 /* The index that Fresnel's formulas see: specular_weight scales the reflectance head on. */
 double openpbr_ior(double ior, double specular_weight);
+
+/* Numbers of gr.material that look like the layers, and never reflect more light than arrives. Textures of base_color
+ * stay what they are. False: there are none, for metals whose colour or share is a texture. */
+bool openpbr_classic(const struct material *material, struct phong *out, bool *fresnel);
 
 /* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,

@@ -8,6 +8,7 @@
 #include "render/sample_internal.h"
 #include "scene/node.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 
 enum { GRID_SIDE = 5, LIGHTS_CHECKED = 64, NOTICE_SIZE = 512 };
@@ -23,10 +24,16 @@ struct check {
     void *context;
 };
 
-static void give(const struct check *check, enum scene_fault kind, const char *text) {
+__attribute__((format(printf, 3, 4))) static void give(const struct check *check, enum scene_fault kind,
+                                                       const char *format, ...) {
+    char text[NOTICE_SIZE];
+    va_list arguments;
     if (*check->noticed >> kind & 1)
         return;
     *check->noticed |= 1u << kind;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
     check->notice(check->context, text);
 }
 
@@ -84,7 +91,6 @@ static bool check_view(const struct check *check) {
     const struct world *world = check->world;
     const struct box *all = &check->bounds;
     struct view_planes planes;
-    char text[NOTICE_SIZE];
     if (!is_bounded(all) || !make_planes(&check->camera, &planes))
         return true;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
@@ -92,11 +98,9 @@ static bool check_view(const struct check *check) {
             return true;
     }
     bool behind = plane_before(&planes, all) == 0;
-    (void)snprintf(text, sizeof text,
-                   "nothing is in view: the shapes lie between {%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}, %s",
-                   all->min.x, all->min.y, all->min.z, all->max.x, all->max.y, all->max.z,
-                   behind ? "behind the eye (see eye and view)" : "outside of the picture (see eye, view and fov)");
-    give(check, FAULT_VIEW, text);
+    give(check, FAULT_VIEW, "nothing is in view: the shapes lie between {%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}, %s",
+         all->min.x, all->min.y, all->min.z, all->max.x, all->max.y, all->max.z,
+         behind ? "behind the eye (see eye and view)" : "outside of the picture (see eye, view and fov)");
     return false;
 }
 
@@ -104,17 +108,12 @@ static void check_size(const struct check *check) {
     const struct box *all = &check->bounds;
     const struct camera_frame *camera = &check->camera;
     bool is_planar = camera->lens.projection == PROJECTION_PERSPECTIVE;
-    char text[NOTICE_SIZE];
-    if (!is_bounded(all))
-        return;
     double size = vec3_length(vec3_sub(all->max, all->min));
     double distance = vec3_length(vec3_sub(vec3_scale(vec3_add(all->min, all->max), 0.5), camera->eye));
     double pixel = vec3_length(camera->right) * (is_planar ? distance : 1);
-    if (size >= pixel || size == 0)
-        return;
-    (void)snprintf(text, sizeof text,
-                   "all shapes together are smaller than a pixel: %.3g units, %.4g units from the eye", size, distance);
-    give(check, FAULT_SIZE, text);
+    if (is_bounded(all) && size < pixel && size > 0)
+        give(check, FAULT_SIZE, "all shapes together are smaller than a pixel: %.3g units, %.4g units from the eye",
+             size, distance);
 }
 
 /* --- light --- */
@@ -145,14 +144,12 @@ static void check_light(const struct check *check) {
         if (light_brightest(&world->lights[i]) > 0)
             return;
     }
-    if (world->light_count > 0)
-        give(check, FAULT_LIGHT,
-             "there is no light: every light is black, as a sun below the horizon is, and the shapes are too");
-    else
-        give(check, FAULT_LIGHT,
-             paths ? "there is no light, and the shapes are black: no lights, no sky or background that shines, no "
-                     "emission"
-                   : "there is no light, and the shapes are black: no lights, no ambient, no emission");
+    give(check, FAULT_LIGHT, "there is no light%s%s",
+         world->light_count > 0 ? ": every light is black, as a sun below the horizon is, and the shapes are too"
+                                : ", and the shapes are black: no lights, no ",
+         world->light_count > 0 ? ""
+         : paths                ? "sky or background that shines, no emission"
+                                : "ambient, no emission");
 }
 
 /* --- what has no effect --- */
@@ -176,16 +173,13 @@ static const char *lone_input(const struct material *material, const char **need
 static void check_materials(const struct check *check) {
     const struct world *world = check->world;
     bool focuses = false;
-    char text[NOTICE_SIZE];
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct material *material = &world->materials[i];
         const char *needs, *input = lone_input(material, &needs);
         focuses = focuses || material_specular(material) > 0;
-        if (!input)
-            continue;
-        (void)snprintf(text, sizeof text, "%s has no effect in a material without %s%s%.100s%s", input, needs,
-                       material->name ? " ('" : "", material->name ? material->name : "", material->name ? "')" : "");
-        give(check, FAULT_FIELD, text);
+        if (input)
+            give(check, FAULT_FIELD, "%s has no effect in a material without %s%s%.100s%s", input, needs,
+                 material->name ? " ('" : "", material->name ? material->name : "", material->name ? "')" : "");
     }
     if (check->job->settings.caustics.photons > 0 && !focuses)
         give(check, FAULT_CAUSTICS, "caustics have no effect: nothing in the scene mirrors or refracts light");
@@ -252,14 +246,11 @@ static bool is_room(const struct world *world, uint32_t solid) {
 
 static void check_insides(struct check *check) {
     const struct world *world = check->world;
-    char text[NOTICE_SIZE];
     /* A solid around the scene is a room; one around the eye alone is a mistake. */
     uint32_t room = enclosing_solid(check, check->camera.eye);
-    if (room != WORLD_NOTHING && !is_room(world, room) && fills_picture(check, room)) {
-        (void)snprintf(text, sizeof text, "the eye is inside '%.100s', an opaque solid, and sees nothing else",
-                       primitive_node(world, room)->name);
-        give(check, FAULT_EYE, text);
-    }
+    if (room != WORLD_NOTHING && !is_room(world, room) && fills_picture(check, room))
+        give(check, FAULT_EYE, "the eye is inside '%.100s', an opaque solid, and sees nothing else",
+             primitive_node(world, room)->name);
     for (uint32_t i = 0; i < world->light_count && i < LIGHTS_CHECKED; i++) {
         const struct light *light = &world->lights[i];
         struct light_target middle;
@@ -267,23 +258,18 @@ static void check_insides(struct check *check) {
         if (light->lit || !light_middle(light, &middle) || middle.distant)
             continue;
         uint32_t solid = enclosing_solid(check, middle.at);
-        if (solid == WORLD_NOTHING || solid == room)
-            continue;
-        (void)snprintf(
-            text, sizeof text,
-            "the light at {%.4g, %.4g, %.4g} is inside '%.100s', an opaque solid, and lights nothing outside",
-            middle.at.x, middle.at.y, middle.at.z, primitive_node(world, solid)->name);
-        give(check, FAULT_LIGHT_INSIDE, text);
-        return;
+        if (solid != WORLD_NOTHING && solid != room)
+            give(check, FAULT_LIGHT_INSIDE,
+                 "the light at {%.4g, %.4g, %.4g} is inside '%.100s', an opaque solid, and lights nothing outside",
+                 middle.at.x, middle.at.y, middle.at.z, primitive_node(world, solid)->name);
     }
 }
 
 static void notice_empty(const struct check *check, const struct node *solid) {
-    char text[NOTICE_SIZE], position[256] = "";
+    char position[256] = "";
     if (solid->line > 0)
         (void)snprintf(position, sizeof position, " (made at %.200s:%u)", solid->file, (unsigned)solid->line);
-    (void)snprintf(text, sizeof text, "'%.100s' is empty: nothing is left of its operands%s", solid->name, position);
-    give(check, FAULT_SOLID, text);
+    give(check, FAULT_SOLID, "'%.100s' is empty: nothing is left of its operands%s", solid->name, position);
 }
 
 void scene_check(const struct render_job *job, unsigned *noticed, world_warning *notice, void *context) {

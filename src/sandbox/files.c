@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/suggestion.h"
-#include "sandbox/other_files_internal.h"
+#include "sandbox/hints.h"
 #include "sandbox/sandbox.h"
 
 #include <assert.h>
@@ -214,40 +214,34 @@ static void adopt_library(lua_State *L, const char *path) {
         lua_pop(L, 1); /* byte code (without the sandbox) may have no globals */
 }
 
-/* The name of a file without its folder and its ending; NULL without memory. */
-static const char *stem_of(struct sandbox *sandbox, const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    return arena_format(&sandbox->call, "%.*s", dot ? (int)(dot - name) : (int)strlen(name), name);
-}
-
 const char *files_hint_of_missing_scene(struct sandbox *sandbox) {
-    const char *path = sandbox->files.path, *slash = strrchr(path, '/'), *found, *stem = stem_of(sandbox, path);
-    const char *hint = other_command_words(slash ? slash + 1 : path);
-    const char *with_ending = arena_format(&sandbox->call, "%s.lua", path);
+    struct file_search *search = &sandbox->files.search;
+    const char *path = sandbox->files.path, *with_ending = arena_format(&sandbox->call, "%s.lua", path), *found;
     struct file_identity identity;
-    struct suggestion suggestion;
-    if (!stem || !with_ending || file_identity_of(path, &identity))
+    if (!with_ending || file_identity_of(path, &identity))
         return "";
-    const char *meant = file_is_regular(with_ending) ? with_ending : NULL;
-    suggest_begin(&suggestion, stem);
-    if (!hint && !meant && /* lists the files */
-        search_find(&sandbox->files.search, sandbox->path_policy, sandbox->files.folder, path, &found)) {
-        for (uint32_t i = 0; i < sandbox->files.search.count; i++) {
-            const char *file = sandbox->files.search.files[i], *other = stem_of(sandbox, file);
-            size_t before = suggestion.distance, length = strlen(file);
-            if (other && length > 4 && strcmp(file + length - 4, ".lua") == 0)
-                suggest_offer(&suggestion, other);
-            meant = suggestion.distance < before ? file : meant;
-        }
-    }
-    hint = meant  ? arena_format(&sandbox->call, "; did you mean '%s'?", meant)
-           : hint ? arena_format(&sandbox->call, "; %s", hint)
-                  : "";
-    return hint ? hint : "";
+    if (!file_is_regular(with_ending))
+        with_ending = NULL;
+    (void)search_find(search, sandbox->path_policy, sandbox->files.folder, path, &found); /* lists the files */
+    return hint_of_missing(sandbox, path, with_ending, search->files, search->count);
 }
 
 /* Pushes the chunk, or a message. Raises only before the file is mapped, so the file is always unmapped. A first line
  * that starts with # is skipped, but not its line end, so that line numbers stay correct. */
+static bool contains(const char *text, size_t size, const char *word) {
+    const size_t length = strlen(word);
+    for (size_t at = 0; at + length <= size; at++)
+        if (text[at] == word[0] && memcmp(text + at, word, length) == 0)
+            return true;
+    return false;
+}
+
+/* Notes how the scene renders: by positions, as scenes of other programs do, or by fields. */
+static void note_style(struct sandbox *sandbox, const char *text, size_t size) {
+    sandbox->is_positional = contains(text, size, "gr.render(") && !contains(text, size, "gr.render{") &&
+                             !contains(text, size, "gr.render {") && !contains(text, size, "gr.frames");
+}
+
 int files_load(lua_State *L, const char *path) {
     struct sandbox *sandbox = sandbox_of(L);
     struct source_name *source = arena_alloc(&sandbox->keep, sizeof *source);
@@ -280,9 +274,11 @@ int files_load(lua_State *L, const char *path) {
         size -= end ? (size_t)(end - text) : size;
         text = end ? end : text;
     }
+    if (strcmp(path, sandbox->files.path) == 0)
+        note_style(sandbox, text, size);
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options->no_sandbox ? "bt" : "t");
     const char *other = status == LUA_ERRSYNTAX && strcmp(path, sandbox->files.path) == 0
-                            ? other_file_words(path, bytes.data, bytes.size)
+                            ? hint_of_file(sandbox, path, bytes.data, bytes.size)
                             : NULL;
     file_unmap(&bytes);
     if (other) {

@@ -6,6 +6,7 @@
 #include "sandbox/libraries_internal.h"
 
 #include "math/elementary.h"
+#include "sandbox/embedded.h"
 #include "sandbox/sandbox.h"
 
 #include <assert.h>
@@ -159,6 +160,7 @@ void libraries_open(lua_State *L) {
         luaL_requiref(L, libraries[k].name, libraries[k].func, 1);
         lua_pop(L, 1);
     }
+    embedded_open(L);
     set_function(L, "os", "exit", end_script);
     if (sandbox_of(L)->options->no_sandbox)
         return;

@@ -41,6 +41,8 @@ void sandbox_open(lua_State *L) {
 
 uint64_t sandbox_end(struct sandbox *sandbox) {
     streams_close(sandbox);
+    if (sandbox->hints)
+        lua_close(sandbox->hints);
     arena_destroy(&sandbox->files.search.arena);
     arena_destroy(&sandbox->call);
     arena_destroy(&sandbox->keep);
@@ -66,12 +68,12 @@ bool sandbox_is_library(const struct sandbox *sandbox, const char *source) {
     return length > 0 && source[0] == '@' && strncmp(source + 1, library, length) == 0 && source[length + 1] == '/';
 }
 
-/* The frame of sandbox_find_frame; *entry is the function of the library that it called, if there is one. */
-static bool find_frame(lua_State *L, lua_Debug *frame, lua_Debug *entry, bool *has_entry) {
+/* The frame of sandbox_find_frame; *entry is the function of the library that it called: in line 0 if there is none. */
+static bool find_frame(lua_State *L, lua_Debug *frame, lua_Debug *entry) {
     const struct sandbox *sandbox = sandbox_of(L);
     lua_Debug at;
     bool found = false;
-    *has_entry = false;
+    entry->currentline = 0;
     for (int level = 0; lua_getstack(L, level, &at); level++) {
         lua_getinfo(L, "l", &at);
         if (at.currentline <= 0 || !lua_getinfo(L, "S", &at))
@@ -83,16 +85,14 @@ static bool find_frame(lua_State *L, lua_Debug *frame, lua_Debug *entry, bool *h
         if (of_scene)
             return true;
         *entry = at;
-        *has_entry = true;
     }
-    *has_entry = false;
+    entry->currentline = 0;
     return found;
 }
 
 bool sandbox_find_frame(lua_State *L, lua_Debug *frame) {
     lua_Debug entry;
-    bool has_entry;
-    return find_frame(L, frame, &entry, &has_entry);
+    return find_frame(L, frame, &entry);
 }
 
 const char *sandbox_frame_file(const lua_Debug *frame) {
@@ -101,13 +101,12 @@ const char *sandbox_frame_file(const lua_Debug *frame) {
 
 void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
     lua_Debug frame, entry;
-    bool has_entry;
-    if (!find_frame(sandbox->lua, &frame, &entry, &has_entry)) {
+    if (!find_frame(sandbox->lua, &frame, &entry)) {
         snprintf(out, size, "%s: ", sandbox->files.path);
         return;
     }
     int length = snprintf(out, size, "%s:%d: ", sandbox_frame_file(&frame), frame.currentline);
-    if (!has_entry || !lua_getinfo(sandbox->lua, "n", &entry) || !entry.name || (size_t)length >= size)
+    if (entry.currentline == 0 || !lua_getinfo(sandbox->lua, "n", &entry) || !entry.name || (size_t)length >= size)
         return;
     const char *module = strrchr(entry.source, '/') + 1; /* below the folder of the library */
     snprintf(out + length, size - (size_t)length, "%.*s.%.60s: ", (int)strcspn(module, "."), module, entry.name);

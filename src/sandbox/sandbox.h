@@ -59,10 +59,12 @@ struct sandbox {
     struct running_function running;
     char error_suffix[SUFFIX_SIZE];    /* at the end of errors: " (frame 7)", or "" */
     struct script_line *checked_lines; /* sandbox_is_new_line: CHECKED_LINES of them, in `keep` */
+    lua_State *hints;                  /* the state of hints.c; NULL until the first hint */
     size_t hint_bytes;                 /* of scripts read again for hints */
     char raised[1536];                 /* the last error of a C function, without its position */
     char refused[512];                 /* why io.open returned nil the last time, or "" */
     bool unforgivable;                 /* --lenient would not continue after it */
+    bool is_positional;                /* the scene renders by positions, as scenes of other programs do */
     struct error fatal;
     bool ended; /* os.exit was called with success */
     /* Pushes a loader for a module that does not exist. NULL: that is an error. */

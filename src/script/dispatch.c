@@ -11,13 +11,13 @@
 #include "formats/font.h"
 #include "record/record.h"
 #include "script/gr_frames_internal.h"
+#include "script/gr_words_internal.h"
 #include "script/table_internal.h"
 #include "settings/foreign_words.h"
 
 #include <assert.h>
 #include <lauxlib.h>
 #include <limits.h>
-#include <stdio.h>
 #include <string.h>
 
 static void push_numbers(lua_State *L, const double numbers[3]) {
@@ -100,6 +100,8 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
 _Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in answer()");
 
 static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
+    if (function->in_lua)
+        return words_answer(L, function);
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;
@@ -311,40 +313,6 @@ static void set_index(lua_State *L, const void *metatable_key, lua_CFunction fun
     lua_pop(L, 1);
 }
 
-/* A function of numbers and vectors with --lenient (upvalues: itself, its name): 0 takes the place of an argument that
- * it refuses, or of its result. */
-static int call_leniently(lua_State *L) {
-    int refused = 0, count = lua_gettop(L);
-    const char *name = lua_tostring(L, lua_upvalueindex(2));
-    for (;;) {
-        lua_pushvalue(L, lua_upvalueindex(1));
-        for (int i = 1; i <= count; i++)
-            lua_pushvalue(L, i);
-        if (lua_pcall(L, count, LUA_MULTRET, 0) == LUA_OK)
-            return lua_gettop(L) - count;
-        /* luaL_argerror: "bad argument #3 to '?' (a number is needed)" */
-        const char *message = lua_tostring(L, -1), *why = message ? strchr(message, '(') : NULL;
-        int wrong = 0;
-        if (!why || sscanf(message, "bad argument #%d to", &wrong) != 1 || wrong < 1)
-            return lua_error(L);
-        bool again = wrong > refused;
-        struct sandbox *sandbox = &context_of(L)->sandbox;
-        const struct running_function outer = sandbox->running;
-        sandbox->lua = L;
-        sandbox->running = (struct running_function){.owner = "gr.", .name = name};
-        if (refused == 0 || !again)
-            lenient_warn(context_of(L), "argument %d: %.*s: %s 0", wrong, (int)strlen(why) - 2, why + 1,
-                         again ? "it is" : "the result is");
-        sandbox->running = outer;
-        count = wrong > count ? wrong : count;
-        lua_settop(L, count);
-        lua_pushinteger(L, 0);
-        if (!again)
-            return 1;
-        lua_replace(L, refused = wrong);
-    }
-}
-
 void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
@@ -356,10 +324,6 @@ void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_GR);
     for (size_t k = 0; value_function_at(k); k++) {
         lua_pushcfunction(L, value_function_at(k)->run);
-        if (context_of(L)->lenient) {
-            lua_pushstring(L, value_function_at(k)->name);
-            lua_pushcclosure(L, call_leniently, 2);
-        }
         lua_setfield(L, -2, value_function_at(k)->name);
     }
     lua_pushstring(L, GRAY_VERSION);

@@ -44,12 +44,16 @@ static void describe_parameter(const struct script_parameter *p, char out[DOCUME
     bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
     choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
-    bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
-    size_t used = (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s", p->name,
-                                   p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
-                                   or_texture            ? " or a texture"
-                                   : p->flags & OR_CURVE ? " or a function"
-                                                         : "");
+    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE ? " or a texture"
+                       : p->flags & OR_CURVE                          ? " or a function"
+                       : p->flags & OR_COMPASS                        ? " or {azimuth = ..., elevation = ...}"
+                       : p->flags & OR_PAIR                           ? " or two numbers"
+                       : p->flags & OR_SKY                            ? " or a sky"
+                       : p->kind == KIND_NUMBER && choices[0]         ? " or "
+                                                                      : "";
+    size_t used =
+        (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
+                         more, p->kind == KIND_NUMBER ? choices : "");
     if (range[0])
         used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, ", %s", range);
     if (p->unit)
@@ -172,80 +176,30 @@ void script_each_name(void (*visit)(void *context, const char *owner, const char
             visit(context, "", function_at(f)->parameters[k].name, function_at(f)->parameters[k].help);
 }
 
+#define KIND_ANNOTATION(kind, name, words, annotation, like) [kind] = (annotation),
+
 static const char *annotation_kind(const struct script_parameter *p, char out[CHOICES_SIZE]) {
-    switch (p->kind) {
-    case KIND_NUMBER:
-        return "number";
-    case KIND_WHOLE:
-        return "integer";
-    case KIND_BOOLEAN:
-        return "boolean";
-    case KIND_TEXT:
-    case KIND_FILE:
-    case KIND_OUTPUT:
-        return "string";
-    case KIND_CHOICE:
-    case KIND_AXIS:
-        choices_words(p, "|", out, CHOICES_SIZE);
-        if (p->flags & OR_NUMBER)
-            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
-        if (p->flags & OR_CURVE)
-            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
-        return out;
-    case KIND_COLOUR:
-        return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";
-    case KIND_POINT:
-    case KIND_DIRECTION:
-    case KIND_TRIPLE:
-        return "gr.triple";
-    case KIND_INTERVAL:
-        return "number[]";
-    case KIND_SIZE:
-        return "number|gr.triple";
-    case KIND_QUATERNION:
-        return "number[]";
-    case KIND_PAIR:
-        return "number|number[]";
-    case KIND_NODE:
-        return "gr.node";
-    case KIND_MATERIALS:
-        return "table<string|integer, gr.material>";
-    case KIND_MATERIAL:
-        return "gr.material";
-    case KIND_IMAGE:
-        return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
-    case KIND_BACKGROUND:
-        return "gr.triple|string|gr.sky|gr.texture|function|'gradient'";
-    case KIND_FOG:
-        return "gr.fog";
-    case KIND_CAUSTICS:
-        return "integer|{photons?: integer, radius?: number}";
-    case KIND_STOPS:
-        return "number[][]";
-    case KIND_NODES:
-        return "gr.node[]";
-    case KIND_LIGHTS:
-        return "gr.light[]";
-    case KIND_POINTS:
-        return "gr.triple[]";
-    case KIND_PAIRS:
-        return "number[][]";
-    case KIND_FACES:
-        return "integer[][]";
-    case KIND_NUMBERS:
-        return "number|number[]";
-    case KIND_ROWS:
-        return "number[][]";
-    case KIND_CURVES:
-        return "number[][][]";
-    case KIND_FUNCTION:
-        return "function|gr.texture";
-    case KIND_CALLBACK:
-        return "function";
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
+    static const char *const annotations[] = {KIND_LIST(KIND_ANNOTATION)};
+    if (p->kind == KIND_COLOUR && (p->flags & (OR_PROFILE | OR_FUNCTION)))
+        return "gr.triple|string|gr.texture|function";
+    if (p->kind == KIND_IMAGE && (p->flags & OR_TEXTURE))
+        return "string|gr.texture|function";
+    if (p->kind == KIND_IMAGE && (p->flags & OR_SKY))
+        return "string|gr.texture|gr.sky";
+    if (p->kind == KIND_TEXT && (p->flags & OR_PAIR))
+        return "string|number[]";
+    if (p->kind == KIND_DIRECTION && (p->flags & OR_COMPASS))
+        return "gr.triple|{azimuth: number, elevation: number}";
+    choices_words(p, "|", out, CHOICES_SIZE);
+    if (p->kind == KIND_NUMBER && out[0])
+        return strcat(out, "|number");
+    if (annotations[p->kind])
+        return annotations[p->kind];
+    if (p->flags & OR_NUMBER)
+        (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
+    if (p->flags & OR_CURVE)
+        (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
+    return out;
 }
 
 static const char *annotation_type(const struct script_parameter *p, char out[CHOICES_SIZE]) {
@@ -257,6 +211,8 @@ static const char *annotation_type(const struct script_parameter *p, char out[CH
 }
 
 static const char *annotation_result(const struct script_function *function) {
+    if (function->passes)
+        return "gr.render.fields";
     switch (function->result) {
     case RESULT_NOTHING:
     case RESULT_FRAMES:
@@ -286,7 +242,7 @@ static const char *annotation_result(const struct script_function *function) {
 
 static void annotate_fields(struct document *document, const struct script_function *function) {
     const char *owner = function->owner == OWNER_NODE ? "node." : "";
-    document_add(document, "---@class gr.%s%s.fields\n", owner, function->name);
+    document_add(document, "---@class gr.%s%s.fields%s\n", owner, function->name, function->passes ? ": gr.render.fields" : "");
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         char type[CHOICES_SIZE], line[DOCUMENT_LINE];

@@ -53,6 +53,7 @@ enum {
     GEOMETRY_COAT_NORMAL,
     GEOMETRY_COAT_TANGENT,
     OPENPBR_GLOSSY_SAMPLES,
+    OPENPBR_CLASSIC,
 };
 
 /* A number between 0 and 1, a colour, an index: each may be a texture. */
@@ -68,6 +69,11 @@ enum {
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
             "At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies." \
+    }
+#define CLASSIC                                                                                                        \
+    {                                                                                                                  \
+        "classic", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                         \
+            "Whether Whitted's integrator shades it as a similar gr.material, which is faster."                   \
     }
 #define NORMAL_HELP "A normal map or bump map: a result of gr.bump, or the file of a normal map."
 #define TANGENT_HELP "Direction along which the facets of an anisotropic surface are smooth, in the world."
@@ -130,6 +136,7 @@ static const struct script_parameter openpbr_parameters[] = {
     [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
                                "The same for the coat."},
     [OPENPBR_GLOSSY_SAMPLES] = SAMPLES,
+    [OPENPBR_CLASSIC] = CLASSIC,
 };
 
 static double number_or(const struct script_value *value, double otherwise) {
@@ -297,6 +304,7 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->fuzz_weight = args[FUZZ_WEIGHT].number;
     out->fuzz_colour = colour_or(&args[FUZZ_COLOUR], out->fuzz_colour);
     out->fuzz_roughness = number_or(&args[FUZZ_ROUGHNESS], out->fuzz_roughness);
+    out->classic = args[OPENPBR_CLASSIC].boolean;
     out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
     out->tangent = args[GEOMETRY_TANGENT].vector;
     out->coat_tangent = args[GEOMETRY_COAT_TANGENT].vector;
@@ -336,7 +344,15 @@ static bool openpbr(struct script_context *context, const struct script_value *a
 }
 
 #define METAL_WORD(name, ...) " " name
-enum { METAL_NAME, METAL_ROUGHNESS, METAL_ANISOTROPY, METAL_TANGENT, METAL_NORMAL, METAL_GLOSSY_SAMPLES };
+enum {
+    METAL_NAME,
+    METAL_ROUGHNESS,
+    METAL_ANISOTROPY,
+    METAL_TANGENT,
+    METAL_NORMAL,
+    METAL_GLOSSY_SAMPLES,
+    METAL_CLASSIC
+};
 static const struct script_parameter metal_parameters[] = {
     [METAL_NAME] = {"metal", KIND_CHOICE, 0, 0, 0, &(METALS(METAL_WORD))[1], NULL, NULL, "Its name."},
     [METAL_ROUGHNESS] = SHARE("roughness", "0", "Roughness; 0 is polished."),
@@ -344,6 +360,7 @@ static const struct script_parameter metal_parameters[] = {
     [METAL_TANGENT] = {"tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
     [METAL_NORMAL] = {"normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
     [METAL_GLOSSY_SAMPLES] = SAMPLES,
+    [METAL_CLASSIC] = CLASSIC,
 };
 
 struct metal {
@@ -363,6 +380,7 @@ static bool metal(struct script_context *context, const struct script_value *arg
         return false;
     numbers->base_metalness = 1;
     numbers->specular_anisotropy = args[METAL_ANISOTROPY].number;
+    numbers->classic = args[METAL_CLASSIC].boolean;
     numbers->tangent = args[METAL_TANGENT].vector;
     m->phong.kd = known->f0;
     m->phong.ks = known->tint;

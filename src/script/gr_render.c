@@ -55,7 +55,7 @@ enum {
 /* The parameter of a setting: its type, range and words by its kind. */
 #define PARAMETER_FLAG(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
 #define PARAMETER_WHOLE(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
-#define PARAMETER_NUMBER(low, high, list) KIND_NUMBER, OPTIONAL, low, high, NULL
+#define PARAMETER_NUMBER(low, high, list) KIND_NUMBER, OPTIONAL, low, high, LIST_BLANKS(list)
 #define PARAMETER_SEED(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
 #define PARAMETER_CHOICE(low, high, list) KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(list)
 #define PARAMETER_TONE(low, high, list) KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(list)
@@ -71,8 +71,9 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, OPTIONAL, ANY, NULL, "SCRIPT.png",
                      "Picture file:" PICTURE_FORMATS_HELP "; gray creates missing folders."},
-    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
-                    "A PNG or JPEG file with six views of the sky in a 4 x 3 cross."},
+    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL | OR_SKY, ANY, NULL, NULL,
+                    "Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A "
+                    "picture with six views in a 4 x 3 cross is background only."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, OPTIONAL, 1, 1 << 20, NULL, "pixels", "960", "Width of the picture."},
     [RENDER_HEIGHT] = {"height", KIND_WHOLE, OPTIONAL, 1, 1 << 20, NULL, "pixels", "9/16 of width",
                        "Height of the picture."},
@@ -122,7 +123,8 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
 };
 
-static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
+/* *shines: the sky of the field `sky` is also light. */
+static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky, bool *shines,
                        struct error *error) {
     /* Scenes that use only the table form are new ones: their default background is light and neutral, that of other
      * scenes is navy. */
@@ -133,9 +135,17 @@ static bool choose_sky(struct script_context *context, const struct script_value
         *sky = (struct sky){.kind = SKY_STOPS, .stops = neutral, .stop_count = 3};
     if (args[RENDER_SKY].given && background->given)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
+    *shines = args[RENDER_SKY].sky != NULL;
+    if (*shines) {
+        *sky = *args[RENDER_SKY].sky;
+        return true;
+    }
     if (args[RENDER_SKY].given) {
         struct image *image = gr_find_image(context, &args[RENDER_SKY], error);
-        return image && sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error);
+        *shines = image && image_width(image) == 2 * image_height(image);
+        if (*shines)
+            *sky = (struct sky){.kind = SKY_MAP, .image = image};
+        return image && (*shines || sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error));
     }
     if (background->program)
         return sky_from_function(background->program, sky, error);
@@ -146,6 +156,25 @@ static bool choose_sky(struct script_context *context, const struct script_value
         sky->colour = background->vector;
         sky->display = background->display;
     }
+    return true;
+}
+
+/* Adds the sky to the lights, unless a sky is there. */
+static bool add_sky_light(struct script_context *context, struct render_request *request, struct error *error) {
+    uint32_t count = request->light_count;
+    for (uint32_t i = 0; i < count; i++)
+        if (request->lights[i].light.kind == LIGHT_SKY)
+            return true;
+    struct scene_light *lights = arena_alloc_array(&context->sandbox.call, (size_t)count + 1, sizeof *lights);
+    struct sky *sky = arena_alloc(&context->sandbox.call, sizeof *sky);
+    if (!lights || !sky)
+        return error_no_memory(error, "a sky");
+    if (count > 0)
+        memcpy(lights, request->lights, count * sizeof *lights);
+    *sky = request->sky;
+    lights[count].light = (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = sky};
+    request->lights = lights;
+    request->light_count = count + 1;
     return true;
 }
 
@@ -237,25 +266,23 @@ static void note_lone_fields(struct script_context *context, const struct script
     static const struct {
         int field, needs;
         int choice; /* that it must be; -1: any */
-    } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1},
-                 {RENDER_BLADE_ANGLE, RENDER_BLADES, -1},
-                 {RENDER_EYE_DISTANCE, RENDER_STEREO, -1},
-                 {RENDER_SCREEN, RENDER_STEREO, -1},
-                 {RENDER_MIRROR, RENDER_SKY, -1},
-                 {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC},
-                 {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE}};
-    static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
+        const char *words;
+    } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1, ""},
+                 {RENDER_BLADE_ANGLE, RENDER_BLADES, -1, ""},
+                 {RENDER_EYE_DISTANCE, RENDER_STEREO, -1, ""},
+                 {RENDER_SCREEN, RENDER_STEREO, -1, ""},
+                 {RENDER_MIRROR, RENDER_SKY, -1, ""},
+                 {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC, " = 'orthographic'"},
+                 {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE, " = 'fisheye'"}};
     char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
     for (size_t i = 0; i < COUNT(pairs); i++) {
         const struct script_value *needed = &args[pairs[i].needs];
         bool has = needed->given && (pairs[i].choice < 0 || needed->choice == pairs[i].choice);
         if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox, pairs))
             continue;
-        const char *word = pairs[i].choice < 0 ? NULL : projections[pairs[i].choice];
         sandbox_where(&context->sandbox, where, sizeof where);
-        (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s%s%s", where,
-                       render_parameters[pairs[i].field].name, render_parameters[pairs[i].needs].name,
-                       word ? " = '" : "", word ? word : "", word ? "'" : "");
+        (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s", where,
+                       render_parameters[pairs[i].field].name, render_parameters[pairs[i].needs].name, pairs[i].words);
         sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
         return;
     }
@@ -509,6 +536,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct scene_light lights[STUDIO_LIGHTS];
     struct camera fitted;
+    bool shines = false;
     if (context->lenient && !args[RENDER_EYE].given) {
         lenient_camera(request.root, &fitted);
         request.camera = fitted;
@@ -538,7 +566,9 @@ static bool gr_render(struct script_context *context, const struct script_value 
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
                       &request.settings, &request.camera, error) ||
-        !choose_sky(context, args, &request.sky, error) || !light_dark_picture(context, args, &request, lights, error))
+        !choose_sky(context, args, &request.sky, &shines, error) ||
+        (shines && !add_sky_light(context, &request, error)) ||
+        !light_dark_picture(context, args, &request, lights, error))
         return false;
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))

@@ -2,7 +2,6 @@
  * row in this file. */
 #include "script/gr_textures_internal.h"
 
-#include "compat/lenient_handles.h"
 #include "image/image_function.h"
 #include "record/vector.h"
 #include "script/rows_internal.h"
@@ -192,19 +191,24 @@ static int image_at(lua_State *L) {
     return push_image_value(L, function);
 }
 
+/* Upvalue 1: what handles without methods have in its place. */
 static int texture_index(lua_State *L) {
     if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "at") == 0) {
         lua_pushcfunction(L, image_at);
         return 1;
     }
-    if (context_of(L)->lenient)
-        return lenient_handle_index(L);
-    return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
+    if (!context_of(L)->lenient)
+        return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, 2, 1);
+    return 1;
 }
 
 void textures_open(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_TEXTURE));
-    lua_pushcfunction(L, texture_index);
+    lua_getfield(L, -1, "__index");
+    lua_pushcclosure(L, texture_index, 1);
     lua_setfield(L, -2, "__index");
     lua_pop(L, 1);
 }

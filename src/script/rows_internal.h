@@ -20,9 +20,9 @@
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 #define GR(name, parameters, result, run, help, ...)                                                                   \
-    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help, false, NULL }
 #define NODE(name, parameters, result, run, help, ...)                                                                 \
-    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help, false, NULL }
 
 /* The first parameter of every method. */
 #define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}

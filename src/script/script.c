@@ -13,6 +13,7 @@
 #include "compat/order.h"
 #include "compat/traverse.h"
 #include "record/record.h"
+#include "sandbox/embedded.h"
 #include "sandbox/hints.h"
 #include "script/dispatch_internal.h"
 #include "script/gr_textures_internal.h"
@@ -23,58 +24,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* -D name=value: globals set before the run. A value that is a Lua literal counts as that (number, quoted string, true,
- * false, nil, a table of literals), anything else is a string. Tables are evaluated without any globals. */
-
-/* Evaluates `return VALUE` in an empty environment. False: it is no literal; the stack is as before. */
-static bool evaluate(lua_State *L, const char *value) {
-    int top = lua_gettop(L);
-    lua_pushfstring(L, "return %s", value);
-    const char *text = lua_tostring(L, -1);
-    if (luaL_loadbufferx(L, text, strlen(text), "=-D", "t") == LUA_OK) {
-        lua_newtable(L);
-        const char *environment = lua_setupvalue(L, -2, 1);
-        assert(environment); /* every chunk has one */
-        (void)environment;
-        if (lua_pcall(L, 0, 1, 0) == LUA_OK) {
-            lua_replace(L, top + 1);
-            lua_settop(L, top + 1);
-            return true;
-        }
-    }
-    lua_settop(L, top);
-    return false;
-}
-
-static void push_value(lua_State *L, const char *value) {
-    size_t length = strlen(value);
-    if (lua_stringtonumber(L, value) == length + 1)
-        return;
-    if (strcmp(value, "true") == 0 || strcmp(value, "false") == 0) {
-        lua_pushboolean(L, value[0] == 't');
-        return;
-    }
-    if (strcmp(value, "nil") == 0) {
-        lua_pushnil(L);
-        return;
-    }
-    char first = value[0], last = length > 0 ? value[length - 1] : '\0';
-    bool quoted = length >= 2 && (first == '"' || first == '\'') && last == first;
-    bool table = first == '{' && last == '}' && !strstr(value, "function");
-    if (quoted && evaluate(L, value)) {
-        if (lua_type(L, -1) == LUA_TSTRING)
-            return;
-        lua_pop(L, 1);
-    } else if (table && evaluate(L, value)) {
-        return;
-    }
-    lua_pushstring(L, value);
-}
-
+/* -D name=value: globals set before the run. */
 static void define_open(lua_State *L) {
     const struct script_options *options = sandbox_of(L)->options;
     for (int k = 0; k < options->define_count; k++) {
-        push_value(L, options->defines[k].value);
+        compat_push_literal(L, options->defines[k].value);
         lua_setglobal(L, options->defines[k].name);
     }
 }
@@ -124,11 +78,12 @@ static const char *indent(struct arena *arena, const char *text) {
     return out;
 }
 
-/* Whether a function of gr raised this message, and would not under --lenient. */
+/* Whether a function of gr raised this message, and would not under --lenient, and the scene may be one of another
+ * program. */
 static bool is_forgivable(const struct script_context *context, const char *message) {
     const struct sandbox *sandbox = &context->sandbox;
     size_t length = strlen(message), raised = strlen(sandbox->raised);
-    return !context->lenient && !sandbox->unforgivable && raised > 0 && length >= raised &&
+    return !context->lenient && sandbox->is_positional && !sandbox->unforgivable && raised > 0 && length >= raised &&
            strcmp(message + length - raised, sandbox->raised) == 0;
 }
 
@@ -156,7 +111,7 @@ static int describe_error(lua_State *L) {
     error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
               hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
-    luaL_traceback(L, L, *rest ? rest : NULL, 1);
+    luaL_traceback(L, L, *rest ? rest : NULL, embedded_end(L, 1));
     if (strcmp(lua_tostring(L, -1), "stack traceback:\n\t[C]: in ?") == 0) { /* of a syntax error */
         lua_pushliteral(L, "");
         lua_replace(L, -2);

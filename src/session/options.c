@@ -275,7 +275,8 @@ static const char *needed_value(const struct setting *option, char room[128]) {
         return room;
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            (void)snprintf(room, 128, "%s%sa number from %g to %g", unit, comma, option->low, option->high);
+            (void)snprintf(room, 128, "%s%sa number from %g to %g%s%s", unit, comma, option->low, option->high,
+                           option->words && option->words[0] ? ", or " : "", option->words ? option->words : "");
         else
             (void)snprintf(room, 128, "%s%sa number of at least %g", unit, comma, option->low);
         return room;
@@ -361,7 +362,8 @@ static bool read_value(const struct setting *option, const char *text, struct op
             *(int *)field = (int)integer;
         break;
     case SETTING_NUMBER:
-        ok = read_number(text, option->low, option->high, field);
+        *(double *)field = setting_number_of_word(option, text);
+        ok = *(double *)field > 0 || read_number(text, option->low, option->high, field);
         break;
     case SETTING_BYTES:
         ok = read_bytes(text, option->low, option->high, field);
@@ -495,7 +497,7 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 static const struct {
     const char *word, *options, *why;
 } actions[] = {
-    [ACTION_RENDER] = {NULL},
+    [ACTION_RENDER] = {NULL, NULL, NULL},
     [ACTION_MERGE] = {"merge",
                       "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
                       "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
@@ -642,7 +644,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if ((int)options->action < (int)ACTIONS_WITH_WORDS && unused[options->action])
-        return refuse_for_action(unused[options->action], options->action, error);
+        return refuse_for_action(unused[options->action], (int)options->action, error);
     return options_check(options, error);
 }
 

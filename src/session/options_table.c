@@ -216,7 +216,7 @@ bool option_may_lack_value(const struct setting *option) {
 }
 
 const char *option_value(const struct setting *option) {
-    return option->words[0] ? option->words : option->value;
+    return option->words[0] && option->kind != SETTING_NUMBER ? option->words : option->value;
 }
 
 /* The default in words, or NULL: that of the row, or of a setting its default. */

@@ -15,7 +15,8 @@ const char *foreign_method(const char *word);   /* of nodes */
 /* Of a function for which has_field is true of the fields that it has. *is_name: it is the name of a field. */
 const char *foreign_field(const char *word, bool (*has_field)(const void *function, const char *name),
                           const void *function, bool *is_name);
-/* What is used in place of something, for all rows one after the other; NULL behind the last one. */
-const char *foreign_use_at(size_t index);
+/* The rows one after the other, with these columns; ends with NULL. */
+enum { FOREIGN_KIND, FOREIGN_USE, FOREIGN_WORDS, FOREIGN_COLUMNS };
+extern const char *const foreign_words_txt[];
 
 #endif

@@ -87,12 +87,25 @@ static int count_words(const char *words) {
     return count;
 }
 
+double setting_number_of_word(const struct setting *row, const char *word) {
+    const char *at = row->words;
+    for (int i = 1; at && *at; i++, at += *at == '|') {
+        size_t length = strcspn(at, "|");
+        if (strlen(word) == length && strncmp(at, word, length) == 0)
+            return row->high + i;
+        at += length;
+    }
+    return 0;
+}
+
 /* Whether the bits are a value of the row. */
 static bool bits_are_valid(const struct setting *row, uint64_t bits) {
     double number = (double)(int64_t)bits;
     switch (row->kind) {
     case SETTING_NUMBER:
         memcpy(&number, &bits, sizeof number);
+        if (row->words && row->words[0] && number > row->high && number <= row->high + count_words(row->words))
+            return number == floor(number);
         break;
     case SETTING_FLAG:
     case SETTING_CROP:
@@ -154,7 +167,7 @@ static const char *word_at(const char *words, int index, char out[64]) {
 const char *setting_initial_words(const struct setting *row, char out[64]) {
     if (row->initial_words || row->kind == SETTING_FLAG || row->kind == SETTING_LAYERS)
         return row->initial_words;
-    if (row->words && row->words[0])
+    if (row->words && row->words[0] && row->kind != SETTING_NUMBER)
         return word_at(row->words, (int)row->initial, out);
     (void)snprintf(out, 64, "%g", row->initial);
     return out;

@@ -11,7 +11,7 @@
 enum setting_kind {
     SETTING_FLAG,     /* bool; the option may have =yes or =no */
     SETTING_WHOLE,    /* int in low..high */
-    SETTING_NUMBER,   /* double in low..high */
+    SETTING_NUMBER,   /* double in low..high; each of its words is the next number above, in steps of 1 */
     SETTING_CHOICE,   /* an enum or a bool: the position of the word */
     SETTING_SEED,     /* uint64_t, in a script up to `high` */
     SETTING_LAYERS,   /* uint32_t: a mask of layers */
@@ -78,6 +78,8 @@ bool setting_set_bits(const struct setting *row, void *base, uint64_t bits);
 bool setting_is_valid(const struct setting *row, const void *base);
 /* Stores a number of the row's range. */
 void setting_store(const struct setting *row, void *base, double number);
+/* The number of a word of a NUMBER, or 0. */
+double setting_number_of_word(const struct setting *row, const char *word);
 /* The default in words: that of the row, or made of its default. */
 const char *setting_initial_words(const struct setting *row, char out[64]);
 /* Adds the value to a digest. The denoisers count as one here and where settings are compared: their films are the

@@ -162,6 +162,9 @@ enum path_strategy { PATH_STRATEGIES(LIST_MEMBER) };
 #define VIEW_MEANINGS(X) X(false, "direction") X(true, "target")
 #define PIXEL_POSITIONS(X) X(false, "centre") X(true, "corner")
 #define AMBIENT_MEANINGS(X) X(false, "kd") X(true, "plain")
+/* A number may have words, which are the numbers above its range. */
+#define EXPOSURES(X) X(EXPOSURE_AUTO, "auto")
+enum { EXPOSURE_MAX = 100, EXPOSURES(LIST_MEMBER) }; /* of 101: until the light is measured (host/light_meter.h) */
 #define NO_WORDS(X) X(NONE, "")
 
 /* Each layer, with its name for --aov and in names of files, and the letters of its channels in an EXR file. */
@@ -309,8 +312,9 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(CHOICE, enum specular_kind, specular, SAMPLES, SPECULAR_PHONG, 0, 0, SPECULAR_KINDS, "--specular", NULL, NULL,   \
       "specular", NULL, OTHER_PROGRAMS, "Formula of the highlight.")
 #define SETTINGS_OF_TONE(X)                                                                                            \
-    X(NUMBER, double, tone.exposure, FINISH, 0, -100, 100, NO_WORDS, "--exposure", "STOPS", "stops", "exposure", NULL, \
-      SIZE_AND_COLOUR, "Multiply light by 2^STOPS when a PNG file is written.", EFFECT_DISPLAY)                        \
+    X(NUMBER, double, tone.exposure, FINISH, 0, -100, EXPOSURE_MAX, EXPOSURES, "--exposure", "STOPS", "stops",         \
+      "exposure", NULL, SIZE_AND_COLOUR,                                                                               \
+      "Multiply light by 2^STOPS when a PNG file is written; auto: as a light meter measures.", EFFECT_DISPLAY)        \
     X(TONE, enum tone_curve, tone.curve, FINISH, TONE_NONE, 0, 0, TONE_CURVES, "--tone", NULL, NULL, "tone", NULL,     \
       SIZE_AND_COLOUR,                                                                                                 \
       "Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the "    \

@@ -280,7 +280,7 @@ static void settle(struct search *search, bool inside, double s, uint32_t number
 
 /* Whether no later change of sides can have the t of the one in the part, and cancel it: the sign has changed at a
  * place with a smaller t than that of the end. Few places are tried. */
-static bool is_alone(struct search *search, const struct expr_program *program, const struct part *part) {
+static bool cancels_nothing(struct search *search, const struct expr_program *program, const struct part *part) {
     enum { TRIES = 3 };
     double s = part->a;
     for (int i = 0; i < TRIES; i++) {
@@ -296,7 +296,7 @@ static void pass_change(struct search *search, uint32_t number, const struct par
     const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
     double t = line_t(&search->line, part->a);
     if (search->is_any && t > search->ray->t_min && line_t(&search->line, part->b) < search->ray->t_max &&
-        !(search->has_waiting && search->waiting.t >= t) && is_alone(search, program, part)) {
+        !(search->has_waiting && search->waiting.t >= t) && cancels_nothing(search, program, part)) {
         search->has_found = search->is_done = true; /* wherever it is */
         return;
     }

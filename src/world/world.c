@@ -664,7 +664,7 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 
 void world_update_materials(struct world *world) {
     for (uint32_t i = 0; i < world->material_count; i++)
-        world->materials[i].phong = material_origin(world->authored.materials[i])->phong;
+        world->materials[i].phong = material_flatten(world->authored.materials[i], world->classic).phong;
 }
 
 /* The tables of materials and of the media inside. */
@@ -682,7 +682,7 @@ static bool make_materials(struct flattening *f) {
         return error_no_memory(f->error, "the materials of the scene");
     /* Textures are numbered in the flat copies, so these come first. */
     for (uint32_t i = 0; i < count; i++)
-        world->materials[i] = material_flatten(world->authored.materials[i]);
+        world->materials[i] = material_flatten(world->authored.materials[i], world->classic);
     if (!flatten_textures(f))
         return false;
     for (uint32_t i = 0; i < count; i++) {
@@ -757,8 +757,11 @@ static bool build(struct world *world, const struct world_input *input, struct a
 
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error) {
-    *world = (struct world){
-        .mesh_accel = input->accel, .sky = *input->sky, .light_count = input->light_count, .shutter = input->shutter};
+    *world = (struct world){.mesh_accel = input->accel,
+                            .classic = input->classic,
+                            .sky = *input->sky,
+                            .light_count = input->light_count,
+                            .shutter = input->shutter};
     bool ok = build(world, input, arena, pool, error);
     if (!ok)
         world_destroy(world);

@@ -89,6 +89,7 @@ struct world {
     struct scene_accel accel;
     struct mesh_group group;    /* single rays search it and its `rest` in place of accel.tree */
     enum accel_kind mesh_accel; /* of the meshes: as requested */
+    bool classic;               /* as requested */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
@@ -132,6 +133,7 @@ struct world_input {
     enum accel_kind accel;     /* of the world and of the meshes */
     bool linear_colours;       /* pictures and display colours are decoded (docs/colour.md) */
     bool encodes;              /* the sRGB function is applied to the result */
+    bool classic;              /* for Whitted's integrator: layers that want it become numbers of gr.material */
     struct world_cache *cache; /* of the frame before, or NULL */
     bool keeps_tables;         /* the scene has noted all its changes since then (scene/node.h) */
     world_warning *warn;       /* or NULL */

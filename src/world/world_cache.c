@@ -16,7 +16,7 @@ struct kept_tables {
     uint64_t epoch;
     const struct node *root;
     enum accel_kind accel;
-    bool linear_colours, encodes;
+    bool linear_colours, encodes, classic;
 };
 
 /* The next tables may need blocks of other sizes. */
@@ -34,7 +34,7 @@ static void empty(struct kept_tables *tables) {
 static bool fits(const struct kept_tables *tables, const struct world_input *input) {
     return tables->full && tables->epoch == input->scene->epoch && tables->root == input->root &&
            tables->accel == input->accel && tables->linear_colours == input->linear_colours &&
-           tables->encodes == input->encodes;
+           tables->encodes == input->encodes && tables->classic == input->classic;
 }
 
 /* Lights that are meshes add materials and textures of their own. */
@@ -98,6 +98,7 @@ bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bo
     tables->accel = input->accel;
     tables->linear_colours = input->linear_colours;
     tables->encodes = input->encodes;
+    tables->classic = input->classic;
     return true;
 }
 

@@ -353,15 +353,15 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
 /* A checkpoint keeps the samples of tiles that are begun; a run in one go continues from it, and so does a shard. */
 TEST(killed_runs_with_noise_that_go_on_give_the_bytes_of_one_run) {
     put("scene.lua", ONE);
-    gives("$gray scene.lua -q --integrator path --noise 0.02 -o whole.png", 0, NULL);
-    resume_until_done("--integrator path --noise 0.02", 20, 0.05, 0.04);
+    gives("$gray scene.lua -q --integrator path --noise 0.03 -o whole.png", 0, NULL);
+    resume_until_done("--integrator path --noise 0.03", 20, 0.05, 0.04);
     CHECK(shell("cmp out.png whole.png") == 0);
     gives("for moment in " MOMENTS "; do rm -f out.png c.tiles; "
-          "$gray scene.lua -j 1 --integrator path --noise 0.02 --checkpoint c.tiles --partial 2>said.txt & pid=$!; "
+          "$gray scene.lua -j 1 --integrator path --noise 0.03 --checkpoint c.tiles --partial 2>said.txt & pid=$!; "
           "sleep $moment; kill -TERM $pid 2>kill.txt; wait $pid; "
           "test -s c.tiles && grep -q 'c.tiles holds .*samples of' said.txt && break; done; "
           "cat said.txt >&2; grep -q 'out.partial.png holds .* tiles, and samples of' said.txt && "
-          "$gray scene.lua --integrator path --noise 0.02 --checkpoint c.tiles --resume && cmp out.png whole.png",
+          "$gray scene.lua --integrator path --noise 0.03 --checkpoint c.tiles --resume && cmp out.png whole.png",
           0, "more, come from the checkpoint");
 }
 

@@ -147,6 +147,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
     struct arena arena = {0};
     const char *traceback = NULL;
     const char *path = test_path("scene.lua");
+    (void)remove(path); /* as in listen_to_text */
     test_write_text(path, text);
     gallery->pictures = 0;
     gallery->finite = true;

@@ -482,8 +482,8 @@ static int compile(const char *words) {
 }
 
 TEST(a_switch_that_forgets_a_kind_compiles_in_make_and_not_in_make_test) {
-    const char *source = "enum kind { ONE, TWO };\nint it(enum kind kind);\n"
-                         "int it(enum kind kind) {\n    switch (kind) {\n    case ONE:\n        return 1;\n%s"
+    const char *source = "enum argument_kind { ONE, TWO };\nint it(enum argument_kind kind);\n"
+                         "int it(enum argument_kind kind) {\n    switch (kind) {\n    case ONE:\n        return 1;\n%s"
                          "    default:\n        return 0;\n    }\n}\n";
     char forgets[400], whole[400];
     (void)snprintf(forgets, sizeof forgets, source, "");

@@ -21,7 +21,6 @@ static const char *wrong_text(const struct script_parameter *p, int which, char 
     if (number) {
         list[count++] = "0 / 0";
         list[count++] = "1 / 0";
-        list[count++] = "-1 / 0";
     }
     if (triple) {
         list[count++] = "{1, 2}";

@@ -211,3 +211,20 @@ TEST(wrong_keys_are_errors_that_name_the_key) {
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
         check_corner("", &calls[i], NULL);
 }
+
+/* gr.keys is Lua of the program in the state of the scene. */
+TEST(a_scene_cannot_change_the_lua_of_gr_keys) {
+    static struct listener listener;
+    (void)runs("local get, format = rawget, string.format\n"
+               "for _, t in ipairs{math, string, table, _G} do\n"
+               "  for name, f in pairs(t) do if type(f) == 'function' and f ~= error and f ~= assert and f ~= pairs\n"
+               "    and f ~= type and f ~= getfenv and f ~= setfenv and f ~= pcall and f ~= rawget\n"
+               "    then t[name] = function() error('reached') end end end\n"
+               "end\n"
+               "local env, inner = getfenv(1), nil\n"
+               "local k = gr.keys{{0, {view = {0, 0, 1}, n = 1}}, {2, {view = {0, 1, 0}, n = 3}}, curve = 'catmull',\n"
+               "  ease = function(s) inner = getfenv(2) setfenv(2, {}) return s end}\n"
+               "assert(k(1).n == 2 and inner == env and getfenv(k) == env and k(1).n == 2)\n"
+               "local ok, text = pcall(k, {}) assert(not ok and type(text) == 'string')",
+               &listener);
+}

@@ -89,8 +89,11 @@ TEST(a_picture_appears_after_an_error_of_lua_and_replaces_none) {
     CHECK(!is_there("%s.png", "none"));
 }
 
-TEST(an_error_says_that_lenient_would_get_over_it_where_it_would) {
+TEST(an_error_says_that_lenient_would_get_over_it_where_it_would_and_the_scene_renders_by_positions) {
     static const char hint[] = "--lenient gets over this error";
+    static const char by_positions[] =
+        "\nfunction draw(n) gr.render(n, 'x.png', 8, 8, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {}) end";
+    static const char by_fields[] = "\nfunction draw(n) gr.render{node = n} end";
     static const struct {
         const char *scene;
         bool is_forgivable;
@@ -104,13 +107,17 @@ TEST(an_error_says_that_lenient_would_get_over_it_where_it_would) {
         {"x = = 1", false},
         {"error('gr.sphere: radius')", false},
         {"pcall(gr.sphere, 3) error('other')", false},
-        {"gr.render{node = gr.node('n'), file = '../../x.png', width = 2, height = 2, eye = {0, 0, 1}}", false}};
+        {"gr.render(gr.node('n'), '../../x.png', 2, 2, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})", false}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        struct test_result result = test_gray_scene(rows[i].scene, "scene.lua", NULL);
-        CHECK_EQ_INT(result.status, 1);
-        if ((strstr(result.err, hint) != NULL) != rows[i].is_forgivable)
-            test_fail(__FILE__, __LINE__, "%s: %s", rows[i].scene, result.err);
-        test_free_result(&result);
+        for (int fields = 0; fields < 2; fields++) {
+            char scene[400];
+            (void)snprintf(scene, sizeof scene, "%s%s", rows[i].scene, fields ? by_fields : by_positions);
+            struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+            CHECK_EQ_INT(result.status, 1);
+            if ((strstr(result.err, hint) != NULL) != (rows[i].is_forgivable && !fields))
+                test_fail(__FILE__, __LINE__, "%s: %s", scene, result.err);
+            test_free_result(&result);
+        }
     }
 }
 

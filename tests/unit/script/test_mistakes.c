@@ -160,11 +160,11 @@ TEST(what_foreign_words_lead_to_exists) {
     struct arena arena = {0};
     struct document document = {.arena = &arena};
     script_describe_function(&document, NULL);
-    const char *manual = document.text, *use;
+    const char *manual = document.text;
     CHECK(!document.failed && manual);
-    for (size_t i = 0; manual && (use = foreign_use_at(i)) != NULL; i++) {
-        check_names(use, "gr.", manual);
-        check_names(use, "node:", manual);
+    for (const char *const *row = foreign_words_txt; manual && *row; row += FOREIGN_COLUMNS) {
+        check_names(row[FOREIGN_USE], "gr.", manual);
+        check_names(row[FOREIGN_USE], "node:", manual);
     }
     arena_destroy(&arena);
 }

@@ -245,10 +245,10 @@ TEST(link_loops_pipes_and_closed_folders_do_not_stop_the_search) {
 }
 
 /* The search gives up after 10,000 entries, whichever they are. */
-TEST(a_folder_of_a_hundred_thousand_entries_costs_no_more_than_its_share) {
+TEST_TIMES(a_folder_of_many_entries_costs_no_more_than_its_share, 4) {
     begin();
     folder("w/s/many"), folder("w/s/many/sub");
-    for (int i = 0; i < 100000; i++) {
+    for (int i = 0; i < 25000 * times; i++) {
         char name[100];
         (void)snprintf(name, sizeof name, "w/s/many/%06d.obj", i);
         CHECK(symlink("seed", in(name)) == 0);

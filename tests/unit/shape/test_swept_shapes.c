@@ -383,7 +383,7 @@ TEST(swept_shapes_never_show_pictures_mirrored) {
 }
 
 /* The box under a map holds the crossings, and another one, one percent smaller, does not. */
-TEST_TIMES(swept_shapes_have_tight_boxes_under_affine_maps, 10) {
+TEST_TIMES(swept_shapes_have_tight_boxes_under_affine_maps, 4) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 256));
     for (int maker = 0; maker < MAKERS; maker++) {
