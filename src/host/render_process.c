@@ -721,7 +721,8 @@ void render_process_run(const struct options *options, const struct host_service
     scene_writer_init(&errors, &services->control->error_stream);
     const struct file_listener listener = {
         .searches = services->wait ? wait_for_files : NULL,
-        .log = options->checkpoint || options->keeps_tiles || options->shards || options->mpi ? &process.read_log : NULL,
+        .log =
+            options->checkpoint || options->keeps_tiles || options->shards || options->mpi ? &process.read_log : NULL,
         .heard = services->read ? report_read : NULL,
         .wrote = services->read ? report_write : NULL,
         .contents = services->read && options->watch,

@@ -68,12 +68,13 @@ enum {
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
-            "At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies." \
+            "At most N x N rays from a rough surface under Whitted, as many as its share of reflected light "          \
+            "justifies."                                                                                               \
     }
 #define CLASSIC                                                                                                        \
     {                                                                                                                  \
         "classic", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                         \
-            "Whether Whitted's integrator shades it as a similar gr.material, which is faster."                   \
+            "Whether Whitted's integrator shades it as a similar gr.material, which is faster."                        \
     }
 #define NORMAL_HELP "A normal map or bump map: a result of gr.bump, or the file of a normal map."
 #define TANGENT_HELP "Direction along which the facets of an anisotropic surface are smooth, in the world."
