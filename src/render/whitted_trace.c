@@ -76,6 +76,7 @@ static struct vec3 follow(struct integrator_state *state, const struct surface_p
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
+    /* Behind the surface the ray is in other media; each branch has random numbers of its own. */
     struct ray onward = hit_ray(at->hit, at->ray, towards->direction, at->ray->media);
     struct medium_stack behind;
     if (transmits) {
@@ -181,6 +182,7 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
             out->count += found->weight > 0;
         }
     }
+    /* Scaled, so that those of a branch together have its share. */
     for (int i = 0; i < out->count; i++) {
         struct candidate *found = &out->all[i];
         const struct bsdf_branch *branch = &branches[found->branch];
@@ -243,6 +245,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     struct vec3 sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
+    /* In batches of cells, each with its share of the rays. */
     OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
     struct candidates candidates;
     candidates.end = 0;
