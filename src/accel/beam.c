@@ -5,6 +5,7 @@
 
 bool beam_make(struct beam *out, const struct ray_packet *rays) {
     const double first[3] = {fabs(rays->direction[0][0]), fabs(rays->direction[1][0]), fabs(rays->direction[2][0])};
+    /* The axis along which the first ray goes furthest. */
     int z = first[1] > first[0];
     z = first[2] > first[z] ? 2 : z;
     out->forward = z;
@@ -13,6 +14,7 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
     out->backwards = rays->direction[z][0] < 0;
     double min = INFINITY, max = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     double sign = out->backwards ? -1 : 1;
+    /* The slopes of all rays to that axis. */
     for (uint32_t i = 0; i < rays->count; i++) {
         double main_slope = rays->direction[z][i] * sign, over = 1 / main_slope;
         min = main_slope < min ? main_slope : min;
@@ -23,9 +25,11 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
             high[k] = slope > high[k] ? slope : high[k];
         }
     }
+    /* Directions that diverge too much, or turn back, make no beam. */
     double spread = fmax(fmax(-low[0], high[0]), fmax(-low[1], high[1]));
     if (!(min > 0 && max < 0x1p900 && min > 0x1p-900 && spread < 0x1p5))
         return false;
+    /* Wider than the rounding of the slopes. */
     for (int k = 0; k < 2; k++) {
         out->slope_min[k] = low[k] - (fabs(low[k]) + 1) * 0x1p-40;
         out->slope_max[k] = high[k] + (fabs(high[k]) + 1) * 0x1p-40;

@@ -341,6 +341,7 @@ static bool join_parts(struct box_tree *tree, const struct part *top, const stru
     for (uint32_t i = 0; i < top->left_count; i++) {
         struct box_tree_node *nodes = tree->nodes + tree->node_count;
         memcpy(nodes, parts[i].nodes, parts[i].node_count * sizeof *nodes);
+        /* Their numbers of nodes begin at their place. */
         for (uint32_t n = 0; n < parts[i].node_count; n++) {
             for (int k = 0; k < BOX_TREE_WIDTH; k++) {
                 if (!(nodes[n].child[k] & BOX_TREE_ITEM))
@@ -349,6 +350,7 @@ static bool join_parts(struct box_tree *tree, const struct part *top, const stru
         }
         tree->node_count += parts[i].node_count;
     }
+    /* In the top, what was left over is the first node of its part. */
     uint32_t first = top->node_count, *starts = mem_alloc_zero(top->left_count, sizeof *starts);
     if (!starts)
         return false;

@@ -55,6 +55,7 @@ static void choose_cells(const double extent[3], double wanted, uint32_t cells[3
             volume *= extent[i];
             axes++;
         }
+        /* The edge that gives the wanted number over the axes that are left. */
         edge = axes == 3 ? el_cbrt(volume / wanted) : axes == 2 ? sqrt(volume / wanted) : volume / wanted;
         bool again = false;
         for (int i = 0; i < 3; i++)
@@ -253,11 +254,13 @@ static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid
         traversal->cell_step[i] = 0;
         traversal->left[i] = 0;
         if (cells > 1) {
+            /* From too far away the position is too coarse for voxels. */
             if (!(fabs(o) < cell * FAR_AWAY))
                 traversal->state = FLY_EVERYTHING;
             uint32_t index = voxel_index(grid, i, d != 0 ? o + t_enter * d : o);
             traversal->cell += stride * (int64_t)index;
             if (d != 0) {
+                /* The next boundary along the axis, and how many voxels are left to the end. */
                 double boundary = vec3_get(grid->bounds.min, i) + cell * (double)(d > 0 ? index + 1 : index);
                 traversal->t_next[i] = (boundary - o) / d;
                 traversal->t_step[i] = cell / fabs(d);

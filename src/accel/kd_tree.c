@@ -166,12 +166,14 @@ static void best_of_axis(const struct cell *cell, int axis, struct plane *best) 
     if (!(whole > 0))
         return;
     for (size_t i = 0; i < list->count;) {
+        /* All events at one position belong to one plane. */
         double p = list->events[i].position;
         uint32_t counts[3] = {0, 0, 0};
         for (; i < list->count && list->events[i].position == p; i++)
             counts[list->events[i].kind]++;
         uint32_t planar = counts[EVENT_PLANAR];
         upper -= planar + counts[EVENT_END];
+        /* Items in the plane go to the cheaper side. */
         if (p > lo && p < hi) {
             set3(&size, axis, p - lo);
             double share_lower = half_area(size) / whole;
@@ -230,6 +232,7 @@ static bool fill_side(struct builder *b, const struct cell *cell, int own_side, 
     struct event_list fresh[3] = {{0}};
     bool ok = lists_make(out->lists, (size_t)whole + cut) && lists_make(fresh, cut);
     out->items = whole;
+    /* Events of the cut items, by their boxes inside of this side. */
     for (size_t i = 0; ok && i < cell->lists[0].count; i++) {
         const struct event *e = &cell->lists[0].events[i];
         struct box part;
@@ -239,6 +242,7 @@ static bool fill_side(struct builder *b, const struct cell *cell, int own_side, 
         out->items++;
     }
     ok = ok && lists_sort(fresh);
+    /* Those that stay are in order already. */
     struct event_list kept = {ok ? mem_resize_array(NULL, 2 * (size_t)whole, sizeof *kept.events) : NULL, 0};
     ok = ok && kept.events;
     for (int axis = 0; ok && axis < 3; axis++) {
@@ -361,6 +365,7 @@ static bool make_root(struct builder *b, uint32_t count, struct cell *root) {
             tree->unbounded_count++;
         }
     }
+    /* Infinite items are tested by every ray. */
     tree->unbounded = mem_resize_array(NULL, tree->unbounded_count, sizeof *tree->unbounded);
     if (!lists_make(root->lists, root->items) || !tree->unbounded)
         return false;
@@ -389,6 +394,7 @@ bool kd_tree_build(struct kd_tree *tree, const struct kd_items *items, const str
                         .side = mem_alloc_zero(count, 1),
                         .depth_limit = depth_for(count)};
     struct cell root = {.box = box_empty(), .spare = (uint64_t)count * ENTRIES_PER_ITEM + 4096};
+    /* build_node frees the cell. */
     bool ok = b.side && make_root(&b, count, &root);
     if (!ok) {
         no_memory(&b);

@@ -237,6 +237,7 @@ static bool join_trees(struct builder *builder, struct hierarchy *hierarchies, u
     for (uint32_t i = 0; i < builder->job_count; i++) {
         struct job *job = &builder->jobs[i];
         uint32_t base = tree->count;
+        /* Numbers inside of the tree of a job are shifted behind what is there. */
         for (uint32_t j = 0; j < job->tree.count; j++) {
             struct branch *branch = &tree->branches[base + j];
             *branch = job->tree.branches[j];
@@ -248,6 +249,7 @@ static bool join_trees(struct builder *builder, struct hierarchy *hierarchies, u
         for (uint32_t j = job->first; j < job->first + job->count; j++)
             builder->pieces.items[j].branch += base;
     }
+    /* Children come after their parents, so the heights are known from the end. */
     for (uint32_t i = top; i-- > 0;) {
         struct branch *branch = &tree->branches[i];
         for (int k = 0; k < 2; k++) {
@@ -500,6 +502,7 @@ static bool write_all(struct builder *builder, struct hierarchy *hierarchies, ui
             return false;
     if (!make_jobs(builder) || !run_jobs(builder, count_job))
         return false;
+    /* With the counts every piece knows its place, and threads write without waiting. */
     uint32_t nodes = 1 + builder->top_count, blocks = 0;
     for (uint32_t i = 0; i < builder->pieces.count; i++) {
         struct piece *piece = &builder->pieces.items[i];
@@ -510,6 +513,7 @@ static bool write_all(struct builder *builder, struct hierarchy *hierarchies, ui
     }
     if (!alloc_tables(builder->index, nodes, blocks))
         return false;
+    /* Node 0 is empty; after it comes the top. */
     memset(&builder->index->nodes[0], 0, sizeof *builder->index->nodes);
     for (uint32_t i = 0; i < builder->top_count; i++) {
         const struct top_node *top = &builder->top[i];

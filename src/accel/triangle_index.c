@@ -43,6 +43,7 @@ static void set_space(struct triangle_index *index, const struct triangle_set *s
 static void set_cells(struct triangle_index *index, double wanted) {
     bool active[3] = {true, true, true};
     double side = 0;
+    /* Each round leaves out the axes that are too thin for the side. */
     for (int round = 0; round < 3; round++) {
         double volume = 1;
         int axes = 0;
@@ -64,9 +65,11 @@ static void set_cells(struct triangle_index *index, double wanted) {
         index->half_single[k] = (float)index->half[k];
         index->last_cell[k] = (float)(index->cells[k] - 1);
     }
+    /* Around the voxels is a border, so that a step outside needs no test. */
     index->stride[0] = index->cells[0] + 2;
     index->stride[1] = index->stride[0] * (index->cells[1] + 2);
     const int32_t stride[3] = {1, (int32_t)index->stride[0], (int32_t)index->stride[1]};
+    /* The step in memory for each set of axes crossed at once, by the signs of the direction. */
     for (int negative = 0; negative < 8; negative++)
         for (int axes = 0; axes < 8; axes++) {
             index->offset[negative][axes] = 0;
@@ -187,6 +190,7 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     uint64_t total = 0;
     struct hierarchy *big = lists + (lists ? index->voxel_count : 0);
     bool go_on = true;
+    /* Count. A big triangle stands in a list of its own, which every ray visits. */
     for (uint32_t i = 0; is_complete && go_on && i < set->count; i++) {
         go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
@@ -199,6 +203,7 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                 for (uint32_t x = low[0]; x <= high[0]; x++)
                     lists[voxel_at(index, x, y, z)].count++;
     }
+    /* Where each list begins; the counts begin anew. */
     for (size_t v = 0; is_complete && v <= index->voxel_count; v++) {
         lists[v].first = (uint32_t)total;
         total += lists[v].count;
@@ -208,6 +213,7 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
     if (is_complete)
         references = mem_alloc_aligned(64, total * sizeof *references);
     is_complete = is_complete && references;
+    /* Fill, each reference cut to its voxel. */
     for (uint32_t i = 0; is_complete && go_on && i < set->count; i++) {
         go_on = !is_time_to_stop(pool, i);
         struct reference r = whole_reference(index, set, i);
@@ -233,6 +239,7 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
                                         (struct hierarchy_list){lists, (uint32_t)index->voxel_count + 1}, pool, error)
                     : error_no_memory(error, "the index of a mesh");
     if (complete) {
+        /* Voxels at the border mean: outside. */
         for (size_t v = 0; v < index->voxel_count; v++)
             index->voxels[v] = REF_OUTSIDE;
         for (uint32_t z = 0; z < index->cells[2]; z++)

@@ -54,6 +54,7 @@ static void find_split(const struct reference *references, const struct range *r
     simd4_store(split->low, range->centre_min);
     split->axis = -1;
     bool any = false;
+    /* The scale from a centre to its bin; 0 along an axis without extent. */
     int bins = range->count < 64 ? BINS / 2 : BINS;
     for (int k = 0; k < 3; k++) {
         split->scale[k] = extent[k] > 0 ? (float)bins * 0.999f / extent[k] : 0;
@@ -64,6 +65,7 @@ static void find_split(const struct reference *references, const struct range *r
     split->low[3] = split->scale[3] = 0;
     if (!any)
         return;
+    /* The boxes and counts of the bins. */
     simd4 lo[3][BINS], hi[3][BINS];
     uint32_t count[3][BINS] = {{0}};
     for (int k = 0; k < 3; k++)
@@ -81,6 +83,7 @@ static void find_split(const struct reference *references, const struct range *r
             count[k][bin[k]]++;
         }
     }
+    /* The cheapest plane between two bins: costs of the right sides first, then with the left sides. */
     float best = INFINITY;
     for (int k = 0; k < 3; k++) {
         if (!(split->scale[k] > 0))
@@ -118,6 +121,7 @@ void split_range(struct reference *references, const struct range *range, bool h
     struct split split = {.axis = -1};
     if (!halve)
         find_split(references, range, &split);
+    /* Without a plane: halves, in the order that there is. */
     if (split.axis < 0) {
         left->first = range->first;
         left->count = range->count / 2;
@@ -127,6 +131,7 @@ void split_range(struct reference *references, const struct range *range, bool h
         range_measure(references, right);
         return;
     }
+    /* Else as quicksort divides: those of the right side are swapped to the end. */
     range_clear(left);
     range_clear(right);
     uint32_t i = range->first, end = range->first + range->count;

@@ -22,7 +22,43 @@ struct dual {
     double d[D];
 };
 
-/* The derivatives with respect to each operand; 0 for functions that are constant between jumps. */
+/* Operations that are constant between jumps. */
+#define STEPS(X)                                                                                                       \
+    X(EXPR_FLOOR_DIVIDE)                                                                                               \
+    X(EXPR_FLOOR)                                                                                                      \
+    X(EXPR_CEIL)                                                                                                       \
+    X(EXPR_HASH)                                                                                                       \
+    X(EXPR_CELL_ID)                                                                                                    \
+    X(EXPR_INTEGER_ADD)                                                                                                \
+    X(EXPR_INTEGER_SUBTRACT)                                                                                           \
+    X(EXPR_INTEGER_MULTIPLY)                                                                                           \
+    X(EXPR_INTEGER_DIVIDE)                                                                                             \
+    X(EXPR_INTEGER_MODULO)                                                                                             \
+    X(EXPR_INTEGER_REMAINDER)                                                                                          \
+    X(EXPR_INTEGER_NEGATE)                                                                                             \
+    X(EXPR_BIT_AND)                                                                                                    \
+    X(EXPR_BIT_OR)                                                                                                     \
+    X(EXPR_BIT_XOR)                                                                                                    \
+    X(EXPR_BIT_NOT)                                                                                                    \
+    X(EXPR_SHIFT_LEFT)                                                                                                 \
+    X(EXPR_SHIFT_RIGHT)                                                                                                \
+    X(EXPR_TO_INTEGER)                                                                                                 \
+    X(EXPR_LESS)                                                                                                       \
+    X(EXPR_LESS_EQUAL)                                                                                                 \
+    X(EXPR_EQUAL)                                                                                                      \
+    X(EXPR_INTEGER_LESS)                                                                                               \
+    X(EXPR_INTEGER_LESS_EQUAL)                                                                                         \
+    X(EXPR_INTEGER_EQUAL)                                                                                              \
+    X(EXPR_MIXED_LESS)                                                                                                 \
+    X(EXPR_MIXED_LESS_EQUAL)                                                                                           \
+    X(EXPR_MIXED_GREATER)                                                                                              \
+    X(EXPR_MIXED_GREATER_EQUAL)                                                                                        \
+    X(EXPR_MIXED_EQUAL)                                                                                                \
+    X(EXPR_WHOLE)                                                                                                      \
+    X(EXPR_INTEGER_SELECT)                                                                                             \
+    X(EXPR_TRUTH_SELECT)
+
+/* The derivatives with respect to each operand; 0 for steps. */
 static void partials(enum expr_operation operation, double a, double b, double c, double value, double out[3]) {
     double other[3];
     out[0] = out[1] = out[2] = 0;
@@ -119,42 +155,10 @@ static void partials(enum expr_operation operation, double a, double b, double c
     case EXPR_CELL_SECOND:
         noise_cells_gradients(a, b, c, other, out);
         break;
-    case EXPR_FLOOR_DIVIDE:
-    case EXPR_FLOOR:
-    case EXPR_CEIL:
-    case EXPR_HASH:
-    case EXPR_CELL_ID:
+        STEPS(LIST_LABEL)
     case EXPR_TEXEL: /* handled by the caller, which has the picture */
-    case EXPR_INTEGER_ADD:
-    case EXPR_INTEGER_SUBTRACT:
-    case EXPR_INTEGER_MULTIPLY:
-    case EXPR_INTEGER_DIVIDE:
-    case EXPR_INTEGER_MODULO:
-    case EXPR_INTEGER_REMAINDER:
-    case EXPR_INTEGER_NEGATE:
-    case EXPR_BIT_AND:
-    case EXPR_BIT_OR:
-    case EXPR_BIT_XOR:
-    case EXPR_BIT_NOT:
-    case EXPR_SHIFT_LEFT:
-    case EXPR_SHIFT_RIGHT:
     case EXPR_TO_FLOAT:
-    case EXPR_TO_INTEGER:
-    case EXPR_LESS:
-    case EXPR_LESS_EQUAL:
-    case EXPR_EQUAL:
-    case EXPR_INTEGER_LESS:
-    case EXPR_INTEGER_LESS_EQUAL:
-    case EXPR_INTEGER_EQUAL:
-    case EXPR_MIXED_LESS:
-    case EXPR_MIXED_LESS_EQUAL:
-    case EXPR_MIXED_GREATER:
-    case EXPR_MIXED_GREATER_EQUAL:
-    case EXPR_MIXED_EQUAL:
-    case EXPR_WHOLE:
     case EXPR_SELECT: /* handled by the callers */
-    case EXPR_INTEGER_SELECT:
-    case EXPR_TRUTH_SELECT:
     EXPR_LOOP_CASES:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
@@ -491,52 +495,14 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
         for (int k = 0; k < 3; k++)
             out[k] = is_finite(a) && is_finite(b) && is_finite(c) ? (struct expr_interval){-1, 1, false} : any_slope;
         break;
-    case EXPR_FLOOR_DIVIDE:
-    case EXPR_FLOOR:
-    case EXPR_CEIL:
-    case EXPR_HASH:
-    case EXPR_CELL_ID:
-        for (int k = 0; k < 3; k++)
-            out[k] = is_single(value) ? zero : any_slope;
+        STEPS(LIST_LABEL)
+        out[0] = out[1] = out[2] = is_single(value) ? zero : any_slope;
         break;
     case EXPR_TEXEL:
         texel_slopes(c, value, out);
         break;
     case EXPR_TO_FLOAT:
         out[0] = one; /* for integers: 0, or unbounded */
-        break;
-    case EXPR_INTEGER_ADD:
-    case EXPR_INTEGER_SUBTRACT:
-    case EXPR_INTEGER_MULTIPLY:
-    case EXPR_INTEGER_DIVIDE:
-    case EXPR_INTEGER_MODULO:
-    case EXPR_INTEGER_REMAINDER:
-    case EXPR_INTEGER_NEGATE:
-    case EXPR_BIT_AND:
-    case EXPR_BIT_OR:
-    case EXPR_BIT_XOR:
-    case EXPR_BIT_NOT:
-    case EXPR_SHIFT_LEFT:
-    case EXPR_SHIFT_RIGHT:
-    case EXPR_TO_INTEGER:
-    case EXPR_INTEGER_SELECT:
-        for (int k = 0; k < 3; k++)
-            out[k] = is_single(value) ? zero : any_slope;
-        break;
-    case EXPR_LESS:
-    case EXPR_LESS_EQUAL:
-    case EXPR_EQUAL:
-    case EXPR_INTEGER_LESS:
-    case EXPR_INTEGER_LESS_EQUAL:
-    case EXPR_INTEGER_EQUAL:
-    case EXPR_MIXED_LESS:
-    case EXPR_MIXED_LESS_EQUAL:
-    case EXPR_MIXED_GREATER:
-    case EXPR_MIXED_GREATER_EQUAL:
-    case EXPR_MIXED_EQUAL:
-    case EXPR_WHOLE:
-    case EXPR_TRUTH_SELECT:
-        out[0] = out[1] = out[2] = is_single(value) ? zero : any_slope;
         break;
     EXPR_LOOP_CASES:
     case EXPR_CONSTANT:

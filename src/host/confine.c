@@ -355,6 +355,7 @@ static void put_rule(struct program *program, const struct rule *rule, bool writ
         put_answer(program, landlock ? allow : SECCOMP_RET_ERRNO | ENOSYS);
         break;
     }
+    /* The jump to behind the result is known only now. */
     program->steps[jump].jf = (uint8_t)(program->count - 1u - jump);
 }
 

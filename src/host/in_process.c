@@ -84,6 +84,7 @@ static int run(struct in_process *in_process, const struct options *options) {
                                      .read = in_process_read,
                                      .poll = in_process_poll};
     struct scripts scripts = {options, &services};
+    /* A closed pipe and a limit of files are errors of a write, with a message. */
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     output_init(&in_process->output, options, &control);

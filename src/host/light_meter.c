@@ -66,6 +66,7 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
     double *stops = &work->job.settings.tone.exposure;
     if (*stops <= EXPOSURE_MAX)
         return true;
+    /* What renders no picture needs no measurement. */
     *stops = 0;
     if (options->check || options->dump_scene || options->dump_expr)
         return true;
@@ -78,6 +79,7 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
                              .fog = work->job.fog,
                              .background_lights = work->job.background_lights,
                              .film = &film};
+    /* A small, quick picture without what the brightness does not depend on. */
     double scale = fmin(1, (double)WIDTH / fmax(work->job.width, work->job.height));
     job.width = (uint32_t)fmax(work->job.width * scale, 1);
     job.height = (uint32_t)fmax(work->job.height * scale, 1);
@@ -90,6 +92,7 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
     if (!render_prepare(&job, &area, warning, error))
         return false;
 
+    /* The world is charged to the scene, like that of the picture. */
     (void)mem_charge(process->account);
     const struct world_input input = render_process_world_input(work);
     bool ok = world_build(&world, &input, &process->job, process->pool, error);

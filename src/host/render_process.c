@@ -657,10 +657,12 @@ static int run_script(struct render_process *process, const char *path) {
     memset(process->replaced, 0, sizeof process->replaced);
     process->faults = 0;
     process->animates = false;
+    /* In the window the first frame is the one that it asks for. */
     if (repeats && process->options->window) {
         frame.number = 0;
         frame.number = next_frame(process, &frame);
     }
+    /* Whether it calls gr.frames is not known yet: a frame that is not selected is run, too, but not rendered. */
     process->skips = repeats && !frame_is_selected(selection, frame.number);
     (void)mem_charge(process->account);
     world_cache_destroy(&process->world_cache);
@@ -670,6 +672,7 @@ static int run_script(struct render_process *process, const char *path) {
     while (status == 0 && process->rewinds)
         status = run_once(process, path, &frame, false);
     process->skips = false;
+    /* A script that renders nothing more ends the frames, except in a window. */
     while (repeats && status == 0 && !process->animates && (process->pictures > before || !process->options->window) &&
            (frame.number = process->options->window ? next_frame(process, &frame) : frame_after(selection, &frame)) >
                0) {
@@ -732,6 +735,7 @@ void render_process_run(const struct options *options, const struct host_service
     if (listener.log || listener.heard || listener.searches)
         file_set_listener(&listener);
     run_scripts(&process, first);
+    /* With --watch until the window closes or the run is interrupted. */
     while (watched && services->again(services->context)) {
         if (process.pool)
             pool_reset_cancel(process.pool);

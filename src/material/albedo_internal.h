@@ -13,9 +13,9 @@
 double albedo_mirror(double cosine, double roughness);
 double albedo_mirror_average(double roughness);
 
-/* Facets whose slopes are wider along one tangent (Heitz 2014): the share that does not leave after one facet, over that
- * of facets of one width with the same mean square. cos_double: the cosine of twice the azimuth to the wide direction.
- * Errors of the share for facets that reflect all: .001 in the mean, .01 at most. */
+/* Facets whose slopes are wider along one tangent (Heitz 2014): the share that does not leave after one facet, over
+ * that of facets of one width with the same mean square. cos_double: the cosine of twice the azimuth to the wide
+ * direction. Errors of the share for facets that reflect all: .001 in the mean, .01 at most. */
 double albedo_stretch(double cosine, double cos_double, double alpha_along, double alpha_across);
 double albedo_stretch_average(double alpha_along, double alpha_across);
 

@@ -27,8 +27,8 @@ void bsdf_facets_pane(struct bsdf_facets *facets, double eta);
 /* f0: reflectance head on; tint: the reflectance at the cosine 1/7 over that of Schlick's formula. */
 void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint);
 
-/* The share of light from one direction that neither leaves by the first facet nor passes through it; `behind`: from the
- * other side. And the share that facets of a boundary reflect. */
+/* The share of light from one direction that neither leaves by the first facet nor passes through it; `behind`: from
+ * the other side. And the share that facets of a boundary reflect. */
 double bsdf_facets_lack(const struct bsdf_facets *facets, struct vec3 direction, bool behind);
 double bsdf_facets_reflected(const struct bsdf_facets *facets, struct vec3 direction);
 

@@ -170,7 +170,7 @@ int texture_colour_parts(const struct texture *texture) {
 static struct vec3 parameter_colour(enum material_input input, const struct phong *numbers) {
     if (!numbers)
         return vec3_all(1);
-    switch (input) {
+    switch ((unsigned)input) { /* a number of OpenPBR is no parameter: it is in struct openpbr */
     case INPUT_KD:
         return numbers->kd;
     case INPUT_KS:
@@ -185,26 +185,9 @@ static struct vec3 parameter_colour(enum material_input input, const struct phon
         return vec3_all(numbers->roughness);
     case INPUT_EMISSION:
         return numbers->emission;
-    case INPUT_OPACITY:
-    case INPUT_BASE_WEIGHT:
-    case INPUT_DIFFUSE_ROUGHNESS:
-    case INPUT_METALNESS:
-    case INPUT_SPECULAR_WEIGHT:
-    case INPUT_SPECULAR_ANISOTROPY:
-    case INPUT_SPECULAR_IOR:
-    case INPUT_TRANSMISSION_COLOUR:
-    case INPUT_COAT_WEIGHT:
-    case INPUT_COAT_COLOUR:
-    case INPUT_COAT_ROUGHNESS:
-    case INPUT_COAT_ANISOTROPY:
-    case INPUT_COAT_IOR:
-    case INPUT_COAT_DARKENING:
-    case INPUT_FUZZ_WEIGHT:
-    case INPUT_FUZZ_COLOUR:
-    case INPUT_FUZZ_ROUGHNESS:
-        break;
+    default:
+        return vec3_all(1);
     }
-    return vec3_all(1);
 }
 
 static double mean(struct vec3 colour) {

@@ -13,7 +13,7 @@ double noise_cosine_mix(double t, double a, double b);
 double noise_perlin(double x, double y, double z, int interpolation);
 
 /* Of interpolation 0: the gradient, 0 where a coordinate is not finite; and bounds of the absolute values of the noise
- * and of its derivatives, the second ones in one coordinate and in two (tests/unit/expr/test_expr_bounds.c finds them). */
+ * and of its derivatives, the second ones in one coordinate and in two (test_expr_bounds.c finds them). */
 void noise_perlin_gradient(double x, double y, double z, double gradient[3]);
 /* The same gradient up to rounding, faster; returns the bits of noise_perlin(x, y, z, 0). */
 double noise_perlin_with_gradient(double x, double y, double z, double gradient[3]);

@@ -171,13 +171,16 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
                        bool now, struct checkpoint_tiles *tiles, struct error *error) {
     if (!checkpoint->opened || checkpoint->number < checkpoint->old_number)
         return true;
+    /* Writing takes at most a fixed share of the time. */
     double clock = clock_now(), pause = checkpoint->took * pause_factor;
     if (!now && clock - checkpoint->written_at < (checkpoint->every > pause ? checkpoint->every : pause))
         return true;
     struct checkpoint_tiles have = {film ? film_tiles_in(film, FILM_TILE_DONE) : 0, film ? film_tiles_begun(film) : 0};
     bool empty = have.done + have.begun == 0 && checkpoint->done_count == 0;
+    /* One that nobody asked for is written only where a long run is interrupted. */
     if (checkpoint->late && (!now || empty || clock - checkpoint->written_at < long_run))
         return true;
+    /* Nothing is new. */
     if (!now && !checkpoint->pending && have.done == checkpoint->tiles_kept && have.begun == 0)
         return true;
     const struct file_target target = target_of(checkpoint);
@@ -190,6 +193,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
         *tiles = have;
         return true;
     }
+    /* A failure is told once; the next update tries again. */
     bool report = !checkpoint->failed || now;
     checkpoint->failed = true;
     return !report;

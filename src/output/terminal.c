@@ -203,11 +203,13 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     bool blocks = terminal->graphics == TERMINAL_BLOCKS;
     double across = blocks ? terminal->columns : terminal->columns * terminal->cell_width;
     double down = blocks ? 2 * lines : lines * terminal->cell_height;
+    /* As large as the window allows with two lines for the progress. */
     fit(film, fmin(across, PIXELS_MAX), fmin(down, PIXELS_MAX), &width, &height);
     uint8_t *rgb = mem_alloc_zero((size_t)width * height, 3);
     if (!rgb)
         return;
     terminal_shrink(film, tone, width, height, rgb);
+    /* A later pass goes over the earlier one. */
     int per_row = blocks ? 2 : terminal->cell_height, rows = ((int)height + per_row - 1) / per_row;
     if (terminal->moves && terminal->rows > 0)
         (void)printf("\033[%dA\r", terminal->rows);

@@ -52,6 +52,7 @@ static bool start(const struct tool *tool, pid_t *child, struct error *error) {
         (void)posix_spawn_file_actions_destroy(&actions);
         return error_no_memory(error, name);
     }
+    /* The child has no signal blocked or ignored. */
     (void)sigemptyset(&none);
     (void)sigfillset(&all);
     (void)posix_spawnattr_setsigmask(&attributes, &none);
@@ -150,6 +151,7 @@ static bool copy_file(const char *from, const struct file_target *target, struct
         mem_free(piece);
         return false;
     }
+    /* In pieces, because films are larger than memory should be. */
     bool ok = true;
     for (uint64_t at = 0; ok && at < source.size; at += PIECE) {
         size_t size = source.size - at < PIECE ? (size_t)(source.size - at) : PIECE;
@@ -259,6 +261,7 @@ static bool read_output(const struct denoise_source *source, const char *folder,
     if (!join(folder, "denoised.pfm", path, error))
         return false;
     struct image *image = image_read(path, &reason);
+    /* Out of memory is said as it is; a file that is no picture is the fault of the program. */
     if (!image && reason.kind == ERROR_MACHINE) {
         *error = reason;
         return false;

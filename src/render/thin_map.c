@@ -183,16 +183,19 @@ static void draw(struct thin_drawing *drawing, const struct view *view, const st
         top = fmin(top, outline->y[corners[i]]);
         bottom = fmax(bottom, outline->y[corners[i]]);
     }
+    /* The rows that it may touch. */
     double first = fmax(map->y0, floor(top - more)),
            last = fmin((double)map->y0 + map->height - 1, floor(bottom + more));
     if (!(first <= last))
         return;
     atomic_store_explicit(&drawing->found, true, memory_order_relaxed);
+    /* The nearest drawing of a pixel stays: numbers of nearness compare like their bits. */
     uint32_t bits = bits_of((float)(outline->nearness * (1 + 1e-6))) & ~THIN_FLAGS;
     bits |= outline->length <= small ? THIN_SMALL : outline->width < line ? THIN_LINE : 0;
     double x_min = fmax(map->x0, view->left), x_max = fmin((double)map->x0 + map->width, view->right) - 1;
     for (double y = first; y <= last; y++) {
         double left = INFINITY, right = -INFINITY, above = y - more, below = y + 1 + more;
+        /* The extent of the hull over the height of a row, edge by edge. */
         for (int i = 0; i < count; i++) {
             int a = corners[i], b = corners[(i + 1) % count];
             double ay = outline->y[a], by = outline->y[b], dy = by - ay, dx = outline->x[b] - outline->x[a];

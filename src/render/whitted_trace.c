@@ -76,6 +76,7 @@ static struct vec3 follow(struct integrator_state *state, const struct surface_p
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
         return vec3_all(0);
+    /* Behind the surface the ray is in other media; each branch has random numbers of its own. */
     struct ray onward = hit_ray(at->hit, at->ray, towards->direction, at->ray->media);
     struct medium_stack behind;
     if (transmits) {
@@ -181,6 +182,7 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
             out->count += found->weight > 0;
         }
     }
+    /* Scaled, so that those of a branch together have its share. */
     for (int i = 0; i < out->count; i++) {
         struct candidate *found = &out->all[i];
         const struct bsdf_branch *branch = &branches[found->branch];
@@ -243,6 +245,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     struct vec3 sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
+    /* In batches of cells, each with its share of the rays. */
     OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
     struct candidates candidates;
     candidates.end = 0;
@@ -351,11 +354,6 @@ static struct vec3 trace(struct integrator_state *state, const struct ray *ray, 
     return incident_radiance(state, ray, met ? &hit : NULL, path);
 }
 
-/* A drawing of lines alone. */
-static bool is_blank(const struct integrator_state *state) {
-    return state->job->settings.style == STYLE_INK;
-}
-
 static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
     bool through =
         world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
@@ -365,42 +363,35 @@ static void record_hit(const struct world *world, const struct hit *hit, struct 
     out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
 }
 
-/* Whether a camera ray needs no hit: its light is *light. */
-static bool needs_no_hit(struct integrator_state *state, struct vec3 *light) {
-    *light = vec3_all(is_blank(state) ? 1 : 0);
-    return is_blank(state) || integrator_cancelled(state);
-}
-
-/* The light of a camera ray that starts in the media of the eye. hit: or NULL. */
-static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state,
-                                const struct ray *from_eye, const struct hit *hit, uint64_t key) {
-    if (hit && state->camera_hit)
-        record_hit(state->job->world, hit, state->camera_hit);
+/* The light of a camera ray that starts in the media of the eye. met: its hit, or NULL. ask: it is not known yet. */
+static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                                const struct packet_answer *met, bool ask, uint64_t key) {
+    const struct world *world = state->job->world;
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return integrator_clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
+    struct ray from_eye = *ray;
+    struct hit hit;
+    bool found = met;
+    from_eye.media = state->eye_medium_stack;
+    if (state->job->settings.style == STYLE_INK) /* a drawing of lines alone */
+        return vec3_all(1);
+    if (integrator_cancelled(state))
+        return vec3_all(0);
+    if (ask)
+        found = world_nearest(world, &from_eye, state->scratch, &hit);
+    else if (met)
+        world_describe(world, &from_eye, met->primitive, &met->crossing, &hit);
+    if (found && state->camera_hit)
+        record_hit(world, &hit, state->camera_hit);
+    return integrator_clamp_light(state, incident_radiance(state, &from_eye, found ? &hit : NULL, &path),
+                                  (double)FLT_MAX);
 }
 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key) {
-    struct ray from_eye = *ray;
-    struct hit hit;
-    struct vec3 light;
-    from_eye.media = state->eye_medium_stack;
-    if (needs_no_hit(state, &light))
-        return light;
-    bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
-    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+    return camera_light(whitted, state, ray, NULL, true, key);
 }
 
 struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                               const struct packet_answer *met, uint64_t key) {
-    struct ray from_eye = *ray;
-    struct hit hit;
-    struct vec3 light;
-    from_eye.media = state->eye_medium_stack;
-    if (needs_no_hit(state, &light))
-        return light;
-    if (met)
-        world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
-    return camera_light(whitted, state, &from_eye, met ? &hit : NULL, key);
+    return camera_light(whitted, state, ray, met, false, key);
 }

@@ -3,6 +3,8 @@
 #include "scene/change_material.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 const char *material_part_name(enum material_part part) {
     static const char *const names[] = {MATERIAL_PART_LIST(LIST_WORD)};
@@ -27,78 +29,27 @@ bool material_part_keeps_world(enum material_part part) {
     return part == MATERIAL_PART_KD || part == MATERIAL_PART_KS || part == MATERIAL_PART_SHININESS;
 }
 
-static void put(double numbers[3], struct vec3 v) {
-    numbers[0] = v.x;
-    numbers[1] = v.y;
-    numbers[2] = v.z;
-}
-
-static struct vec3 three(const double numbers[3]) {
-    return vec3_make(numbers[0], numbers[1], numbers[2]);
-}
+/* Where the numbers of the parts begin. */
+#define OFFSET(part, name) [part] = offsetof(struct phong, name)
+static const size_t offsets[] = {
+    OFFSET(MATERIAL_PART_KD, kd),
+    OFFSET(MATERIAL_PART_KS, ks),
+    OFFSET(MATERIAL_PART_SHININESS, shininess),
+    OFFSET(MATERIAL_PART_REFLECT, reflect),
+    OFFSET(MATERIAL_PART_ROUGHNESS, roughness),
+    OFFSET(MATERIAL_PART_REFRACT, refract),
+    OFFSET(MATERIAL_PART_IOR, ior),
+    OFFSET(MATERIAL_PART_EMISSION, emission),
+    OFFSET(MATERIAL_PART_ABSORPTION, absorption),
+};
+_Static_assert(sizeof offsets / sizeof *offsets == MATERIAL_PART_PARTS, "a part without its numbers");
 
 void material_part_get(const struct material *base, enum material_part part, double numbers[3]) {
     numbers[0] = numbers[1] = numbers[2] = 0;
-    switch (part) {
-    case MATERIAL_PART_KD:
-        put(numbers, base->phong.kd);
-        return;
-    case MATERIAL_PART_KS:
-        put(numbers, base->phong.ks);
-        return;
-    case MATERIAL_PART_SHININESS:
-        numbers[0] = base->phong.shininess;
-        return;
-    case MATERIAL_PART_REFLECT:
-        numbers[0] = base->phong.reflect;
-        return;
-    case MATERIAL_PART_ROUGHNESS:
-        numbers[0] = base->phong.roughness;
-        return;
-    case MATERIAL_PART_REFRACT:
-        numbers[0] = base->phong.refract;
-        return;
-    case MATERIAL_PART_IOR:
-        numbers[0] = base->phong.ior;
-        return;
-    case MATERIAL_PART_EMISSION:
-        put(numbers, base->phong.emission);
-        return;
-    case MATERIAL_PART_ABSORPTION:
-        put(numbers, base->phong.absorption);
-        return;
-    }
+    memcpy(numbers, (const char *)&base->phong + offsets[part], (size_t)material_part_count(part) * sizeof *numbers);
 }
 
 void material_part_set(struct material *base, enum material_part part, const double numbers[3]) {
-    switch (part) {
-    case MATERIAL_PART_KD:
-        base->phong.kd = three(numbers);
-        return;
-    case MATERIAL_PART_KS:
-        base->phong.ks = three(numbers);
-        return;
-    case MATERIAL_PART_SHININESS:
-        base->phong.shininess = numbers[0];
-        return;
-    case MATERIAL_PART_REFLECT:
-        base->phong.reflect = numbers[0];
-        return;
-    case MATERIAL_PART_ROUGHNESS:
-        base->phong.roughness = numbers[0];
-        return;
-    case MATERIAL_PART_REFRACT:
-        base->phong.refract = numbers[0];
-        return;
-    case MATERIAL_PART_IOR:
-        base->phong.ior = numbers[0];
-        base->phong.has_ior = true;
-        return;
-    case MATERIAL_PART_EMISSION:
-        base->phong.emission = three(numbers);
-        return;
-    case MATERIAL_PART_ABSORPTION:
-        base->phong.absorption = three(numbers);
-        return;
-    }
+    memcpy((char *)&base->phong + offsets[part], numbers, (size_t)material_part_count(part) * sizeof *numbers);
+    base->phong.has_ior |= part == MATERIAL_PART_IOR;
 }

@@ -10,45 +10,36 @@
 
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 #define SKY_FIELDS                                                                                                     \
-    [SKY_INTENSITY] = {"intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."},          \
-    [SKY_ROTATION] = {                                                                                                 \
-        "rotation", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "Rotation about y, counterclockwise seen from above."}
+    [SKY_INTENSITY] = ROW("intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "1", "Factor of its brightness."),       \
+    [SKY_ROTATION] = ROW("rotation", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0",                                       \
+                         "Rotation about y, counterclockwise seen from above.")
 #define SKY_FACE(text)                                                                                                 \
     { text, KIND_IMAGE, 0, ANY, NULL, NULL, "A square picture, as seen from the centre." }
 
 /* The fields of the sun follow one another. */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_YEAR, SUN_FIELDS };
 #define SUN(first)                                                                                                     \
-    [(first) +                                                                                                         \
-        SUN_DIRECTION] =                                                                                               \
-        {"sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL, "Direction to the sun, instead of time and position."},     \
-        [(first) + SUN_HOUR] = {"hour", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 24), NULL, "12", "Local time of day."},     \
-        [(first) +                                                                                                     \
-            SUN_DAY] = {"day", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 366), NULL, "172, 21 June", "Day of the year."},      \
-        [(first) + SUN_LATITUDE] = {"latitude",                                                                        \
-                                    KIND_NUMBER,                                                                       \
-                                    OPTIONAL,                                                                          \
-                                    IN_RANGE(-90, 90),                                                                 \
-                                    "degrees",                                                                         \
-                                    "45",                                                                              \
-                                    "Positive is north; in the scene, -z is north and +x is east."},                   \
-        [(first) + SUN_LONGITUDE] = {"longitude", KIND_NUMBER, OPTIONAL,           IN_RANGE(-180, 180),                \
-                                     "degrees",   "0",         "Positive is east."},                                   \
-        [(first) + SUN_ZONE] = {"zone",                                                                                \
-                                KIND_NUMBER,                                                                           \
-                                OPTIONAL,                                                                              \
-                                IN_RANGE(-14, 14),                                                                     \
-                                "hours",                                                                               \
-                                "0",                                                                                   \
-                                "Difference of the local time to Greenwich; positive is east."},                       \
-        [(first) + SUN_YEAR] = {"year", KIND_WHOLE, OPTIONAL, IN_RANGE(1901, 2099), NULL, "2025", "Year of the day."}
+    [(first) + SUN_DIRECTION] =                                                                                        \
+        ROW("sun", KIND_DIRECTION, OPTIONAL, ANY, NULL, NULL, "Direction to the sun, instead of time and position."),  \
+               [(first) + SUN_HOUR] =                                                                                  \
+                   ROW("hour", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 24), NULL, "12", "Local time of day."),              \
+               [(first) + SUN_DAY] =                                                                                   \
+                   ROW("day", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 366), NULL, "172, 21 June", "Day of the year."),       \
+               [(first) + SUN_LATITUDE] = ROW("latitude", KIND_NUMBER, OPTIONAL, IN_RANGE(-90, 90), "degrees", "45",   \
+                                              "Positive is north; in the scene, -z is north and +x is east."),         \
+               [(first) + SUN_LONGITUDE] =                                                                             \
+                   ROW("longitude", KIND_NUMBER, OPTIONAL, IN_RANGE(-180, 180), "degrees", "0", "Positive is east."),  \
+               [(first) + SUN_ZONE] = ROW("zone", KIND_NUMBER, OPTIONAL, IN_RANGE(-14, 14), "hours", "0",              \
+                                          "Difference of the local time to Greenwich; positive is east."),             \
+               [(first) + SUN_YEAR] =                                                                                  \
+                   ROW("year", KIND_WHOLE, OPTIONAL, IN_RANGE(1901, 2099), NULL, "2025", "Year of the day.")
 
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
 #define FOG_CLEAR_SKY_FIELD                                                                                            \
-    [FOG_CLEAR_SKY] = {                                                                                                \
-        "clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the fog leaves the sky unchanged."}
+    [FOG_CLEAR_SKY] =                                                                                                  \
+        ROW("clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the fog leaves the sky unchanged.")
 #define FOG_FIELDS                                                                                                     \
-    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},        \
+    [FOG_COLOUR] = ROW("colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."),     \
     FOG_CLEAR_SKY_FIELD
 #define FOG_DENSITY(text) [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
 

@@ -14,44 +14,23 @@ enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH
 enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
 
 #define ATTENUATION_FIELDS                                                                                             \
-    [LIGHT_FALLOFF] = {"falloff",                                                                                      \
-                       KIND_TRIPLE,                                                                                    \
-                       OPTIONAL,                                                                                       \
-                       ANY,                                                                                            \
-                       NULL,                                                                                           \
-                       "{1, 0, 0}",                                                                                    \
-                       "Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2)."},                           \
-    [LIGHT_RANGE] = {"range",                                                                                          \
-                     KIND_NUMBER,                                                                                      \
-                     OPTIONAL | LOW_OPEN,                                                                              \
-                     ABOVE(0),                                                                                         \
-                     NULL,                                                                                             \
-                     NULL,                                                                                             \
-                     "Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond."},         \
-    [LIGHT_INTENSITY] = {"intensity",                                                                                  \
-                         KIND_NUMBER,                                                                                  \
-                         OPTIONAL,                                                                                     \
-                         ABOVE(0),                                                                                     \
-                         NULL,                                                                                         \
-                         NULL,                                                                                         \
-                         "Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2."}
+    [LIGHT_FALLOFF] = ROW("falloff", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 0, 0}",                                    \
+                          "Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2)."),                        \
+    [LIGHT_RANGE] = ROW("range", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,                               \
+                        "Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond."),      \
+    [LIGHT_INTENSITY] = ROW("intensity", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, NULL,                                  \
+                            "Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2.")
 #define AREA_LIGHT_FIELDS                                                                                              \
-    [LIGHT_EMISSION] =                                                                                                 \
-        {"emission",                                                                                                   \
-         KIND_COLOUR,                                                                                                  \
-         OPTIONAL,                                                                                                     \
-         ANY,                                                                                                          \
-         NULL,                                                                                                         \
-         NULL,                                                                                                         \
-         "Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff."}, \
-    [LIGHT_SAMPLES] =                                                                                                  \
-        {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples", "N x N shadow rays for this light."}, \
-    [LIGHT_VISIBLE] = {"visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is visible."}
+    [LIGHT_EMISSION] = ROW(                                                                                            \
+        "emission", KIND_COLOUR, OPTIONAL, ANY, NULL, NULL,                                                            \
+        "Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff."),  \
+    [LIGHT_SAMPLES] = ROW("samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples",                      \
+                          "N x N shadow rays for this light."),                                                        \
+    [LIGHT_VISIBLE] =                                                                                                  \
+        ROW("visible", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the light itself is visible.")
 #define ONE_SIDED(text)                                                                                                \
-    {                                                                                                                  \
-        "one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
-            "Whether it emits, and is visible, only on the side of " text "."                                          \
-    }
+    ROW("one_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",                                                       \
+        "Whether it emits, and is visible, only on the side of " text ".")
 
 static const struct script_parameter light_parameters[] = {
     LIGHT_FIELDS(OR_PROFILE),
@@ -60,7 +39,7 @@ static const struct script_parameter light_parameters[] = {
 };
 
 #define SAMPLES_FIELD                                                                                                  \
-    { "samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples", "N x N shadow rays for this light." }
+    ROW("samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "area_samples", "N x N shadow rays for this light.")
 
 static const struct script_parameter mesh_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),

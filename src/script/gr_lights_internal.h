@@ -22,19 +22,15 @@ enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
 /* The first parameters of every light. */
 #define LIGHT_LISTS                                                                                                    \
     [LIGHT_INCLUDE] =                                                                                                  \
-        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "Nodes that it lights, with their children."},             \
-    [LIGHT_EXCLUDE] = {                                                                                                \
-        "exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "Nodes that it does not light, with their children."}
+        ROW("include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "Nodes that it lights, with their children."),          \
+    [LIGHT_EXCLUDE] =                                                                                                  \
+        ROW("exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "Nodes that it does not light, with their children.")
 #define LIGHT_FIELDS(colour_flags)                                                                                     \
-    [LIGHT_COLOUR] = {"colour",                                                                                        \
-                      KIND_COLOUR,                                                                                     \
-                      (colour_flags) | OR_DISPLAY,                                                                     \
-                      ANY,                                                                                             \
-                      NULL,                                                                                            \
-                      (colour_flags)&OPTIONAL ? "{1, 1, 1} with emission" : NULL,                                      \
-                      (colour_flags)&OR_PROFILE                                                                        \
-                          ? "Colour and strength, or a function of the unit direction in which light leaves."          \
-                          : "Colour and strength."},                                                                   \
+    [LIGHT_COLOUR] = ROW("colour", KIND_COLOUR, (colour_flags) | OR_DISPLAY, ANY, NULL,                                \
+                         (colour_flags)&OPTIONAL ? "{1, 1, 1} with emission" : NULL,                                   \
+                         (colour_flags)&OR_PROFILE                                                                     \
+                             ? "Colour and strength, or a function of the unit direction in which light leaves."       \
+                             : "Colour and strength."),                                                                \
     LIGHT_LISTS
 
 /* A directional light, or the sun; see struct script_function. */

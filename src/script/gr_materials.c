@@ -19,8 +19,7 @@ enum { SPHERE_MAPPINGS(LIST_MEMBER) };
 #define IMAGE_CHANNELS(X) X(INPUT_KD, "kd") X(INPUT_KS, "ks") X(INPUT_EMISSION, "emission") X(INPUT_OPACITY, "opacity")
 #define BUMP_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
 
-#define BASE                                                                                                           \
-    { "material", KIND_MATERIAL, 0, ANY, NULL, NULL, "The base material." }
+#define BASE ROW("material", KIND_MATERIAL, 0, ANY, NULL, NULL, "The base material.")
 
 /* How an image is looked up: these fields always follow one another. */
 enum {
@@ -34,27 +33,22 @@ enum {
     LOOKUP_COUNT
 };
 #define FILTER                                                                                                         \
-    { "filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_FILTERS), NULL, "'mipmap'", "Filter of the lookup." }
+    ROW("filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_FILTERS), NULL, "'mipmap'", "Filter of the lookup.")
 #define WRAP_PARAMETER                                                                                                 \
-    { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_WRAPS), NULL, "'repeat'", "Lookup outside of the image." }
+    ROW("wrap", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_WRAPS), NULL, "'repeat'", "Lookup outside of the image.")
 #define FLIP_U                                                                                                         \
-    { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right." }
+    ROW("flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right.")
 #define SPHERE_MAPPING                                                                                                 \
-    {                                                                                                                  \
-        "mapping", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPHERE_MAPPINGS), NULL, "'classic'",                       \
-            "On spheres: classic is mirrored, seen from outside; outside is not."                                      \
-    }
-#define TILES                                                                                                          \
-    { "tiles", KIND_PAIR, OPTIONAL, ANY, NULL, "1", "Number of repetitions: one number, or {across, up}." }
+    ROW("mapping", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPHERE_MAPPINGS), NULL, "'classic'",                       \
+        "On spheres: classic is mirrored, seen from outside; outside is not.")
+#define TILES ROW("tiles", KIND_PAIR, OPTIONAL, ANY, NULL, "1", "Number of repetitions: one number, or {across, up}.")
 #define OFFSET                                                                                                         \
-    { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}." }
+    ROW("offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}.")
 #define ENCODING                                                                                                       \
-    {                                                                                                                  \
-        "encoding", KIND_CHOICE, OPTIONAL | OR_NUMBER | LOW_OPEN, 0, 10, LIST_BLANKS(TEXTURE_ENCODINGS), NULL,         \
-            "'auto'",                                                                                                  \
-            "Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 "    \
-            "bits; a number is a gamma."                                                                               \
-    }
+    ROW("encoding", KIND_CHOICE, OPTIONAL | OR_NUMBER | LOW_OPEN, 0, 10, LIST_BLANKS(TEXTURE_ENCODINGS), NULL,         \
+        "'auto'",                                                                                                      \
+        "Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 "        \
+        "bits; a number is a gamma.")
 #define LOOKUP_FIELDS(first)                                                                                           \
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
              [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET, [first + LOOKUP_ENCODING] = ENCODING,   \
@@ -90,78 +84,34 @@ enum {
     PHONG_METALNESS,
     PHONG_BUMP
 };
-#define KD                                                                                                             \
-    { "kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Diffuse and ambient colour." }
+#define KD ROW("kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Diffuse and ambient colour.")
 #define KS                                                                                                             \
-    {                                                                                                                  \
-        "ks", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ANY, NULL, "{0, 0, 0}",                                              \
-            "Colour of highlights; filter of reflected and refracted rays."                                            \
-    }
+    ROW("ks", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ANY, NULL, "{0, 0, 0}",                                              \
+        "Colour of highlights; filter of reflected and refracted rays.")
 #define SHININESS                                                                                                      \
-    { "shininess", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1", "Exponent of the highlight." }
+    ROW("shininess", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1", "Exponent of the highlight.")
 #define TWO_SIDED                                                                                                      \
-    { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit, too." }
+    ROW("two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit, too.")
 #define SURFACE_FIELDS                                                                                                 \
-    [PHONG_HIGHLIGHT] = {"highlight",                                                                                  \
-                         KIND_CHOICE,                                                                                  \
-                         OPTIONAL,                                                                                     \
-                         0,                                                                                            \
-                         0,                                                                                            \
-                         LIST_BLANKS(HIGHLIGHTS),                                                                      \
-                         NULL,                                                                                         \
-                         "specular of the render",                                                                     \
-                         "Formula of the highlight."},                                                                 \
-    [PHONG_LIT] =                                                                                                      \
-        {"lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true", "Whether light affects it; false: it shows kd unchanged."}, \
-    [PHONG_EMISSION] = {"emission",                                                                                    \
-                        KIND_COLOUR,                                                                                   \
-                        OPTIONAL | OR_TEXTURE,                                                                         \
-                        ANY,                                                                                           \
-                        NULL,                                                                                          \
-                        "{0, 0, 0}",                                                                                   \
-                        "Emitted light, added to reflected light."},                                                   \
-    [PHONG_ROUGHNESS] = {"roughness",                                                                                  \
-                         KIND_NUMBER,                                                                                  \
-                         OPTIONAL | OR_TEXTURE,                                                                        \
-                         IN_RANGE(0, 1),                                                                               \
-                         NULL,                                                                                         \
-                         "0",                                                                                          \
-                         "Roughness of reflection and refraction; 0 is polished."},                                    \
-    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples",                                                                        \
-                              KIND_WHOLE,                                                                              \
-                              OPTIONAL,                                                                                \
-                              IN_RANGE(1, 64),                                                                         \
-                              NULL,                                                                                    \
-                              "4",                                                                                     \
-                              "N x N rays from a rough surface; after the first rough surface of a path, one ray."},   \
-    [PHONG_ABSORPTION] = {"absorption",                                                                                \
-                          KIND_COLOUR,                                                                                 \
-                          OPTIONAL,                                                                                    \
-                          ABOVE(0),                                                                                    \
-                          NULL,                                                                                        \
-                          "{0, 0, 0}",                                                                                 \
-                          "Absorption inside the solid: factor exp(-absorption * distance)."},                         \
-    [PHONG_OPACITY] = {"opacity",                                                                                      \
-                       KIND_NUMBER,                                                                                    \
-                       OPTIONAL | OR_TEXTURE,                                                                          \
-                       IN_RANGE(0, 1),                                                                                 \
-                       NULL,                                                                                           \
-                       "1",                                                                                            \
-                       "Opacity of the surface; below 1 it has holes."},                                               \
-    [PHONG_METALNESS] = {"metalness",                                                                                  \
-                         KIND_NUMBER,                                                                                  \
-                         OPTIONAL | OR_TEXTURE,                                                                        \
-                         IN_RANGE(0, 1),                                                                               \
-                         NULL,                                                                                         \
-                         "0",                                                                                          \
-                         "Fraction of kd that replaces ks."},                                                          \
-    [PHONG_BUMP] = {"bump",                                                                                            \
-                    KIND_IMAGE,                                                                                        \
-                    OPTIONAL | OR_TEXTURE,                                                                             \
-                    ANY,                                                                                               \
-                    NULL,                                                                                              \
-                    "none",                                                                                            \
-                    "Heights: a result of gr.bump, a file or a texture."}
+    [PHONG_HIGHLIGHT] = ROW("highlight", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(HIGHLIGHTS), NULL,                   \
+                            "specular of the render", "Formula of the highlight."),                                    \
+    [PHONG_LIT] = ROW("lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true",                                                \
+                      "Whether light affects it; false: it shows kd unchanged."),                                      \
+    [PHONG_EMISSION] = ROW("emission", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ANY, NULL, "{0, 0, 0}",                     \
+                           "Emitted light, added to reflected light."),                                                \
+    [PHONG_ROUGHNESS] = ROW("roughness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",                \
+                            "Roughness of reflection and refraction; 0 is polished."),                                 \
+    [PHONG_GLOSSY_SAMPLES] =                                                                                           \
+        ROW("glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                        \
+            "N x N rays from a rough surface; after the first rough surface of a path, one ray."),                     \
+    [PHONG_ABSORPTION] = ROW("absorption", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",                         \
+                             "Absorption inside the solid: factor exp(-absorption * distance)."),                      \
+    [PHONG_OPACITY] = ROW("opacity", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "1",                    \
+                          "Opacity of the surface; below 1 it has holes."),                                            \
+    [PHONG_METALNESS] = ROW("metalness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",                \
+                            "Fraction of kd that replaces ks."),                                                       \
+    [PHONG_BUMP] = ROW("bump", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",                                   \
+                       "Heights: a result of gr.bump, a file or a texture.")
 
 static const struct script_parameter material_parameters[] = {
     [PHONG_KD] = KD,
@@ -278,9 +228,8 @@ static bool pattern_over(struct script_context *context, struct material *m, str
 
 enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX };
 #define INTERP                                                                                                         \
-    { "interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
-#define MIX                                                                                                            \
-    { "mix", KIND_COLOUR, OR_DISPLAY, ANY, NULL, NULL, "Colour to mix with kd." }
+    ROW("interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine.")
+#define MIX ROW("mix", KIND_COLOUR, OR_DISPLAY, ANY, NULL, NULL, "Colour to mix with kd.")
 
 static const struct script_parameter marble_parameters[] = {
     [MARBLE_MATERIAL] = BASE,
@@ -510,15 +459,11 @@ static struct script_texture *keep_bump(struct script_context *context, const st
 
 enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KIND };
 #define BUMP_AMOUNT_FIELD                                                                                              \
-    {                                                                                                                  \
-        "height", KIND_NUMBER, OPTIONAL, ANY, NULL, "1/50 of the picture's size; 1 for normals",                       \
-            "Height of white above black, in units of the object; for normals, a factor of the slopes."                \
-    }
+    ROW("height", KIND_NUMBER, OPTIONAL, ANY, NULL, "1/50 of the picture's size; 1 for normals",                       \
+        "Height of white above black, in units of the object; for normals, a factor of the slopes.")
 #define BUMP_KIND_FIELD                                                                                                \
-    {                                                                                                                  \
-        "kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(BUMP_KINDS), NULL, "'bump'",                                  \
-            "Contents: heights, or normals as colours (x right, y up, z outwards)."                                    \
-    }
+    ROW("kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(BUMP_KINDS), NULL, "'bump'",                                  \
+        "Contents: heights, or normals as colours (x right, y up, z outwards).")
 
 static const struct script_parameter bump_parameters[] = {
     [BUMP_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},

@@ -186,6 +186,7 @@ static struct mesh *mesh_from_tables(struct script_context *context, const struc
     }
     if (!face_slots(context, args, &input.face_material, error))
         return NULL;
+    /* The same steps as for the files of models, in the same order. */
     struct model_options options = {0};
     struct mesh_tables own = {0};
     read_options(args, &options);

@@ -11,6 +11,10 @@
 #define ABOVE(low) (low), (double)INFINITY, NULL
 #define IN_RANGE(low, high) (low), (high), NULL
 
+/* A row of a list, which clang-format does not break at every comma. */
+#define ROW(...)                                                                                                       \
+    { __VA_ARGS__ }
+
 #define NAME_HELP "Name of the node, for messages."
 #define MATERIAL_HELP "Material of the surface."
 

@@ -18,7 +18,5 @@ void *option_base(const struct setting *option, struct options *options);
 /* Whether the value may be left out, and is `value` then; and the value in words, NULL if it has none. */
 bool option_may_lack_value(const struct setting *option);
 const char *option_value(const struct setting *option);
-/* The options with their defaults, in groups, 100 columns wide. */
-void options_print_help(FILE *stream);
 
 #endif

@@ -19,11 +19,31 @@
 /* The most crossings that the shapes answered by analytic_crossings can have. */
 enum { ANALYTIC_MAX = SUPERELLIPSOID_MAX };
 
+/* The shapes whose functions are called alike, family_question(shape, ...), each a case of a switch. */
+#define ANALYTIC_FAMILIES(X)                                                                                           \
+    X(SHAPE_REVOLVED_QUADRIC, revolved_quadric, &shape->revolved_quadric)                                              \
+    X(SHAPE_ELLIPSOID, ellipsoid, &shape->ellipsoid)                                                                   \
+    X(SHAPE_TORUS, torus, &shape->torus)                                                                               \
+    X(SHAPE_SUPERELLIPSOID, superellipsoid, &shape->superellipsoid)                                                    \
+    X(SHAPE_PLANAR, planar, &shape->planar)
+#define LISTED_SOLIDS(X)                                                                                               \
+    X(SHAPE_LATHE, lathe, shape->lathe)                                                                                \
+    X(SHAPE_PRISM, prism, shape->prism)                                                                                \
+    X(SHAPE_SWEEP, sweep, shape->sweep)                                                                                \
+    X(SHAPE_HEIGHT_FIELD, height_field, shape->height_field)                                                           \
+    X(SHAPE_BLOB, blob, shape->blob)
+#define LISTED_FAMILIES(X)                                                                                             \
+    LISTED_SOLIDS(X) X(SHAPE_IMPLICIT, implicit, shape->implicit) X(SHAPE_CURVE, curve, shape->curve)
+
 const char *shape_kind_name(enum shape_kind kind) {
     static const char *const names[] = {SHAPE_KINDS(LIST_WORD)};
     return names[kind];
 }
 
+#define EXTENT(kind, family, of)                                                                                       \
+    case kind:                                                                                                         \
+        family##_extent(of, g, lo, hi);                                                                                \
+        return true;
 /* The minimum and the maximum of dot(g, p) over a shape with a closed form for it; false for the others. */
 static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
     switch (shape->kind) {
@@ -33,39 +53,9 @@ static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, d
         *hi = middle + extent;
         return true;
     }
-    case SHAPE_REVOLVED_QUADRIC:
-        revolved_quadric_extent(&shape->revolved_quadric, g, lo, hi);
-        return true;
-    case SHAPE_ELLIPSOID:
-        ellipsoid_extent(&shape->ellipsoid, g, lo, hi);
-        return true;
-    case SHAPE_TORUS:
-        torus_extent(&shape->torus, g, lo, hi);
-        return true;
-    case SHAPE_SUPERELLIPSOID:
-        superellipsoid_extent(&shape->superellipsoid, g, lo, hi);
-        return true;
-    case SHAPE_PLANAR:
-        planar_extent(&shape->planar, g, lo, hi);
-        return true;
-    case SHAPE_LATHE:
-        lathe_extent(shape->lathe, g, lo, hi);
-        return true;
-    case SHAPE_PRISM:
-        prism_extent(shape->prism, g, lo, hi);
-        return true;
-    case SHAPE_SWEEP:
-        sweep_extent(shape->sweep, g, lo, hi);
-        return true;
-    case SHAPE_HEIGHT_FIELD:
-        height_field_extent(shape->height_field, g, lo, hi);
-        return true;
-    case SHAPE_CURVE:
-        curve_extent(shape->curve, g, lo, hi);
-        return true;
-    case SHAPE_BLOB:
-        blob_extent(shape->blob, g, lo, hi);
-        return true;
+        ANALYTIC_FAMILIES(EXTENT)
+        LISTED_SOLIDS(EXTENT)
+        EXTENT(SHAPE_CURVE, curve, shape->curve)
     case SHAPE_QUADRIC:
         return quadric_extent(shape->quadric, g, lo, hi);
     case SHAPE_BOX:
@@ -90,6 +80,9 @@ struct box shape_bounds_under(const struct shape *shape, const struct affine *ma
     return (struct box){{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
+#define BOUNDS(kind, family, of)                                                                                       \
+    case kind:                                                                                                         \
+        return family##_bounds(of);
 struct box shape_bounds(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE: {
@@ -108,20 +101,7 @@ struct box shape_bounds(const struct shape *shape) {
     }
     case SHAPE_QUADRIC:
         return box_pad(quadric_bounds(shape->quadric));
-    case SHAPE_LATHE:
-        return lathe_bounds(shape->lathe);
-    case SHAPE_PRISM:
-        return prism_bounds(shape->prism);
-    case SHAPE_SWEEP:
-        return sweep_bounds(shape->sweep);
-    case SHAPE_HEIGHT_FIELD:
-        return height_field_bounds(shape->height_field);
-    case SHAPE_BLOB:
-        return blob_bounds(shape->blob);
-    case SHAPE_IMPLICIT:
-        return implicit_bounds(shape->implicit);
-    case SHAPE_CURVE:
-        return curve_bounds(shape->curve);
+        LISTED_FAMILIES(BOUNDS)
     case SHAPE_MESH:
         return mesh_bounds(shape->mesh);
     }
@@ -274,6 +254,9 @@ bool shape_is_closed(const struct shape *shape) {
     return !shape_why_open(shape);
 }
 
+#define CROSSINGS(kind, family, of)                                                                                    \
+    case kind:                                                                                                         \
+        return family##_crossings(of, ray, out);
 /* All crossings of the whole line in order with a shape that has only a few. */
 static int analytic_crossings(const struct shape *shape, const struct ray *ray, struct crossing out[ANALYTIC_MAX]) {
     switch (shape->kind) {
@@ -281,18 +264,8 @@ static int analytic_crossings(const struct shape *shape, const struct ray *ray, 
         return sphere_crossings(shape->sphere.centre, shape->sphere.radius, ray, out) ? 2 : 0;
     case SHAPE_BOX:
         return box_shape_crossings(&shape->box, ray, out) ? 2 : 0;
-    case SHAPE_REVOLVED_QUADRIC:
-        return revolved_quadric_crossings(&shape->revolved_quadric, ray, out);
-    case SHAPE_ELLIPSOID:
-        return ellipsoid_crossings(&shape->ellipsoid, ray, out);
-    case SHAPE_QUADRIC:
-        return quadric_crossings(shape->quadric, ray, out);
-    case SHAPE_TORUS:
-        return torus_crossings(&shape->torus, ray, out);
-    case SHAPE_SUPERELLIPSOID:
-        return superellipsoid_crossings(&shape->superellipsoid, ray, out);
-    case SHAPE_PLANAR:
-        return planar_crossings(&shape->planar, ray, out);
+        ANALYTIC_FAMILIES(CROSSINGS)
+        CROSSINGS(SHAPE_QUADRIC, quadric, shape->quadric)
     case SHAPE_MESH:
         LISTED_SHAPES(LIST_LABEL)
         break;
@@ -322,24 +295,14 @@ bool shape_is_listed(const struct shape *shape) {
     return true;
 }
 
+#define LISTED_CROSSINGS(kind, family, of)                                                                             \
+    case kind:                                                                                                         \
+        return family##_crossings(of, ray, scratch, out);
 /* The lists of the shapes that may have many crossings. */
 static bool listed_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                              struct crossing_list *out) {
     switch (shape->kind) {
-    case SHAPE_LATHE:
-        return lathe_crossings(shape->lathe, ray, scratch, out);
-    case SHAPE_PRISM:
-        return prism_crossings(shape->prism, ray, scratch, out);
-    case SHAPE_SWEEP:
-        return sweep_crossings(shape->sweep, ray, scratch, out);
-    case SHAPE_HEIGHT_FIELD:
-        return height_field_crossings(shape->height_field, ray, scratch, out);
-    case SHAPE_BLOB:
-        return blob_crossings(shape->blob, ray, scratch, out);
-    case SHAPE_IMPLICIT:
-        return implicit_crossings(shape->implicit, ray, scratch, out);
-    case SHAPE_CURVE:
-        return curve_crossings(shape->curve, ray, scratch, out);
+        LISTED_FAMILIES(LISTED_CROSSINGS)
     case SHAPE_MESH:
         ANALYTIC_SHAPES(LIST_LABEL)
         break;
@@ -391,27 +354,12 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
 
 bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
     struct crossing ignored;
-    switch (shape->kind) {
-        ANALYTIC_SHAPES(LIST_LABEL)
-        scratch->shape_tests++;
-        return analytic_nearest(shape, ray, &ignored);
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_BLOB:
-    case SHAPE_CURVE:
-        scratch->shape_tests++;
-        return listed_nearest(shape, ray, scratch, &ignored);
-    case SHAPE_IMPLICIT:
-        scratch->shape_tests++;
-        return implicit_any(shape->implicit, ray, scratch);
-    case SHAPE_HEIGHT_FIELD:
-        scratch->shape_tests++;
-        return height_field_nearest(shape->height_field, ray, scratch, &ignored);
-    case SHAPE_MESH:
+    if (shape->kind == SHAPE_MESH)
         return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);
-    }
-    return false;
+    if (shape->kind != SHAPE_IMPLICIT)
+        return shape_nearest(shape, ray, scratch, &ignored);
+    scratch->shape_tests++;
+    return implicit_any(shape->implicit, ray, scratch);
 }
 
 static bool analytic_list(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
@@ -468,36 +416,18 @@ static bool mesh_contains(const struct mesh *mesh, struct vec3 point, struct geo
     return inside;
 }
 
+#define CONTAINS(kind, family, of)                                                                                     \
+    case kind:                                                                                                         \
+        return family##_contains(of, point);
 bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_scratch *scratch) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
         return sphere_contains(shape->sphere.centre, shape->sphere.radius, point);
-    case SHAPE_BOX:
-        return box_shape_contains(&shape->box, point);
-    case SHAPE_REVOLVED_QUADRIC:
-        return revolved_quadric_contains(&shape->revolved_quadric, point);
-    case SHAPE_ELLIPSOID:
-        return ellipsoid_contains(&shape->ellipsoid, point);
-    case SHAPE_QUADRIC:
-        return quadric_contains(shape->quadric, point);
-    case SHAPE_TORUS:
-        return torus_contains(&shape->torus, point);
-    case SHAPE_SUPERELLIPSOID:
-        return superellipsoid_contains(&shape->superellipsoid, point);
-    case SHAPE_PLANAR:
-        return planar_contains(&shape->planar, point);
-    case SHAPE_LATHE:
-        return lathe_contains(shape->lathe, point);
-    case SHAPE_PRISM:
-        return prism_contains(shape->prism, point);
-    case SHAPE_SWEEP:
-        return sweep_contains(shape->sweep, point);
-    case SHAPE_HEIGHT_FIELD:
-        return height_field_contains(shape->height_field, point);
-    case SHAPE_BLOB:
-        return blob_contains(shape->blob, point);
-    case SHAPE_IMPLICIT:
-        return implicit_contains(shape->implicit, point);
+        CONTAINS(SHAPE_BOX, box_shape, &shape->box)
+        CONTAINS(SHAPE_QUADRIC, quadric, shape->quadric)
+        ANALYTIC_FAMILIES(CONTAINS)
+        LISTED_SOLIDS(CONTAINS)
+        CONTAINS(SHAPE_IMPLICIT, implicit, shape->implicit)
     case SHAPE_CURVE:
         return false;
     case SHAPE_MESH:
@@ -506,60 +436,27 @@ bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_sc
     return false;
 }
 
+#define DESCRIBE(kind, family, of)                                                                                     \
+    case kind:                                                                                                         \
+        family##_describe(of, ray, crossing, out);                                                                     \
+        return;
 void shape_describe(const struct shape *shape, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
         sphere_describe(shape->sphere.centre, shape->sphere.radius, ray, crossing, out);
         return;
-    case SHAPE_BOX:
-        box_shape_describe(&shape->box, ray, crossing, out);
-        return;
-    case SHAPE_REVOLVED_QUADRIC:
-        revolved_quadric_describe(&shape->revolved_quadric, ray, crossing, out);
-        return;
-    case SHAPE_ELLIPSOID:
-        ellipsoid_describe(&shape->ellipsoid, ray, crossing, out);
-        return;
-    case SHAPE_QUADRIC:
-        quadric_describe(shape->quadric, ray, crossing, out);
-        return;
-    case SHAPE_TORUS:
-        torus_describe(&shape->torus, ray, crossing, out);
-        return;
-    case SHAPE_SUPERELLIPSOID:
-        superellipsoid_describe(&shape->superellipsoid, ray, crossing, out);
-        return;
-    case SHAPE_PLANAR:
-        planar_describe(&shape->planar, ray, crossing, out);
-        return;
-    case SHAPE_LATHE:
-        lathe_describe(shape->lathe, ray, crossing, out);
-        return;
-    case SHAPE_PRISM:
-        prism_describe(shape->prism, ray, crossing, out);
-        return;
-    case SHAPE_SWEEP:
-        sweep_describe(shape->sweep, ray, crossing, out);
-        return;
-    case SHAPE_HEIGHT_FIELD:
-        height_field_describe(shape->height_field, ray, crossing, out);
-        return;
-    case SHAPE_BLOB:
-        blob_describe(shape->blob, ray, crossing, out);
-        return;
-    case SHAPE_IMPLICIT:
-        implicit_describe(shape->implicit, ray, crossing, out);
-        return;
-    case SHAPE_CURVE:
-        curve_describe(shape->curve, ray, crossing, out);
-        return;
-    case SHAPE_MESH:
-        mesh_describe(shape->mesh, ray, crossing, out);
-        return;
+        DESCRIBE(SHAPE_BOX, box_shape, &shape->box)
+        DESCRIBE(SHAPE_QUADRIC, quadric, shape->quadric)
+        DESCRIBE(SHAPE_MESH, mesh, shape->mesh)
+        ANALYTIC_FAMILIES(DESCRIBE)
+        LISTED_FAMILIES(DESCRIBE)
     }
 }
 
+#define SCRATCH_NEED(kind, family, of)                                                                                 \
+    case kind:                                                                                                         \
+        return family##_scratch_need(of);
 uint32_t shape_scratch_need(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
@@ -573,20 +470,7 @@ uint32_t shape_scratch_need(const struct shape *shape) {
         return 4;
     case SHAPE_SUPERELLIPSOID:
         return SUPERELLIPSOID_MAX;
-    case SHAPE_LATHE:
-        return lathe_scratch_need(shape->lathe);
-    case SHAPE_PRISM:
-        return prism_scratch_need(shape->prism);
-    case SHAPE_SWEEP:
-        return sweep_scratch_need(shape->sweep);
-    case SHAPE_HEIGHT_FIELD:
-        return height_field_scratch_need(shape->height_field);
-    case SHAPE_BLOB:
-        return blob_scratch_need(shape->blob);
-    case SHAPE_IMPLICIT:
-        return implicit_scratch_need(shape->implicit);
-    case SHAPE_CURVE:
-        return curve_scratch_need(shape->curve);
+        LISTED_FAMILIES(SCRATCH_NEED)
     case SHAPE_MESH:
         return MESH_CROSSINGS_GUESS;
     }

@@ -387,35 +387,8 @@ static void refer(struct world *world, const struct numbering *textures, const s
 
 /* Whether the input is a colour; the numbers of others mean themselves. */
 static bool is_colour(enum material_input input) {
-    switch (input) {
-    case INPUT_KD:
-    case INPUT_KS:
-    case INPUT_EMISSION:
-    case INPUT_TRANSMISSION_COLOUR:
-    case INPUT_COAT_COLOUR:
-    case INPUT_FUZZ_COLOUR:
-        return true;
-    case INPUT_SHININESS:
-    case INPUT_REFLECT:
-    case INPUT_REFRACT:
-    case INPUT_ROUGHNESS:
-    case INPUT_OPACITY:
-    case INPUT_BASE_WEIGHT:
-    case INPUT_DIFFUSE_ROUGHNESS:
-    case INPUT_METALNESS:
-    case INPUT_SPECULAR_WEIGHT:
-    case INPUT_SPECULAR_ANISOTROPY:
-    case INPUT_SPECULAR_IOR:
-    case INPUT_COAT_WEIGHT:
-    case INPUT_COAT_ROUGHNESS:
-    case INPUT_COAT_ANISOTROPY:
-    case INPUT_COAT_IOR:
-    case INPUT_COAT_DARKENING:
-    case INPUT_FUZZ_WEIGHT:
-    case INPUT_FUZZ_ROUGHNESS:
-        break;
-    }
-    return false;
+    return input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION || input == INPUT_TRANSMISSION_COLOUR ||
+           input == INPUT_COAT_COLOUR || input == INPUT_FUZZ_COLOUR;
 }
 
 /* A texture that is read as a colour, and its parts that are. */

@@ -70,8 +70,7 @@ static inline struct triangle_set set_of(const struct maker *m) {
     struct box box = box_empty();
     for (uint32_t i = 0; i < m->vertex_count; i++)
         box = box_add_point(box, vec3_make(m->vertices[i][0], m->vertices[i][1], m->vertices[i][2]));
-    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])m->corners,
-                                 m->face_count, box};
+    return (struct triangle_set){(const double(*)[3])m->vertices, (const uint32_t(*)[3])m->corners, m->face_count, box};
 }
 
 static inline struct mesh *maker_mesh(const struct maker *m) {

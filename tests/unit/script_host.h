@@ -3,8 +3,8 @@
 #define GRAY_TESTS_SCRIPT_HOST_H
 
 #include "base/fault.h"
-#include "settings/settings.h"
 #include "script/script.h"
+#include "settings/settings.h"
 #include "tests/harness.h"
 
 #include <stdio.h>
