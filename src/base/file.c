@@ -150,17 +150,55 @@ static struct file_version version_of(const struct stat *status) {
                                  .nanoseconds = (int64_t)status->st_mtim.tv_nsec};
 }
 
+static bool is_same_version(const struct file_version *a, const struct file_version *b) {
+    return a->identity.device == b->identity.device && a->identity.inode == b->identity.inode && a->size == b->size &&
+           a->seconds == b->seconds && a->nanoseconds == b->nanoseconds;
+}
+
+/* Whether the log has not got this version yet; notes it. */
+static bool is_new_version(struct file_read_log *log, const struct file_version *version) {
+    for (size_t i = log->version_count; i-- > 0;) {
+        if (is_same_version(&log->versions[i], version))
+            return false;
+    }
+    if (log->version_count == log->version_room) {
+        size_t room = log->version_room ? 2 * log->version_room : 16;
+        struct file_version *more = mem_resize(log->versions, room * sizeof *more);
+        log->incomplete = log->incomplete || !more;
+        if (!more)
+            return true;
+        log->versions = more;
+        log->version_room = room;
+    }
+    log->versions[log->version_count++] = *version;
+    return true;
+}
+
+/* Whether the log needs the content of this version: not again, and not beyond its limit. */
+static bool log_needs(struct file_read_log *log, const struct file_version *version) {
+    if (!is_new_version(log, version))
+        return false;
+    if (log->limit == 0)
+        return true;
+    log->incomplete = log->incomplete || version->size >= log->limit;
+    if (log->incomplete)
+        return false;
+    log->limit -= version->size;
+    return true;
+}
+
 void file_note_read(int descriptor, const char *path) {
     struct stat status;
     const struct file_listener *listener = file_listener;
     if (!listener || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
         return;
     struct file_version version = version_of(&status);
-    if (listener->log || listener->contents) {
+    const bool is_logged = listener->log && log_needs(listener->log, &version);
+    if (is_logged || listener->contents) {
         bool whole = digest_of(descriptor, &version.content);
-        if (listener->log && !whole)
+        if (is_logged && !whole)
             listener->log->incomplete = true;
-        if (listener->log)
+        if (is_logged)
             note_content(listener->log, version.content);
     }
     if (listener->heard)
@@ -219,6 +257,7 @@ struct digest file_read_log_sum(const struct file_read_log *read_log) {
 
 void file_read_log_destroy(struct file_read_log *read_log) {
     mem_free(read_log->contents);
+    mem_free(read_log->versions);
     *read_log = (struct file_read_log){0};
 }
 

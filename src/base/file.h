@@ -50,19 +50,22 @@ bool file_source_open(struct file_source *source, const char *path, struct error
 bool file_source_read(const struct file_source *source, uint64_t at, void *out, size_t size);
 void file_source_close(struct file_source *source);
 
-/* Digests of all files that this process has read, each once under any name. They show whether a partial picture was
- * made from the same files. Zero-initialise; file_read_log_destroy frees the list. */
-struct file_read_log {
-    struct digest *contents;
-    size_t count, room;
-    bool incomplete; /* no memory for one of them, or one could not be read again */
-};
 /* The content of a file and its time: versions with different size or time need not be compared byte by byte. */
 struct file_version {
     struct file_identity identity;
     struct digest content; /* zero unless the listener needs contents */
     uint64_t size;
     int64_t seconds, nanoseconds; /* of its last change */
+};
+/* Digests of all files that this process has read, each once under any name. They show whether a partial picture was
+ * made from the same files. Zero-initialise; file_read_log_destroy frees the list. */
+struct file_read_log {
+    struct digest *contents;
+    size_t count, room;
+    uint64_t limit;  /* of the bytes that are read again for it; 0: none */
+    bool incomplete; /* no memory for one of them, one could not be read again, or they are larger than the limit */
+    struct file_version *versions; /* files that were noted: they are read again only once */
+    size_t version_count, version_room;
 };
 /* Receives every file that is read, with the name that was used, and every file that a script opens for writing; the
  * members may be NULL. */

@@ -332,6 +332,13 @@ static bool repeats_frame(const struct picture_work *work) {
            !scene_has_changes(work->request->scene);
 }
 
+/* Whether the run writes files of tiles by request, which name all files that were read by their contents. A checkpoint
+ * that is only kept in case of an interruption is given up if they have more than logged_bytes. */
+static const uint64_t logged_bytes = 256 * MEBIBYTE;
+static bool needs_files(const struct options *options) {
+    return options->checkpoint || options->shards || options->mpi;
+}
+
 /* Names the picture and creates its film. *already: there is nothing to do. */
 static bool begin_picture(struct picture_work *work, bool *already, struct error *error) {
     struct render_process *process = work->process;
@@ -365,8 +372,10 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (job->settings.view_is_target)
         picture->camera.view = vec3_sub(job->camera.view, job->camera.eye);
     picture->files = file_read_log_sum(&process->read_log);
-    if (process->read_log.incomplete)
+    if (process->read_log.incomplete && needs_files(process->options))
         return error_no_memory(error, "the list of files that were read");
+    if (process->read_log.incomplete)
+        picture->files = (struct digest){0};
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
     bool turns = process->options->script.frames.turntable > 0;
@@ -722,14 +731,14 @@ void render_process_run(const struct options *options, const struct host_service
     struct scene_writer errors;
     struct render_process process = {.options = options, .services = services, .errors = &errors};
     scene_writer_init(&errors, &services->control->error_stream);
-    const struct file_listener listener = {
-        .searches = services->wait ? wait_for_files : NULL,
-        .log =
-            options->checkpoint || options->keeps_tiles || options->shards || options->mpi ? &process.read_log : NULL,
-        .heard = services->read ? report_read : NULL,
-        .wrote = services->read ? report_write : NULL,
-        .contents = services->read && options->watch,
-        .context = &process};
+    process.read_log.limit = needs_files(options) ? 0 : logged_bytes;
+    const struct file_listener listener = {.searches = services->wait ? wait_for_files : NULL,
+                                           .log =
+                                               needs_files(options) || options->keeps_tiles ? &process.read_log : NULL,
+                                           .heard = services->read ? report_read : NULL,
+                                           .wrote = services->read ? report_write : NULL,
+                                           .contents = services->read && options->watch,
+                                           .context = &process};
     bool watched = options->watch && services->again;
     mem_return_large();
     if (listener.log || listener.heard || listener.searches)

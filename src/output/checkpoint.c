@@ -135,6 +135,8 @@ bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture
                         char notice[256], struct error *error) {
     notice[0] = '\0';
     checkpoint->tiles_kept = 0;
+    if (checkpoint->late && digest_is_zero(picture->key.files))
+        checkpoint->opened = checkpoint->has_old = false; /* not all files are known that the scene was made from */
     if (checkpoint->late && checkpoint->has_old) {
         judge_old(checkpoint, &picture->key, notice);
         checkpoint->has_old = false;
