@@ -311,7 +311,8 @@ install: all
 uninstall:
 	@rm -f $(INSTALLED:%=$(TO)/%)
 	@find $(TO)/share/gray $(TO)/share/doc/gray -depth -type d -exec rmdir --ignore-fail-on-non-empty {} + 2>/dev/null; true
-	@rmdir --ignore-fail-on-non-empty $(sort $(dir $(COMPLETIONS:%=$(TO)/%) $(DESKTOP:%=$(TO)/%) $(PAGES:%=$(TO)/%))) 2>/dev/null; true
+	@rmdir --ignore-fail-on-non-empty $(sort $(dir $(COMPLETIONS:%=$(TO)/%) $(DESKTOP:%=$(TO)/%) $(PAGES:%=$(TO)/%))) \
+	    $(addprefix $(TO)/share/,bash-completion zsh fish mime doc) 2>/dev/null; true
 	@$(REFRESH)
 # The database of file types knows the new one, if this machine keeps one there.
 REFRESH = [ -n "$(DESTDIR)" ] || [ ! -e $(TO)/share/mime/mime.cache ] || update-mime-database $(TO)/share/mime

@@ -48,7 +48,8 @@ local function sweep(material, behind, bend)
     return gr.union { floor, wall, gr.difference(corner, round) }
 end
 
-function M.studio(fields)
+--- integrator: that of the command line, or nil.
+function M.studio(fields, _, integrator)
     local out = further(fields, 'node sweep floor intensity key fill rim turn')
     local middle, height, radius = extent(fields.node)
     local is_endless = not middle
@@ -89,12 +90,17 @@ function M.studio(fields)
     end
     out.lights = fields.lights or {
         box(-48, 42, 5, 3.2, 0.75 * (fields.key or 1)),
-        box(62, 20, 6, 3.2, 0.2 * (fields.fill or 1), 2),
-        box(155, 58, 6, 2.4, 0.45 * (fields.rim or 1), 2),
+        box(62, 20, 6, 3.2, 0.2 * (fields.fill or 1)),
+        box(155, 58, 6, 2.4, 0.45 * (fields.rim or 1)),
     }
     if fields.sky == nil and fields.background == nil then
         out.background = gr.sky_gradient { stops = { { -1, 0.1, 0.1, 0.1 }, { 0, 0.3, 0.3, 0.3 }, { 1, 0.16, 0.16, 0.16 } }, intensity = intensity }
-        if not fields.lights then table.insert(out.lights, gr.sky_light { sky = out.background, samples = 2 }) end
+        -- Under Whitted the light of the sky is even: few of its shadow rays would be noise in every pixel.
+        if (integrator or fields.integrator) ~= 'path' and fields.ambient == nil then
+            out.ambient = { 0.2 * intensity, 0.2 * intensity, 0.2 * intensity }
+        elseif not fields.lights then
+            table.insert(out.lights, gr.sky_light { sky = out.background })
+        end
     end
     return out
 end

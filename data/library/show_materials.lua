@@ -30,4 +30,4 @@ for k, name in ipairs(materials.names()) do
         all:add_child(node:translate(2.5 * (column - 3.5), 1.08, 2.9 * row))
     end
 end
-if not each then show(all, 'show_materials.png', 960, 540, 12, { 0, -0.75, -1 }) end
+if not each then show(all, 'show_materials.png', 960, 540, 8, { 0, -0.75, -1 }) end

@@ -63,7 +63,7 @@ void completion_print(const struct options *options) {
     const char *const *words = options->scripts;
     int last = options->script_count - 1;
     const char *word = last >= 0 ? words[last] : "", *sign = strchr(word, '=');
-    bool only_scripts = false, parts = false;
+    bool only_scripts = false, has_action = false;
     const struct setting *before = NULL; /* whose value the last word is */
     for (int i = 0; i < last; i++) {
         const struct setting *option = words[i][0] == '-' && !only_scripts ? option_named(words[i]) : NULL;
@@ -74,7 +74,8 @@ void completion_print(const struct options *options) {
                 script_each_name(print_topic, NULL);
             return;
         }
-        parts = parts || (!before && (strcmp(words[i], "merge") == 0 || strcmp(words[i], "compare") == 0));
+        for (int k = 0; options_action_word(k) && !before; k++)
+            has_action = has_action || strcmp(words[i], options_action_word(k)) == 0;
         only_scripts = only_scripts || strcmp(words[i], "--") == 0;
         before = before && strcmp(words[i], "=") == 0                                  ? before
                  : option && !strchr(words[i], '=') && (divided || takes_word(option)) ? option
@@ -89,8 +90,8 @@ void completion_print(const struct options *options) {
     } else if (word[0] == '-' && !only_scripts) {
         print_options();
     } else {
-        (void)puts(parts ? "files" : "scenes");
-        if (last <= 0)
-            (void)puts("merge\tjoin the parts of pictures\ncompare\tmeasure the difference of two pictures");
+        (void)puts(has_action ? "files" : "scenes");
+        for (int k = 0; options_action_word(k) && last <= 0; k++)
+            (void)puts(options_action_word(k));
     }
 }

@@ -58,7 +58,7 @@ static void add_usage(struct document *document) {
 
 static void add_help(struct document *document) {
     document_paragraph(document, "gray renders scenes that are written as Lua scripts.");
-    document_gap(document);
+    document_section(document, "Usage");
     add_usage(document);
     document_gap(document);
     options_describe(document);

@@ -303,7 +303,7 @@ bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct er
         return error_set(
             error, ERROR_SCENE,
             "%s: a sky image is a cross of 4 x 3 faces, so its width must be divisible by 4 and its height "
-            "by 3; it is %u x %u",
+            "by 3; it is %u x %u; gr.sky_map takes pictures of the whole sphere",
             image_name(image), width, height);
     *out = (struct sky){.kind = SKY_CROSS, .image = image, .mirror = mirror};
     return true;

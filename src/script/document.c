@@ -51,9 +51,9 @@ static void describe_parameter(const struct script_parameter *p, char out[DOCUME
                        : p->flags & OR_SKY                            ? " or a sky"
                        : p->kind == KIND_NUMBER && choices[0]         ? " or "
                                                                       : "";
-    size_t used =
-        (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
-                         more, p->kind == KIND_NUMBER ? choices : "");
+    size_t used = (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s%s", p->name,
+                                   p->kind == KIND_CHOICE ? choices : kind_words(p->kind), more,
+                                   p->kind == KIND_NUMBER ? choices : "");
     if (range[0])
         used += (size_t)snprintf(out + used, DOCUMENT_LINE - used, ", %s", range);
     if (p->unit)
@@ -242,7 +242,8 @@ static const char *annotation_result(const struct script_function *function) {
 
 static void annotate_fields(struct document *document, const struct script_function *function) {
     const char *owner = function->owner == OWNER_NODE ? "node." : "";
-    document_add(document, "---@class gr.%s%s.fields%s\n", owner, function->name, function->passes ? ": gr.render.fields" : "");
+    document_add(document, "---@class gr.%s%s.fields%s\n", owner, function->name,
+                 function->passes ? ": gr.render.fields" : "");
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         char type[CHOICES_SIZE], line[DOCUMENT_LINE];

@@ -8,6 +8,7 @@
 #include "material/metals.h"
 #include "script/rows_internal.h"
 #include "script/script_internal.h"
+#include "settings/setting.h"
 
 #include <lauxlib.h>
 
@@ -116,6 +117,7 @@ static void push_words(lua_State *L) {
 }
 
 int words_answer(lua_State *L, const struct script_function *function) {
+    const struct script_options *options = sandbox_of(L)->options;
     int count = lua_gettop(L), parameter;
     bool named = arguments_have_names(L, function, 1, count), optional;
     luaL_checkstack(L, 10, NULL);
@@ -133,7 +135,9 @@ int words_answer(lua_State *L, const struct script_function *function) {
     lua_getfield(L, -1, function->name);
     lua_pushvalue(L, count + 1);
     lua_pushcfunction(L, sun_direction);
-    lua_call(L, 2, 1);
+    const int integrator = SETTING_INDEX(integrator);
+    lua_pushstring(L, script_option_given(options, integrator) ? options->given[integrator] : NULL);
+    lua_call(L, 3, 1);
     return 1;
 }
 

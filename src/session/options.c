@@ -506,6 +506,10 @@ static const struct {
 };
 enum { ACTIONS_WITH_WORDS = sizeof actions / sizeof *actions };
 
+const char *options_action_word(int index) {
+    return index + 1 < ACTIONS_WITH_WORDS ? actions[index + 1].word : NULL;
+}
+
 static bool serves(const struct setting *option, int action) {
     struct piece first = without_dashes(shown_name(option));
     for (const char *rest = actions[action].options; *rest;) {

@@ -109,6 +109,8 @@ struct options {
 };
 
 struct setting;
+/* The words of actions that stand in place of a scene, merge and compare; NULL after the last one. */
+const char *options_action_word(int index);
 /* The option that a word of a command line begins with, with or without its dashes, or NULL. */
 const struct setting *option_named(const char *word);
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */

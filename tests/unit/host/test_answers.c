@@ -101,11 +101,18 @@ TEST(manual_pages_have_all_options_and_functions_and_no_warnings) {
 static const struct {
     const char *line, *offers, *offers_not;
 } questions[] = {
-    {"gray --integr", "--integrator", "--spp"},   {"gray --accel ", "kdtree", "scene.lua"},
-    {"gray --accel k", "kdtree", "grid"},         {"gray --accel=k", "kdtree", "grid"},
-    {"gray sce", "scene.lua", "scene.txt"},       {"gray -o sce", "scene.txt", "merge"},
-    {"gray --allow-read ", "folder", "fresh"},    {"gray --man spher", "sphere", "torus"},
-    {"gray -q --tone fil", "filmic", "reinhard"}, {"gray merge sce", "scene.txt", NULL},
+    {"gray --integr", "--integrator", "--spp"},
+    {"gray --accel ", "kdtree", "scene.lua"},
+    {"gray --accel k", "kdtree", "grid"},
+    {"gray --accel=k", "kdtree", "grid"},
+    {"gray sce", "scene.lua", "scene.txt"},
+    {"gray -o sce", "scene.txt", "merge"},
+    {"gray --allow-read ", "folder", "fresh"},
+    {"gray --man spher", "sphere", "torus"},
+    {"gray -q --tone fil", "filmic", "reinhard"},
+    {"gray merge sce", "scene.txt", NULL},
+    {"gray comp", "compare", "merge"},
+    {"gray compare sce", "scene.txt", NULL},
 };
 
 /* The script prints "== " and the rest of a line before the answer to it. */

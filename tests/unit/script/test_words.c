@@ -73,7 +73,7 @@ TEST(the_sun_of_daylight_is_where_a_published_table_has_it) {
                                                 "place = {39.742476, -105.1786}, time = {2003, 10, 17, 12, 30.5}})",
                                                 "-q --dump-scene scene.lua", NULL);
     const char *at = strstr(result.out, "a lamp at (");
-    double east, up, south, degree = 3.14159265358979 / 180;
+    double east = 0, up = 0, south = 0, degree = 3.14159265358979 / 180;
     CHECK(at && sscanf(at, "a lamp at (%lf, %lf, %lf)", &east, &up, &south) == 3);
     double length = sqrt(east * east + up * up + south * south);
     CHECK(fabs(asin(up / length) / degree - 39.872046) < 0.01);
@@ -94,7 +94,8 @@ TEST(wrong_values_of_words_are_errors_that_say_what_is_right) {
         {"gr.daylight{place = 'lodnon'}", "place 'lodnon' is not known; there are berlin, cairo,"},
         {"gr.daylight{place = {95, 0}}", "place[1] must be a number from -90 to 90, not 95"},
         {"gr.daylight{place = 'rome', time = 12}", "time must be {year, month, day, hour, minute}"},
-        {"gr.daylight{place = 'rome', time = {2025, 2, 29}}", "time[3], the day, must be a whole number from 1 to 28, not 29"},
+        {"gr.daylight{place = 'rome', time = {2025, 2, 29}}",
+         "time[3], the day, must be a whole number from 1 to 28, not 29"},
         {"gr.daylight{place = 'rome', time = {2025, 2.5, 9}}", "time[2], the month, must be a whole number"},
         {"gr.daylight{place = 'rome', time = {2025, 4, 30, 25}}", "time[4], the hour, must be a number from 0 to 24"},
         {"gr.paint('#ff0000', 'glossy')", "finish must be 'matt', 'satin', 'gloss' or 'car', not 'glossy'"},
