@@ -20,8 +20,8 @@ static const struct phong *numbers_of(const struct material *material) {
 struct material material_flatten(const struct material *material, bool classic) {
     struct material out = *material;
     out.phong = *numbers_of(material);
-    if (classic && out.openpbr && out.openpbr->classic && openpbr_classic(material, &out.phong, &out.fresnel))
-        out.openpbr = NULL;
+    if (classic && out.openpbr)
+        openpbr_classic(&out);
     out.base = out.origin = NULL;
     out.older = NULL;
     out.name = NULL;

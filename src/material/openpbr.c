@@ -50,42 +50,48 @@ static double reflectance(double ior) {
  * and a quarter of his exponent looks alike in Phong's formula. ks also filters reflections, whose amount makes up for
  * it.
  */
-bool openpbr_classic(const struct material *material, struct phong *out, bool *fresnel) {
-    const struct phong *numbers = &material_origin(material)->phong;
-    const struct openpbr *v = material->openpbr;
+void openpbr_classic(struct material *material) {
+    static const struct texture black = {.kind = TEXTURE_CONSTANT, .size = 1};
     const double largest = 0.8, matt = 0.45; /* weight of a highlight; roughness from where no ray is reflected */
-    double metal = v->base_metalness, through = (1 - metal) * numbers->refract;
-    if (material_texture(material, INPUT_METALNESS) || material_texture(material, INPUT_REFRACT) ||
-        (metal > 0 && material_texture(material, INPUT_KD)))
-        return false;
-    *out = *numbers;
+    const double smooth = 0.05;              /* below it a mirror looks alike */
+    const struct openpbr *v = material->openpbr;
+    struct phong *out = &material->phong, numbers = *out;
+    bool textured = material->inputs[INPUT_KD].authored != NULL;
+    double metal = !textured ? v->base_metalness : v->base_metalness > 0.5, through = (1 - metal) * numbers.refract;
+    if (!v->classic || material->inputs[INPUT_METALNESS].authored || material->inputs[INPUT_REFRACT].authored)
+        return;
+    material->openpbr = NULL;
     double coat = v->coat_weight * reflectance(v->coat_ior);
-    double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * vec3_max_abs(numbers->ks);
-    double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers->roughness;
-    double width = fmax(roughness * roughness, 0.03);
-    double exponent = 2 / (width * width) - 2, share = fmin(gloss + coat, 1);
+    double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * vec3_max_abs(numbers.ks);
+    double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers.roughness;
+    double width = fmax(roughness * roughness, 0.03), exponent = 2 / (width * width) - 2, share = fmin(gloss + coat, 1);
     double weight = fmin(share * (exponent + 8) / 8, largest);
-    struct vec3 colour = vec3_min(vec3_scale(numbers->kd, v->base_weight), vec3_all(1));
+    struct vec3 colour = vec3_min(vec3_scale(numbers.kd, v->base_weight), vec3_all(1));
     out->shininess = exponent / 4;
-    out->two_sided = true;
     if (through > 0) {
-        double pane = 2 * gloss / (1 + gloss), reflected = v->thin_walled ? pane : gloss;
-        *fresnel = *fresnel || (through >= 1 && !v->thin_walled);
+        double reflected = v->thin_walled ? 2 * gloss / (1 + gloss) : gloss;
+        material->fresnel = material->fresnel || (through >= 1 && !v->thin_walled);
         out->kd = vec3_scale(colour, (1 - through) * (1 - gloss));
         out->ks = v->deep ? vec3_all(1) : vec3_min(v->transmission_colour, vec3_all(1));
         out->reflect = reflected;
         out->refract = through * (1 - reflected);
-        return true;
+        return;
     }
-    struct vec3 fuzz = vec3_scale(vec3_min(v->fuzz_colour, vec3_all(1)), 0.35 * v->fuzz_weight);
+    const double cover = 0.35 * v->fuzz_weight; /* of the fuzz, seen from all sides */
     struct vec3 coated = vec3_add(vec3_scale(v->coat_colour, v->coat_weight), vec3_all(1 - v->coat_weight));
-    struct vec3 below = vec3_scale(vec3_mul(colour, vec3_min(coated, vec3_all(1))),
-                                   (1 - metal) * (1 - share) * (1 - 0.35 * v->fuzz_weight));
-    out->kd = vec3_add(below, vec3_scale(fuzz, (1 - metal) * (1 - share)));
+    struct vec3 below = vec3_scale(vec3_mul(colour, vec3_min(coated, vec3_all(1))), 1 - cover);
+    struct vec3 fuzz = vec3_scale(vec3_min(v->fuzz_colour, vec3_all(1)), cover);
+    out->kd = vec3_scale(vec3_add(below, fuzz), (1 - metal) * (1 - share));
     out->ks = vec3_add(vec3_scale(vec3_all(weight), 1 - metal), vec3_scale(colour, metal));
     out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? fmin(share / weight, 1) : 0);
-    out->roughness = out->reflect > 0 ? roughness : 0;
-    return true;
+    out->roughness = out->reflect > 0 && roughness > smooth ? roughness : 0;
+    double rays = out->glossy_samples > 0 ? out->glossy_samples : 4; /* N of N x N; fewer show a small share as well */
+    out->glossy_samples = (int)fmin(fmax(floor(0.75 * rays * sqrt(metal + (1 - metal) * share) + 0.5), 1), rays);
+    if (textured && metal > 0) { /* its colour is that of reflections */
+        material->inputs[INPUT_KS] = material->inputs[INPUT_KD];
+        material->inputs[INPUT_KD].authored = &black;
+        out->kd = colour;
+    }
 }
 
 /* --- inputs --- */

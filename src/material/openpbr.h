@@ -30,9 +30,10 @@ struct openpbr openpbr_defaults(void);
 /* The index that Fresnel's formulas see: specular_weight scales the reflectance head on. */
 double openpbr_ior(double ior, double specular_weight);
 
-/* Numbers of gr.material that look like the layers, and never reflect more light than arrives. Textures of base_color
- * stay what they are. False: there are none, for metals whose colour or share is a texture. */
-bool openpbr_classic(const struct material *material, struct phong *out, bool *fresnel);
+/* Makes a flattened material one of gr.material that looks like its layers, and never reflects more light than arrives,
+ * if it wants that. Materials whose share of metal or of transmission is a texture keep their layers; where the colour
+ * is one, the share of metal counts as all or nothing. */
+void openpbr_classic(struct material *material);
 
 /* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,

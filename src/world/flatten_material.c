@@ -359,7 +359,7 @@ static bool add_reports(struct arena *arena, struct texture *table, uint32_t cou
 
 static bool number_all(const struct world *world, struct numbering *textures, struct numbering *bumps) {
     for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = world->authored.materials[i];
+        const struct material *material = &world->materials[i];
         for (int k = 0; k < INPUT_COUNT; k++)
             if (!number_texture(textures, material->inputs[k].authored))
                 return false;

@@ -242,7 +242,7 @@ TEST(materials_are_found_by_name) {
     test_free_result(&result);
 }
 
-/* Whitted's integrator with classic = true and without: about as bright, and several times faster. */
+/* Whitted's integrator with classic = true and without: about as bright. */
 TEST(classic_layers_resemble_the_layers) {
     static const char scene[] = "gr.render(gr.studio{node = gr.sphere{material = gr.openpbr_material{base_color = "
                                 "{0.6, 0.3, 0.1}, coat_weight = 1,\n"
@@ -262,4 +262,22 @@ TEST(classic_layers_resemble_the_layers) {
     CHECK_EQ_INT(traced.status, 0);
     CHECK(strstr(traced.out, "openpbr") && strstr(traced.out, "phong"));
     test_free_result(&traced);
+}
+
+static struct test_picture metal_picture(const char *colour) {
+    char scene[512];
+    (void)snprintf(scene, sizeof scene,
+                   "gr.render{node = gr.sphere{material = gr.metal{colour = %s, roughness = 0}}, eye = {0, 0, 4},\n"
+                   "sky = gr.clear_sky{hour = 9}, file = 'a.png', width = 16, height = 16, colour = 'linear'}",
+                   colour);
+    return quiet_picture(scene, "-q scene.lua", "a.png");
+}
+
+TEST(the_texture_of_a_classic_metal_colours_its_reflections) {
+    struct test_picture texture = metal_picture("'#bc8040'"), number = metal_picture("gr.linear '#bc8040'");
+    CHECK(memcmp(texture.rgb, number.rgb, 768) == 0);
+    const uint8_t *middle = texture.rgb + (size_t)3 * (16 * 8 + 8);
+    CHECK(middle[0] > middle[2] + 40);
+    free(texture.rgb);
+    free(number.rgb);
 }
