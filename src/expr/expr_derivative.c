@@ -252,6 +252,7 @@ static void run_duals(const struct expr_program *program, struct dual *values) {
         const struct dual *from[3] = {&values[in->a], &values[in->b], &values[in->c]};
         struct dual result = {.d = {0}};
         double by[3] = {0, 0, 0};
+        /* Operands that it does not have are constant. */
         for (int k = expr_operand_count(operation); k < 3; k++)
             from[k] = &none;
         switch (operation) {
@@ -650,6 +651,7 @@ void expr_rooted_apply(const struct expr_instruction *in, const struct expr_root
     result.range.value = is_square ? expr_interval_square(a) : expr_interval_apply(operation, a, b, c);
     if (!is_choice)
         slopes_of(operation, a, b, c, result.range.value, by);
+    /* The slope of the value, and that of its root where it is a sum of squares. */
     for (int k = 0; k < directions; k++) {
         struct expr_interval *slope = &result.range.slopes[k];
         *slope = is_choice ? slope_of_choice(operation, from, k) : slope_along(from, by, k);
@@ -800,6 +802,7 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
         outputs[i].value =
             is_constant ? expr_interval_of_float(program->constants[value].f) : values[value].range.value;
         for (int k = 0; k < directions->count; k++)
+            /* Where the value may be a NaN, its slopes say nothing. */
             outputs[i].slopes[k] = is_constant                   ? zero
                                    : outputs[i].value.may_be_nan ? any_slope
                                                                  : values[value].range.slopes[k];

@@ -342,6 +342,7 @@ bool expr_loop(struct expr_graph *graph, const struct expr_graph_loop *loop, uin
         return false;
     kept.loop.initial = kept.arguments;
     kept.loop.next = kept.arguments + kept.argument_count;
+    /* A loop that is there already is not kept again. */
     while (number < graph->loop_count &&
            !is_same_loop(&graph->loops[number], loop, kept.arguments, kept.argument_count))
         number++;
@@ -355,6 +356,7 @@ bool expr_loop(struct expr_graph *graph, const struct expr_graph_loop *loop, uin
             return false;
     }
     uint32_t node = graph->loops[number].node = run_node(graph, &graph->loops[number], number);
+    /* One operation takes each state out of it. */
     for (uint32_t k = 0; k < loop->state_count; k++) {
         enum expr_type type = graph->nodes[loop->next[k]].type;
         const uint32_t operands[3] = {node, expr_integer(graph, expr_loop_operand(number, k)), EXPR_NONE};

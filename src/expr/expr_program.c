@@ -71,6 +71,7 @@ static uint32_t put_in_order(const struct layout *layout) {
     const struct expr_graph *graph = layout->graph;
     struct allocation *allocations = layout->allocations;
     uint32_t *order = layout->order;
+    /* The sine and the cosine of one operand become partners, which stand together. */
     for (uint32_t n = 0; n < graph->count; n++) {
         uint32_t *wave = is_wave(&graph->nodes[n]) ? &allocations[graph->nodes[n].operands[0]].wave : NULL;
         if (!wave || !allocations[n].needed || !is_computed(layout, n))
@@ -91,6 +92,7 @@ static uint32_t put_in_order(const struct layout *layout) {
             allocations[partner].ordered = true;
         }
     }
+    /* The last use of each value, after which its register is free; outputs stay. */
     for (uint32_t at = 0; at < count; at++)
         for (int k = 0; k < count_operands(&graph->nodes[order[at]]); k++)
             allocations[graph->nodes[order[at]].operands[k]].last = at;
@@ -135,6 +137,7 @@ static bool number_constants(const struct layout *layout, struct expr_program *p
         count += graph->nodes[layout->order[at]].operation > EXPR_OPERATION_COUNT;
     if (count >= EXPR_VALUES)
         return too_large(error);
+    /* Constants of the graph, and then one for each operation of a loop: which loop and which state. */
     union expr_value *constants = arena_alloc_array(layout->arena, (size_t)count + 1, sizeof *constants);
     if (!constants)
         return error_no_memory(error, "a function");
@@ -317,6 +320,7 @@ static bool finish_body(const struct layout *layout, struct expr_loop *loop, str
         uint16_t value = layout->allocations[node].value, first = (uint16_t)body->constant_count;
         types[k] = layout->graph->nodes[node].type;
         if (value >= first && value < first + loop->state_count && value != first + k) {
+            /* Written before it is read: it needs a copy. */
             uint16_t copy;
             if (!take(layout->registers, &copy))
                 return false;
@@ -326,6 +330,7 @@ static bool finish_body(const struct layout *layout, struct expr_loop *loop, str
         next[k] = value;
         is_read[value] = true;
     }
+    /* The states, and the count of the loop, stay in their registers. */
     for (uint32_t k = 0; k <= loop->argument_count; k++)
         is_read[body->constant_count + k] = true;
     body->register_count = layout->registers->count;
@@ -431,6 +436,7 @@ static bool compile_loops(const struct layout *layout, struct expr_program *prog
                               .arena = layout->arena};
         if (!compile(&body, NULL, &loops[k], error))
             return false;
+        /* Its registers follow those of the program and of earlier loops. */
         loops[k].offset = program->row_count;
         program->row_count += expr_loop_rows(&loops[k]);
         program->loop_work += (loops[k].last - loops[k].first + 1) * expr_work(&loops[k].body);

@@ -479,6 +479,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     const struct lobe *only = only_lobe(bsdf, lobes), *lobe = only;
     if (only && only->kind == LOBE_DIFFUSE)
         return sample_diffuse(bsdf, only, u, out);
+    /* Among several lobes one is chosen by its chance. */
     struct lobe_chances chances;
     chances.all = 0;
     out->pdf = 1;
@@ -493,16 +494,19 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
         return false;
     out->direction = sampled.direction;
     out->flags = sampled.transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
+    /* No other lobe reaches the direction of a mirror. */
     if (sampled.delta) {
         out->flags |= BSDF_DELTA;
         out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }
+    /* Where value and density are proportional, their ratio is exact. */
     if (only && sampled.pdf > 0) {
         out->pdf = sampled.pdf;
         out->weight = lobe->weight;
         return true;
     }
+    /* Else the direction might have come from each of the lobes. */
     out->pdf = only ? lobe_pdf(bsdf, only, wo, out->direction) : pdf_of_chances(bsdf, &chances, wo, out->direction);
     if (!(out->pdf > 0))
         return false;

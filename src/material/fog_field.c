@@ -83,6 +83,7 @@ static bool find_bounds(const struct fog_cells *cells, const struct expr_program
     struct expr_bounds out[EXPR_OUTPUTS];
     *largest = 0;
     for (uint64_t first = 0; rows && boxes && first < count; first += EXPR_BOXES) {
+        /* Many cells at once. */
         struct expr_boxes in = {.count = (uint32_t)(count - first < EXPR_BOXES ? count - first : EXPR_BOXES)};
         for (uint32_t i = 0; i < in.count; i++)
             put_box(cells, first + i, i, boxes);
@@ -92,12 +93,14 @@ static bool find_bounds(const struct fog_cells *cells, const struct expr_program
             in.low[EXPR_VIEW_X + k] = boxes->minus;
             in.high[EXPR_VIEW_X + k] = boxes->one;
         }
+        /* Bounds hold for all directions of view, and for the whole shutter. */
         in.low[EXPR_TIME] = boxes->zero;
         in.high[EXPR_TIME] = boxes->one;
         expr_evaluate_intervals(program, &in, out, NULL, rows);
         for (uint32_t i = 0; i < in.count; i++) {
             for (int k = 0; k < program->output_count; k++)
                 *largest = fmax(*largest, out[k].high[i]);
+            /* Rounded outwards: singles must contain the doubles. */
             if (bounds) {
                 bounds[first + i][0] = (float)fmin(fmax(0, out[0].low[i]), FLT_MAX);
                 bounds[first + i][1] = round_up(fmax(0, out[0].high[i]));
@@ -186,6 +189,7 @@ const struct fog_field *fog_field_build(struct arena *arena, const struct fog_fi
     }
     *field = (struct fog_field){
         .cells = {.corner = in->corner, .size = in->size}, .density = in->density, .colour = in->colour};
+    /* What fails at points is told with the point, before the bounds are made. */
     if (!check_points(field, in, error))
         return NULL;
     choose_cells(&field->cells, in->density);
@@ -197,6 +201,7 @@ const struct fog_field *fog_field_build(struct arena *arena, const struct fog_fi
         (void)error_no_memory(error, "a fog");
         return NULL;
     }
+    /* Bounds without end do not say how bright it is. */
     if (field->colour && !isfinite(field->brightest))
         field->brightest = largest_at_points(field);
     return field;
@@ -343,18 +348,21 @@ double fog_field_transmittance(const struct fog_field *field, const struct fog_l
         return 1;
     while (march.depth < opaque && fog_traversal_next(&traversal, &cell, &from, &to)) {
         const float *bounds = field->bounds[cell];
+        /* Cells that are empty cost nothing. */
         if (!(bounds[1] > 0) || !(to > from))
             continue;
         uint32_t steps = steps_of(&march, bounds, to - from);
         for (uint32_t i = 0; i < steps; i++) {
             march.length[march.count] = (to - from) / steps;
             march.from[march.count] = from + (to - from) / steps * i;
+            /* The functions are evaluated for many steps at once. */
             if (++march.count == STEPS_AT_ONCE)
                 add_steps(&march);
         }
     }
     add_steps(&march);
     double left = left_of(march.depth);
+    /* The light is relative to what the fog hides. */
     if (field->colour)
         *source = left < 1 ? vec3_scale(march.light, 1 / (1 - left)) : vec3_all(0);
     return left;

@@ -57,6 +57,7 @@ static const struct texture *texture_on(struct material_mapping *mapping, const 
         return on ? on : texture;
     struct texture own = *texture, *kept = NULL;
     bool changed = false;
+    /* Its own mapping, then those of its parts. A texture that stays as it is needs no copy. */
     if (own.kind == TEXTURE_IMAGE) {
         own.image.lookup.mapping = texture_mapping_on(own.image.lookup.mapping, layout);
         changed = own.image.lookup.mapping != texture->image.lookup.mapping;
@@ -106,6 +107,7 @@ static const struct material *material_on(struct material_mapping *mapping, cons
         return on;
     struct material own = *material, *kept = NULL;
     bool changed = false;
+    /* The base, the textures and the bump; a material that stays as it is needs no copy. */
     if (material->base) {
         own.base = material_on(mapping, material->base, layout);
         changed = own.base != material->base;

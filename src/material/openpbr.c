@@ -308,6 +308,7 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
     struct vec3 tinted = deep ? through : vec3_mul(through, v->transmission_colour);
     if (is_black(all))
         return;
+    /* A thin pane lets light through without a change of direction. */
     if (v->thin_walled && clear > 0) {
         add_pane(l, hit, through, eta, roughness);
         all = vec3_scale(all, 1 - clear);
@@ -324,12 +325,14 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
         if (clear > 0) {
+            /* What single facets lose leaves after several of them, to this side or the other. */
             double lack = bsdf_facets_lack(facets, l->view, false);
             add(l, LOBE_GLASS, tinted, fmax(1 - reflected - lack, min_glass_share));
             add(l, LOBE_FACETS_MULTIPLE, through, lack * (1 - facets->through));
             add(l, LOBE_FACETS_THROUGH, tinted, lack * facets->through);
         }
     }
+    /* Under the reflection is the diffuse base. */
     double opaque = v->thin_walled ? 1 : 1 - clear;
     if (opaque > 0)
         add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));

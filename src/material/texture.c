@@ -282,6 +282,7 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
     case TEXTURE_VERTEX_COLOUR:
         return reader->hit->has_colour ? reader->hit->colour : vec3_all(1);
     case TEXTURE_IMAGE: {
+        /* Where the picture is transparent, or ends, there is what lies below. */
         const struct texture *below = texture_at(reader->textures, texture->image.below);
         struct vec3 colour, under = below ? texture_read_colour(below, reader) : vec3_all(0);
         double rest;

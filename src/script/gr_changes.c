@@ -27,6 +27,7 @@ static struct change *note(struct script_context *context, enum change_kind kind
                            struct error *error) {
     struct script_changes *changes = &script_of(context)->changes;
     if (changes->count == changes->room) {
+        /* The old list stays in the arena; it is at most as large as the new one. */
         uint32_t room = changes->room ? 2 * changes->room : 16;
         struct change *more =
             room <= CHANGE_LIMIT ? arena_alloc_array(&context->sandbox.keep, room, sizeof *more) : NULL;

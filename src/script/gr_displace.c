@@ -66,6 +66,7 @@ const double *gr_function_heights(struct script_context *context, const struct h
         return NULL;
     }
     const struct box square = {{0, 0, 0}, {1, 0, 1}};
+    /* Where it is used it is compared with Lua, before the next picture. */
     record_use(&context->sandbox, program, &square);
     double *heights = arena_alloc_array(&context->sandbox.call, count, sizeof *heights);
     if (!heights) {

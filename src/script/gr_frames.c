@@ -154,6 +154,7 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool r
     int top = lua_gettop(L);
     if (script_of(context)->host->frame_begins)
         script_of(context)->host->frame_begins(script_of(context)->host->context);
+    /* Each frame has the time, the random numbers and the clock of a run of its own. */
     limits_restart_time(&context->sandbox.limits);
     set_frame(L, frame);
     seed_frame(L, frame->number);
@@ -163,6 +164,7 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool r
     context->draws = true;
     lua_call(L, 2, 1);
     context->draws = false;
+    /* Errors from here on are those of gr.frames. */
     context->sandbox.lua = L;
     context->sandbox.running = (struct running_function){.owner = "gr.", .name = "frames"};
     if (!lua_istable(L, -1))

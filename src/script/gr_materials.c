@@ -320,6 +320,7 @@ static bool read_image(struct script_context *context, const struct script_value
         return false;
     image_defaults(out, value, image);
     out->mapping = MAPPING_BY_SHAPE;
+    /* What the call gives goes before what the texture has. */
     if (lookup[LOOKUP_FILTER].given)
         out->filter = (enum image_filter)lookup[LOOKUP_FILTER].choice;
     if (lookup[LOOKUP_WRAP].given)
@@ -333,6 +334,7 @@ static bool read_image(struct script_context *context, const struct script_value
         out->gamma = lookup[LOOKUP_ENCODING].number;
     }
     const struct script_value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
+    /* A lookup that was plain begins with one tile. */
     if ((tiles->given || offset->given) && !out->apart) {
         out->apart = true;
         out->scale[0] = out->scale[1] = 1;

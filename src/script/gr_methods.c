@@ -299,6 +299,7 @@ static bool gr_pose(struct script_context *context, const struct script_value *a
     if (rotate->given && rotate->number == 0 && vec3_max_abs(rotate->vector) == 0)
         return error_set(error, ERROR_SCENE, "the quaternion must not be 0");
     struct vec3 factors = scale->given ? scale->vector : vec3_all(1);
+    /* A node of no size has no inverse; it is not drawn. */
     double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
     bool singular = !isfinite(1 / min);
     const struct transform steps[NODE_STEPS] = {
@@ -307,6 +308,7 @@ static bool gr_pose(struct script_context *context, const struct script_value *a
             rotate->given ? transform_rotate_quaternion(rotate->number, rotate->vector) : transform_identity(),
         [NODE_SCALE] = transform_scale(singular ? vec3_all(1) : factors),
     };
+    /* The old order puts new transforms on the other side, so they come in reverse. */
     static const enum node_step forward[] = {NODE_SCALE, NODE_ROTATE, NODE_TRANSLATE};
     node_reset_transform(&context->scene, node);
     for (int i = 0; i < NODE_STEPS; i++) {

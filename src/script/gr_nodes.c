@@ -94,6 +94,7 @@ static bool gr_instances(struct script_context *context, const struct script_val
         return false;
     if (matrices && (args[INSTANCES_TURN].given || args[INSTANCES_SIZE].given))
         return error_set(error, ERROR_SCENE, "turn and size need positions {x, y, z} in at, not matrices");
+    /* The table belongs to the call, the positions to the scene. */
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[INSTANCES_NAME], "instances"), error);
     struct placements *placements = arena_alloc(&context->scene.arena, sizeof *placements);
     size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACEMENT_NUMBERS);
@@ -211,12 +212,14 @@ static bool gr_geometry(struct script_context *context, const struct script_valu
     node->operation = primitive->operation;
     node->operands = primitive->operands;
     node->operand_count = primitive->operand_count;
+    /* The steps of its transform are changed by each node for itself. */
     if (primitive->separate) {
         node->separate = arena_alloc_array(&context->scene.arena, 3, sizeof *node->separate);
         if (!node->separate)
             return error_no_memory(error, "a node");
         memcpy(node->separate, primitive->separate, 3 * sizeof *node->separate);
     }
+    /* Children are shared. */
     for (const struct node_child *child = primitive->first_child; child; child = child->next)
         if (!node_add_child(&context->scene, node, child->node, error))
             return false;

@@ -180,6 +180,7 @@ static bool examine_implicit(struct script_context *context, const struct implic
         return error_set(
             error, ERROR_SCENE,
             "the bounds of f are too wide to find its surface in reasonable time, as of fractals: " ADVICE);
+    /* Slow: a bound of the slopes may help, where the points support one. */
     if (found.marched_work > 0 && 2 * found.marched_work < found.line_work)
         context_warn_once(context, WARNED_SLOW,
                           "rays need %.0f operations each, and %.0f with lipschitz = %.4g, which the slopes of f at "
@@ -192,6 +193,7 @@ static bool examine_implicit(struct script_context *context, const struct implic
         sandbox_warn(&context->sandbox,
                      "f is negative at none of the points that were examined: if it is an estimate that stays "
                      "above 0, subtract a small distance from it");
+    /* Slopes above the declared bound: rays may step over the surface. */
     if (found.steep_points > 0 && in->is_distance)
         sandbox_warn(&context->sandbox,
                      "|f| is above the distance to the surface at %u of %u points (%.3g times at {%.4g, %.4g, %.4g}), "

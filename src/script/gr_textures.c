@@ -157,6 +157,7 @@ static struct image_function *make_image_function(struct script_context *context
                                    .scale = {1, 1},
                                    .flip_u = image->flip_u,
                                    .tint = {1, 1, 1}};
+    /* Tiles, offset and tint, where they were set. */
     if (!image->apart)
         return out;
     for (int k = 0; k < 2; k++) {

@@ -176,6 +176,7 @@ static bool choose_order(struct script *script, struct error *error) {
         return false;
     script->only_named_pictures = finding.only_named_pictures;
     script->several_pictures = finding.several_pictures;
+    /* An option goes before what the script looks like. */
     switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
         scene->order = TRANSFORM_ORDER_NEW;

@@ -164,12 +164,11 @@ TEST(a_light_meter_evens_out_the_strength_of_light) {
 
 TEST(a_sky_in_one_field_is_background_and_light) {
     static const char *const scenes[] = {
-        "local sky = gr.sky_map{image = 'wide.pfm'} gr.render{node = gr.sphere{material = gr.paint{}}, background = "
-        "sky, "
-        "lights = {gr.sky_light{sky = sky}}, file = 'a.png', width = 20, height = 20}",
+        ("local sky = gr.sky_map{image = 'wide.pfm'} gr.render{node = gr.sphere{material = gr.paint{}}, "
+         "background = sky, lights = {gr.sky_light{sky = sky}}, file = 'a.png', width = 20, height = 20}"),
         "gr.render{node = gr.sphere{material = gr.paint{}}, sky = 'wide.pfm', file = 'b.png', width = 20, height = 20}",
-        "gr.render{node = gr.sphere{material = gr.paint{}}, sky = gr.sky_map{image = 'wide.pfm'}, file = 'b.png', "
-        "width = 20, height = 20}",
+        ("gr.render{node = gr.sphere{material = gr.paint{}}, sky = gr.sky_map{image = 'wide.pfm'}, file = 'b.png', "
+         "width = 20, height = 20}"),
     };
     float wide[4 * 8 * 3];
     char file[sizeof wide + 32];

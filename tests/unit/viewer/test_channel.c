@@ -136,7 +136,7 @@ TEST(requests_for_impossible_pictures_are_refused) {
     }
     for (int side = -1; side <= 1; side += 2) {
         request = sound_request();
-        request.settings.tone.exposure = 101 * side;
+        request.settings.tone.exposure = (EXPOSURE_AUTO + 1) * side;
         broken_request(request);
     }
     request = sound_request();
