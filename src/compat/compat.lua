@@ -1,11 +1,12 @@
 -- Functions of Lua 5.0 and 5.1 that 5.4 no longer has, in Lua (compat.c has those in C).
 local scene = scene_globals()
-local type, getinfo, getupvalue = type, debug.getinfo, debug.getupvalue
+local type, getinfo, getupvalue, getmetatable = type, debug.getinfo, debug.getupvalue, debug.getmetatable
 local load, pairs, loaded, seed_random = scene.load, scene.pairs, scene.package.loaded, math.randomseed
 
 local function check(value, index, name, kind)
     if type(value) == kind then return end
-    local given = value == nil and 'no value' or type(value)
+    local meta = getmetatable(value)
+    local given = value == nil and 'no value' or meta and rawget(meta, '__name') or type(value)
     raise("bad argument #" .. index .. " to '" .. name .. "' (" .. kind .. ' expected, got ' .. given .. ')')
 end
 
