@@ -13,11 +13,6 @@
 #include <stddef.h>
 #include <string.h>
 
-bool finish_equal(const struct finish *a, const struct finish *b) {
-    return !(a->bloom < b->bloom || a->bloom > b->bloom || a->vignette < b->vignette || a->vignette > b->vignette) &&
-           a->gray == b->gray && a->edges == b->edges && a->fxaa == b->fxaa && a->dither == b->dither;
-}
-
 /* --- bloom --- */
 
 /* Standard deviations of the Gaussians, in heights of the picture. Three boxes of radius r have a standard deviation of

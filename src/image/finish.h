@@ -41,7 +41,6 @@ static inline bool finish_changes_display(const struct finish *finish) {
 static inline bool finish_is_plain(const struct finish *finish) {
     return !finish_changes_light(finish) && !finish_changes_display(finish) && finish->dither == DITHER_NONE;
 }
-bool finish_equal(const struct finish *a, const struct finish *b);
 
 /* The number of pixels around a part on which its pixels depend. */
 uint32_t finish_rim(const struct finish *finish, uint32_t full_height);
