@@ -75,6 +75,7 @@ if [ "$mode" = --tests ]; then
     want shells fish command -v fish
     want pages man-db command -v man
     want tools universal-ctags have_ctags
+    want tools patch command -v patch
     want tools gzip command -v gzip
     want tools procps command -v pgrep
     want tools mount command -v mount
