@@ -189,7 +189,7 @@ const struct fog_field *fog_field_build(struct arena *arena, const struct fog_fi
     }
     *field = (struct fog_field){
         .cells = {.corner = in->corner, .size = in->size}, .density = in->density, .colour = in->colour};
-    /* What fails at points is told with the point, before the bounds are made. */
+    /* Errors at points come before the bounds, because their message names the point. */
     if (!check_points(field, in, error))
         return NULL;
     choose_cells(&field->cells, in->density);

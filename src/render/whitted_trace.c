@@ -156,12 +156,12 @@ enum { CANDIDATE_CELLS = 16 };
 struct candidates {
     uint32_t begin, end; /* of the cells */
     int count;
-    double weight; /* the sum */
-    struct candidate all[CANDIDATE_CELLS * BSDF_LOBES];
+    double weight;         /* the sum */
+    struct candidate *all; /* room for one of each cell and branch */
 };
 
-/* The facets in these cells of the square, for all rough branches. The mean share of a branch is known for some: then
- * its candidates share that in the proportions of their weights, and their mean has no noise. */
+/* The facets in these cells of the square, for all rough branches. Where the mean share of a branch is known, its
+ * candidates divide that in proportion to their weights, and their mean has no noise. */
 static void find_candidates(const struct surface_point *at, const struct bsdf_branch *branches, int count,
                             const struct sample_set *facets, struct candidates *out) {
     const double cells = out->end - out->begin, part = 1 / ((double)facets->side * (double)facets->side);
@@ -224,13 +224,13 @@ static double rough_share(const struct bsdf_branch *branches, int count) {
     return share;
 }
 
-/* Whether the rough branches share their rays. After a rough surface, glass sends one ray to each side. */
+/* Whether the rough branches divide one number of rays. After a rough surface, glass sends one ray to each side. */
 static bool is_divided(const struct bsdf *bsdf, const struct path *path) {
     return bsdf_lobes_with(bsdf, BSDF_ROUGH) && !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
 }
 
-/* All rough branches of a layered material: as many rays as their share of light justifies. The samples of a pixel
- * divide them among each other. After a rough surface there is one ray, with a chance (Russian roulette: J. Arvo and D.
+/* All rough branches of a layered material: as many rays as their share of light justifies, which the samples of a
+ * pixel divide among them. After a rough surface there is one ray, with a chance (Russian roulette: J. Arvo and D.
  * Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990). */
 static struct vec3 follow_layers(struct integrator_state *state, const struct surface_point *at,
                                  const struct bsdf_branch *branches, int count, const struct path *path) {
@@ -245,13 +245,14 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     struct vec3 sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
-    /* In batches of cells, each with its share of the rays. */
+    /* In batches of cells, each with its share of the rays. Deep paths have few cells, so their stack stays small. */
     OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
-    struct candidates candidates;
-    candidates.end = 0;
+    const uint32_t batch = cells < CANDIDATE_CELLS ? cells : CANDIDATE_CELLS;
+    struct candidate found[batch * (uint32_t)count];
+    struct candidates candidates = {.all = found};
     while (candidates.end < cells) {
         candidates.begin = candidates.end;
-        candidates.end = cells - candidates.begin < CANDIDATE_CELLS ? cells : candidates.begin + CANDIDATE_CELLS;
+        candidates.end = cells - candidates.begin < batch ? cells : candidates.begin + batch;
         find_candidates(at, branches, count, &facets, &candidates);
         double here = fmax(1, floor(rays * (candidates.end - candidates.begin) / cells));
         sum = vec3_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
