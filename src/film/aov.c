@@ -78,7 +78,7 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
     const double v[3] = {(double)value[0], (double)value[1], (double)value[2]};
     for (int c = 0; c < 3; c++)
         rgb[c] = clamp01(v[c]);
-    switch ((unsigned)aov) { /* the others are colours */
+    switch (aov) {
     case AOV_DEPTH:
         rgb[0] = rgb[1] = rgb[2] = v[0] > 0 ? clamp01(scale->nearest / v[0]) : 0;
         break;
@@ -101,7 +101,17 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
     case AOV_SAMPLES:
         rgb[0] = rgb[1] = rgb[2] = v[0] / scale->max;
         break;
-    default:
+    case AOV_ALBEDO: /* this and the others are colours */
+    case AOV_LIGHTS:
+    case AOV_RAW:
+    case AOV_VARIANCE:
+    case AOV_EMISSION:
+    case AOV_DIFFUSE_DIRECT:
+    case AOV_DIFFUSE_INDIRECT:
+    case AOV_SPECULAR_DIRECT:
+    case AOV_SPECULAR_INDIRECT:
+    case AOV_TRANSMISSION_DIRECT:
+    case AOV_TRANSMISSION_INDIRECT:
         break;
     }
 }

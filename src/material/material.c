@@ -110,7 +110,7 @@ bool material_has_holes(const struct material *material) {
 }
 
 const char *material_step_name(const struct material *link) {
-#define IMAGE_ON(input, word) [input] = "image on " word,
+#define IMAGE_ON(input, word, is_colour) [input] = "image on " word,
     static const char *const kinds[] = {MATERIAL_KINDS(LIST_WORD)}, *const images[] = {MATERIAL_INPUTS(IMAGE_ON)};
 #undef IMAGE_ON
     return link->kind == MATERIAL_IMAGE && link->changed != INPUT_KD ? images[link->changed] : kinds[link->kind];

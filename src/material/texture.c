@@ -98,7 +98,7 @@ struct texture texture_function(const struct expr_program *program, bool has_coo
 }
 
 const struct texture *texture_parameter(enum material_input input) {
-#define PARAMETER(input, name) [input] = {.kind = TEXTURE_PARAMETER, .size = 1, .parameter = (input)},
+#define PARAMETER(input, ...) [input] = {.kind = TEXTURE_PARAMETER, .size = 1, .parameter = (input)},
     static const struct texture parameters[] = {MATERIAL_INPUTS(PARAMETER)};
 #undef PARAMETER
     return &parameters[input];
@@ -170,7 +170,7 @@ int texture_colour_parts(const struct texture *texture) {
 static struct vec3 parameter_colour(enum material_input input, const struct phong *numbers) {
     if (!numbers)
         return vec3_all(1);
-    switch ((unsigned)input) { /* a number of OpenPBR is no parameter: it is in struct openpbr */
+    switch (input) {
     case INPUT_KD:
         return numbers->kd;
     case INPUT_KS:
@@ -185,9 +185,11 @@ static struct vec3 parameter_colour(enum material_input input, const struct phon
         return vec3_all(numbers->roughness);
     case INPUT_EMISSION:
         return numbers->emission;
-    default:
-        return vec3_all(1);
+    case INPUT_OPACITY:
+        OPENPBR_INPUTS(LIST_LABEL)
+        break;
     }
+    return vec3_all(1);
 }
 
 static double mean(struct vec3 colour) {

@@ -115,34 +115,35 @@ struct phong {
     int glossy_samples;
 };
 
-/* Inputs of materials, with the names that scripts use. Opacity is that of a surface with holes: 1 without a
- * texture. */
+/* Inputs of materials: the names that scripts use, and whether it is a colour; first those of gr.openpbr_material
+ * alone, whose numbers are in struct openpbr. Opacity is that of a surface with holes: 1 without a texture. */
+#define OPENPBR_INPUTS(X)                                                                                              \
+    X(INPUT_BASE_WEIGHT, "base_weight", false)                                                                         \
+    X(INPUT_DIFFUSE_ROUGHNESS, "base_diffuse_roughness", false)                                                        \
+    X(INPUT_METALNESS, "base_metalness", false)                                                                        \
+    X(INPUT_SPECULAR_WEIGHT, "specular_weight", false)                                                                 \
+    X(INPUT_SPECULAR_ANISOTROPY, "specular_roughness_anisotropy", false)                                               \
+    X(INPUT_SPECULAR_IOR, "specular_ior", false)                                                                       \
+    X(INPUT_TRANSMISSION_COLOUR, "transmission_color", true)                                                           \
+    X(INPUT_COAT_WEIGHT, "coat_weight", false)                                                                         \
+    X(INPUT_COAT_COLOUR, "coat_color", true)                                                                           \
+    X(INPUT_COAT_ROUGHNESS, "coat_roughness", false)                                                                   \
+    X(INPUT_COAT_ANISOTROPY, "coat_roughness_anisotropy", false)                                                       \
+    X(INPUT_COAT_IOR, "coat_ior", false)                                                                               \
+    X(INPUT_COAT_DARKENING, "coat_darkening", false)                                                                   \
+    X(INPUT_FUZZ_WEIGHT, "fuzz_weight", false)                                                                         \
+    X(INPUT_FUZZ_COLOUR, "fuzz_color", true)                                                                           \
+    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)
 #define MATERIAL_INPUTS(X)                                                                                             \
-    X(INPUT_KD, "kd")                                                                                                  \
-    X(INPUT_KS, "ks")                                                                                                  \
-    X(INPUT_SHININESS, "shininess")                                                                                    \
-    X(INPUT_REFLECT, "reflect")                                                                                        \
-    X(INPUT_REFRACT, "refract")                                                                                        \
-    X(INPUT_ROUGHNESS, "roughness")                                                                                    \
-    X(INPUT_EMISSION, "emission")                                                                                      \
-    X(INPUT_OPACITY, "opacity")                                                                                        \
-    /* Of gr.openpbr_material alone; their numbers are in struct openpbr. */                                           \
-    X(INPUT_BASE_WEIGHT, "base_weight")                                                                                \
-    X(INPUT_DIFFUSE_ROUGHNESS, "base_diffuse_roughness")                                                               \
-    X(INPUT_METALNESS, "base_metalness")                                                                               \
-    X(INPUT_SPECULAR_WEIGHT, "specular_weight")                                                                        \
-    X(INPUT_SPECULAR_ANISOTROPY, "specular_roughness_anisotropy")                                                      \
-    X(INPUT_SPECULAR_IOR, "specular_ior")                                                                              \
-    X(INPUT_TRANSMISSION_COLOUR, "transmission_color")                                                                 \
-    X(INPUT_COAT_WEIGHT, "coat_weight")                                                                                \
-    X(INPUT_COAT_COLOUR, "coat_color")                                                                                 \
-    X(INPUT_COAT_ROUGHNESS, "coat_roughness")                                                                          \
-    X(INPUT_COAT_ANISOTROPY, "coat_roughness_anisotropy")                                                              \
-    X(INPUT_COAT_IOR, "coat_ior")                                                                                      \
-    X(INPUT_COAT_DARKENING, "coat_darkening")                                                                          \
-    X(INPUT_FUZZ_WEIGHT, "fuzz_weight")                                                                                \
-    X(INPUT_FUZZ_COLOUR, "fuzz_color")                                                                                 \
-    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness")
+    X(INPUT_KD, "kd", true)                                                                                            \
+    X(INPUT_KS, "ks", true)                                                                                            \
+    X(INPUT_SHININESS, "shininess", false)                                                                             \
+    X(INPUT_REFLECT, "reflect", false)                                                                                 \
+    X(INPUT_REFRACT, "refract", false)                                                                                 \
+    X(INPUT_ROUGHNESS, "roughness", false)                                                                             \
+    X(INPUT_EMISSION, "emission", true)                                                                                \
+    X(INPUT_OPACITY, "opacity", false)                                                                                 \
+    OPENPBR_INPUTS(X)
 enum material_input { MATERIAL_INPUTS(LIST_MEMBER) };
 enum { INPUT_COUNT = LIST_COUNT(MATERIAL_INPUTS) };
 

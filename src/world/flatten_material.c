@@ -385,11 +385,9 @@ static void refer(struct world *world, const struct numbering *textures, const s
 
 /* --- linear colours --- */
 
-/* Whether the input is a colour; the numbers of others mean themselves. */
-static bool is_colour(enum material_input input) {
-    return input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION || input == INPUT_TRANSMISSION_COLOUR ||
-           input == INPUT_COAT_COLOUR || input == INPUT_FUZZ_COLOUR;
-}
+/* Whether an input is a colour; the numbers of others mean themselves. */
+#define INPUT_IS_COLOUR(input, word, is_colour) [input] = (is_colour),
+static const bool is_colour[] = {MATERIAL_INPUTS(INPUT_IS_COLOUR)};
 
 /* A texture that is read as a colour, and its parts that are. */
 static void mark_colours(const struct texture *table, union texture_ref ref, bool *is_read) {
@@ -439,7 +437,7 @@ static bool *find_colours(const struct world *world, const struct texture *table
     bool *is_read = mem_alloc_zero((size_t)world->texture_count + 1, sizeof *is_read);
     for (uint32_t i = 0; is_read && i < world->material_count; i++)
         for (int k = 0; k < INPUT_COUNT; k++)
-            if (is_colour((enum material_input)k))
+            if (is_colour[k])
                 mark_colours(table, world->materials[i].inputs[k], is_read);
     return is_read;
 }
