@@ -531,8 +531,6 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
         out[count].weight = lobe->weight;
         out[count].expected = expected_share(bsdf, lobe);
         out[count].lobe = i;
-        const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
-        out[count].is_known = lobe->kind == LOBE_GLOSS && facets->kind == FACETS_BOUNDARY && facets->eta < 1;
         out[count++].rough = !(flags & BSDF_DELTA);
     }
     for (int i = 0; i < count; i++) {
@@ -541,6 +539,12 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
             out[kept++] = out[i];
     }
     return kept;
+}
+
+bool bsdf_branch_is_known(const struct bsdf *bsdf, const struct bsdf_branch *branch) {
+    const struct lobe *lobe = &bsdf->lobes[branch->lobe];
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    return lobe->kind == LOBE_GLOSS && facets->kind == FACETS_BOUNDARY && facets->eta < 1;
 }
 
 /* Of a rough lobe of a layered material. */

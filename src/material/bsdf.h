@@ -150,10 +150,12 @@ struct bsdf_branch {
     struct vec3 weight; /* not black */
     double expected;    /* approximately the mean share of `weight` in samples, above 0: for the choice of a branch */
     int lobe;
-    bool rough, is_known; /* is_known: `expected` is the mean, from a table */
+    bool rough;
 };
 /* The number of branches. */
 int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);
+/* Whether `expected` is the mean of a rough branch, from a table. */
+bool bsdf_branch_is_known(const struct bsdf *bsdf, const struct bsdf_branch *branch);
 
 struct bsdf_branch_direction {
     struct vec3 direction, weight; /* mode IMPORTANCE */

@@ -186,7 +186,8 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
     for (int i = 0; i < out->count; i++) {
         struct candidate *found = &out->all[i];
         const struct bsdf_branch *branch = &branches[found->branch];
-        double all = branch->is_known ? branch->expected * vec3_max_abs(branch->weight) * cells : sums[found->branch];
+        double all = bsdf_branch_is_known(at->bsdf, branch) ? branch->expected * vec3_max_abs(branch->weight) * cells
+                                                            : sums[found->branch];
         double scale = part * all / sums[found->branch];
         found->towards.weight = vec3_scale(found->towards.weight, scale);
         found->weight *= scale;
@@ -225,8 +226,9 @@ static double rough_share(const struct bsdf_branch *branches, int count) {
 }
 
 /* Whether the rough branches divide one number of rays. After a rough surface, glass sends one ray to each side. */
-static bool is_divided(const struct bsdf *bsdf, const struct path *path) {
-    return bsdf_lobes_with(bsdf, BSDF_ROUGH) && !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
+static bool is_divided(const struct bsdf *bsdf, const struct bsdf_branch *rough, const struct path *path) {
+    return (lobe_flags(bsdf->lobes[rough->lobe].kind) & BSDF_ROUGH) &&
+           !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
 }
 
 /* All rough branches of a layered material: as many rays as their share of light justifies, which the samples of a
@@ -269,17 +271,17 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
     struct bsdf_branch branches[BSDF_LOBES];
     const struct bsdf_draw smooth = {.facet = at->bsdf->side};
     int count = bsdf_branches(at->bsdf, branches);
-    bool rough = false;
+    const struct bsdf_branch *rough = NULL;
     for (int i = 0; i < count; i++) {
         if (branches[i].rough)
-            rough = true;
+            rough = &branches[i];
         else
             colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
     }
     if (!rough)
         return colour;
-    return vec3_add(colour,
-                    (is_divided(at->bsdf, path) ? follow_layers : follow_rough)(state, at, branches, count, path));
+    return vec3_add(
+        colour, (is_divided(at->bsdf, rough, path) ? follow_layers : follow_rough)(state, at, branches, count, path));
 }
 
 static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
