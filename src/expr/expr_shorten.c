@@ -92,8 +92,6 @@ static bool is_number(const struct expr_program *program, uint16_t value, double
 /* The operand that the result is equal to, or UNWANTED. */
 static uint16_t equal_operand(const struct expr_program *program, const struct expr_instruction *in) {
     switch (in->operation) { /* no list: few operations have such operands */
-    case EXPR_COPY:
-        return in->a;
     case EXPR_ADD:
         return is_number(program, in->b, -0.0) ? in->a : is_number(program, in->a, -0.0) ? in->b : UNWANTED;
     case EXPR_SUBTRACT:
@@ -107,36 +105,63 @@ static uint16_t equal_operand(const struct expr_program *program, const struct e
     }
 }
 
-/* Copies the code; reads constants instead of the registers that contain them. known: room for one of each register;
- * at the end the constant that it contains, or UNWANTED. */
+/* Whether a register gets a constant, so that there is something to fold. */
+static bool has_known(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane) {
+    const uint64_t bit = UINT64_C(1) << lane;
+    for (uint32_t n = 0; n < program->count; n++) {
+        const struct expr_instruction *in = &program->code[n];
+        if (in->operation == EXPR_COPY ? in->a < program->constant_count
+                                       : ((choices[n].first | choices[n].second) & bit) != 0 &&
+                                             taken_operand(in, choices[n].first & bit) < program->constant_count)
+            return true;
+    }
+    return false;
+}
+
+/* Copies the code; reads constants instead of the registers that contain them. known: for each register the constant
+ * that it contains, or UNWANTED. */
 static void fold(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane, uint16_t *known,
                  struct expr_instruction *code) {
     const uint32_t first = program->constant_count;
-    memset(known, 0xff, program->register_count * sizeof *known); /* UNWANTED */
+    uint32_t known_count = 0; /* registers with constants */
     for (uint32_t n = 0; n < program->count; n++) {
         struct expr_instruction in = program->code[n];
         uint16_t *const operands[3] = {&in.a, &in.b, &in.c};
-        for (int k = 0; k < 3; k++)
-            if (reads[in.operation][k] && *operands[k] >= first && known[*operands[k] - first] != UNWANTED)
-                *operands[k] = known[*operands[k] - first];
+        bool is_changed = false;
+        for (int k = 0; known_count > 0 && k < 3; k++) {
+            if (!reads[in.operation][k] || *operands[k] < first || known[*operands[k] - first] == UNWANTED)
+                continue;
+            *operands[k] = known[*operands[k] - first];
+            is_changed = true;
+        }
         bool takes_first = choices[n].first >> lane & 1, takes_second = choices[n].second >> lane & 1;
-        uint16_t equal = takes_first || takes_second ? taken_operand(&in, takes_first) : equal_operand(program, &in);
-        if (equal == UNWANTED)
+        uint16_t equal = takes_first || takes_second ? taken_operand(&in, takes_first)
+                         : in.operation == EXPR_COPY ? in.a
+                         : is_changed                ? equal_operand(program, &in)
+                                                     : UNWANTED;
+        if (equal == UNWANTED && is_changed)
             equal = result_of_constants(program, &in);
-        else if (!takes_first && !takes_second)
+        else if (equal != UNWANTED && !takes_first && !takes_second)
             in = (struct expr_instruction){EXPR_COPY, in.out, equal, in.out, in.out, 0};
-        known[in.out - first] = equal < first ? equal : UNWANTED;
+        uint16_t *is = &known[in.out - first];
+        known_count -= *is != UNWANTED;
+        *is = equal < first ? equal : UNWANTED;
+        known_count += *is != UNWANTED;
         code[n] = in;
     }
 }
 
 bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
                   struct expr_stack *stack, void *scratch, struct expr_program *out) {
-    struct expr_instruction *code = scratch;
-    uint16_t *known = (uint16_t *)(void *)(code + program->count);
+    struct expr_instruction *folded = scratch;
+    uint16_t *known = (uint16_t *)(void *)(folded + program->count);
     struct renaming r = {.renamed = known + program->register_count, .first = program->constant_count};
     r.unused = r.renamed + program->register_count;
-    fold(program, choices, lane, known, code);
+    memset(known, 0xff, program->register_count * sizeof *known); /* UNWANTED */
+    const bool is_folded = has_known(program, choices, lane);
+    const struct expr_instruction *code = is_folded ? folded : program->code;
+    if (is_folded)
+        fold(program, choices, lane, known, folded);
     memset(r.renamed, 0xff, program->register_count * sizeof *r.renamed); /* UNWANTED */
     struct expr_program shorter = *program;
     for (int i = 0; i < program->output_count; i++) {
