@@ -1,8 +1,9 @@
-/* A pass forwards folds: an operation on constants whose result is among the constants of the program is that constant,
- * and x * 1, x / 1, x - 0 and x + -0 are x. So the rest of a smooth minimum beyond its width ends.
- * A pass backwards follows. It keeps the new register of every old one that is still needed, and renames,
+/* One pass backwards over the program. It keeps the new register of every old one that is still needed, and renames,
  * frees and drops at the same time. A min, max or selection that is decided disappears: its selected operand gets
- * its register. A copy remains only if another instruction needs that operand too, or if it is a constant. */
+ * its register. A copy remains only if another instruction needs that operand too, or if it is a constant.
+ *
+ * Folding goes forwards before that pass: an operation on constants whose result is among the constants of the program
+ * is that constant, and x * 1, x / 1, x - 0 and x + -0 are x. So the rest of a smooth minimum beyond its width ends. */
 #include "expr/expr_shorten.h"
 
 #include "expr/expr_link_internal.h"
@@ -92,6 +93,8 @@ static bool is_number(const struct expr_program *program, uint16_t value, double
 /* The operand that the result is equal to, or UNWANTED. */
 static uint16_t equal_operand(const struct expr_program *program, const struct expr_instruction *in) {
     switch (in->operation) { /* no list: few operations have such operands */
+    case EXPR_COPY:
+        return in->a;
     case EXPR_ADD:
         return is_number(program, in->b, -0.0) ? in->a : is_number(program, in->a, -0.0) ? in->b : UNWANTED;
     case EXPR_SUBTRACT:
@@ -105,80 +108,60 @@ static uint16_t equal_operand(const struct expr_program *program, const struct e
     }
 }
 
-/* Whether a register gets a constant, so that there is something to fold. */
-static bool has_known(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane) {
-    const uint64_t bit = UINT64_C(1) << lane;
-    for (uint32_t n = 0; n < program->count; n++) {
-        const struct expr_instruction *in = &program->code[n];
-        if (in->operation == EXPR_COPY ? in->a < program->constant_count
-                                       : ((choices[n].first | choices[n].second) & bit) != 0 &&
-                                             taken_operand(in, choices[n].first & bit) < program->constant_count)
-            return true;
-    }
-    return false;
-}
-
-/* Copies the code; reads constants instead of the registers that contain them. known: for each register the constant
- * that it contains, or UNWANTED. */
-static void fold(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane, uint16_t *known,
-                 struct expr_instruction *code) {
+/* Copies the code; reads constants instead of the registers that contain them. known: room for one of each register; at
+ * the end the constant that it contains, or UNWANTED. */
+static void read_constants(const struct expr_program *program, uint16_t *known, struct expr_instruction *code) {
     const uint32_t first = program->constant_count;
-    uint32_t known_count = 0; /* registers with constants */
+    memset(known, 0xff, program->register_count * sizeof *known); /* UNWANTED */
     for (uint32_t n = 0; n < program->count; n++) {
         struct expr_instruction in = program->code[n];
         uint16_t *const operands[3] = {&in.a, &in.b, &in.c};
-        bool is_changed = false;
-        for (int k = 0; known_count > 0 && k < 3; k++) {
-            if (!reads[in.operation][k] || *operands[k] < first || known[*operands[k] - first] == UNWANTED)
-                continue;
-            *operands[k] = known[*operands[k] - first];
-            is_changed = true;
-        }
-        bool takes_first = choices[n].first >> lane & 1, takes_second = choices[n].second >> lane & 1;
-        uint16_t equal = takes_first || takes_second ? taken_operand(&in, takes_first)
-                         : in.operation == EXPR_COPY ? in.a
-                         : is_changed                ? equal_operand(program, &in)
-                                                     : UNWANTED;
-        if (equal == UNWANTED && is_changed)
+        for (int k = 0; k < 3; k++)
+            if (reads[in.operation][k] && *operands[k] >= first && known[*operands[k] - first] != UNWANTED)
+                *operands[k] = known[*operands[k] - first];
+        uint16_t equal = equal_operand(program, &in);
+        if (equal == UNWANTED)
             equal = result_of_constants(program, &in);
-        else if (equal != UNWANTED && !takes_first && !takes_second)
+        else
             in = (struct expr_instruction){EXPR_COPY, in.out, equal, in.out, in.out, 0};
-        uint16_t *is = &known[in.out - first];
-        known_count -= *is != UNWANTED;
-        *is = equal < first ? equal : UNWANTED;
-        known_count += *is != UNWANTED;
+        known[in.out - first] = equal < first ? equal : UNWANTED;
         code[n] = in;
     }
 }
 
-bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
-                  struct expr_stack *stack, void *scratch, struct expr_program *out) {
-    struct expr_instruction *folded = scratch;
-    uint16_t *known = (uint16_t *)(void *)(folded + program->count);
-    struct renaming r = {.renamed = known + program->register_count, .first = program->constant_count};
+/* --- both --- */
+
+/* The code before it is renamed, and what ends in it. */
+struct shortening {
+    const struct expr_program *program;
+    const struct expr_instruction *code;
+    const uint16_t *known;             /* constants that registers contain at the end, or NULL */
+    const struct expr_choice *choices; /* of lane `lane`, or NULL */
+    uint32_t lane;
+};
+
+static bool shorten(const struct shortening *s, struct expr_stack *stack, uint16_t *memory, struct expr_program *out) {
+    const struct expr_program *program = s->program;
+    struct renaming r = {.renamed = memory, .first = program->constant_count};
     r.unused = r.renamed + program->register_count;
-    memset(known, 0xff, program->register_count * sizeof *known); /* UNWANTED */
-    const bool is_folded = has_known(program, choices, lane);
-    const struct expr_instruction *code = is_folded ? folded : program->code;
-    if (is_folded)
-        fold(program, choices, lane, known, folded);
     memset(r.renamed, 0xff, program->register_count * sizeof *r.renamed); /* UNWANTED */
     struct expr_program shorter = *program;
     for (int i = 0; i < program->output_count; i++) {
         const uint16_t from = program->outputs[i];
-        const bool is_known = from >= r.first && known[from - r.first] != UNWANTED;
-        shorter.outputs[i] = is_known ? known[from - r.first] : want(&r, from);
+        const bool is_known = s->known && from >= r.first && s->known[from - r.first] != UNWANTED;
+        shorter.outputs[i] = is_known ? s->known[from - r.first] : want(&r, from);
     }
     struct expr_instruction *end = stack->code + stack->free, *to = end;
     struct expr_linker linker = {.constant_count = program->constant_count};
     for (uint32_t n = program->count; n-- > 0;) {
-        struct expr_instruction in = code[n];
+        struct expr_instruction in = s->code[n];
         uint16_t *renamed = &r.renamed[in.out - r.first], result = *renamed;
         if (result == UNWANTED)
             continue;
         *renamed = UNWANTED;
-        bool first = choices[n].first >> lane & 1, second = choices[n].second >> lane & 1;
-        if (first || second || in.operation == EXPR_COPY) {
+        bool first = s->choices && (s->choices[n].first >> s->lane & 1);
+        bool second = s->choices && (s->choices[n].second >> s->lane & 1);
+        if (first || second || (s->known && in.operation == EXPR_COPY)) {
             uint16_t from = first || second ? taken_operand(&in, first) : in.a;
             if (from >= r.first && r.renamed[from - r.first] == UNWANTED) {
                 r.renamed[from - r.first] = result;
@@ -218,6 +201,31 @@ bool expr_shorten(const struct expr_program *program, const struct expr_choice *
     stack->free = (size_t)(to - stack->code);
     *out = shorter;
     return true;
+}
+
+bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
+                  struct expr_stack *stack, void *scratch, struct expr_program *out) {
+    const struct shortening shortening = {program, program->code, NULL, choices, lane};
+    return shorten(&shortening, stack, scratch, out);
+}
+
+static bool has_copied_constant(const struct expr_program *program) {
+    for (uint32_t n = 0; n < program->count; n++)
+        if (program->code[n].operation == EXPR_COPY && program->code[n].a < program->constant_count)
+            return true;
+    return false;
+}
+
+bool expr_fold(const struct expr_program *program, struct expr_stack *stack, void *scratch, struct expr_program *out) {
+    if (!has_copied_constant(program)) {
+        *out = *program;
+        return true;
+    }
+    struct expr_instruction *code = scratch;
+    uint16_t *known = (uint16_t *)(void *)(code + program->count);
+    read_constants(program, known, code);
+    const struct shortening shortening = {program, code, known, NULL, 0};
+    return shorten(&shortening, stack, known + program->register_count, out);
 }
 
 /* Constants that are not read are left out, so that evaluating a point does not copy them. */

@@ -20,6 +20,10 @@ size_t expr_shorten_size(const struct expr_program *program);
 bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
                   struct expr_stack *stack, void *scratch, struct expr_program *out);
 
+/* A program with the same bits. If a register is a copy of a constant, as expr_shorten leaves it: without operations on
+ * constants whose result is one of its constants, and without those that return an operand. scratch: expr_shorten_size bytes of the program, aligned to 64; otherwise as expr_shorten. */
+bool expr_fold(const struct expr_program *program, struct expr_stack *stack, void *scratch, struct expr_program *out);
+
 /* A copy with its code and the constants that it reads in the arena, which outlives the stack. False: no memory. */
 bool expr_keep(const struct expr_program *program, struct arena *arena, struct expr_program *out);
 

@@ -54,7 +54,7 @@ struct building {
     uint64_t evaluated, kept;
     struct expr_directions directions; /* the axes */
     struct expr_choice *choices;
-    struct expr_instruction *code; /* for one shortened program */
+    struct expr_instruction *code; /* for one shortened program, before and after folding */
     void *rows, *scratch;
 };
 
@@ -95,9 +95,10 @@ static bool is_flat(const struct expr_interval slopes[EXPR_DIRECTIONS]) {
 
 /* The program for a region whose choices are known. False if it is not much shorter. The next one overwrites it. */
 static bool shorten(struct building *b, const struct expr_program *whole, int lane, struct expr_program *out) {
-    struct expr_stack stack = {.code = b->code, .free = whole->count};
-    return expr_shorten(whole, b->choices, (uint32_t)lane, &stack, implicit_aligned(b->scratch), out) &&
-           out->count + out->count / 16 < whole->count;
+    struct expr_stack stack = {.code = b->code, .free = 2 * (size_t)whole->count};
+    void *scratch = implicit_aligned(b->scratch);
+    return expr_shorten(whole, b->choices, (uint32_t)lane, &stack, scratch, out) &&
+           expr_fold(out, &stack, scratch, out) && out->count + out->count / 16 < whole->count;
 }
 
 static bool add_candidate(struct building *b, const struct expr_program *program, uint32_t parent, int level,
@@ -387,7 +388,7 @@ static bool build(struct building *b) {
     const struct expr_program *program = solid->in.program;
     size_t room = (size_t)program->count + 1;
     b->choices = mem_alloc_zero(room, sizeof *b->choices);
-    b->code = mem_alloc_zero(room, sizeof *b->code);
+    b->code = mem_alloc_zero(2 * room, sizeof *b->code);
     /* One piece of memory for all evaluations. */
     size_t rows = expr_lanes_size(program);
     if (solid->in.lipschitz > 0) {

@@ -196,23 +196,26 @@ static void check_box(const struct expr_program *program, uint64_t key, int poin
     struct expr_choice *choices = mem_alloc_zero(program->count + 1, sizeof *choices);
     struct expr_instruction code[512];
     struct expr_stack stack = {code, 512};
-    struct expr_program shorter;
+    struct expr_program shorter, folded;
     void *scratch = mem_alloc_aligned(64, expr_shorten_size(program));
     random_box(key, box);
     expr_evaluate_interval(program, box, bounds, choices, single_rows);
     CHECK(expr_shorten(program, choices, 0, &stack, scratch, &shorter));
     CHECK(shorter.count <= program->count && shorter.register_count <= program->register_count);
+    CHECK(expr_fold(&shorter, &stack, scratch, &folded));
+    CHECK(folded.count <= shorter.count && folded.register_count <= shorter.register_count);
     expr_evaluate_interval(&shorter, box, again, NULL, single_rows);
     *before += program->count;
     *after += shorter.count;
     for (int i = 0; i < points; i++) {
-        double in[EXPR_INPUT_COUNT], whole[EXPR_OUTPUTS], part[EXPR_OUTPUTS];
+        double in[EXPR_INPUT_COUNT], whole[EXPR_OUTPUTS], part[EXPR_OUTPUTS], rest[EXPR_OUTPUTS];
         point_in(box, random_combine(key, 1000 + (uint64_t)i), in);
         expr_evaluate(program, in, whole);
         expr_evaluate(&shorter, in, part);
+        expr_evaluate(&folded, in, rest);
         for (int k = 0; k < program->output_count; k++) {
-            if (!same(whole[k], part[k]))
-                test_fail(__FILE__, __LINE__, "shortened: %a, not %a", part[k], whole[k]);
+            if (!same(whole[k], part[k]) || !same(whole[k], rest[k]))
+                test_fail(__FILE__, __LINE__, "shortened: %a, folded: %a, not %a", part[k], rest[k], whole[k]);
             for (int n = 0; n < 2; n++)
                 if (!is_within(EXPR_TYPE_F, (union expr_value){.f = whole[k]}, n ? again[k] : bounds[k]))
                     test_fail(__FILE__, __LINE__, "%a is not in %a..%a", whole[k], bounds[k].low, bounds[k].high);
@@ -378,6 +381,7 @@ TEST(a_smooth_union_of_twenty_parts_is_as_short_near_one_of_them_as_that_part_al
     void *scratch = mem_alloc_aligned(64, expr_shorten_size(&all));
     expr_evaluate_interval(&all, box, bounds, choices, single_rows);
     CHECK(expr_shorten(&all, choices, 0, &stack, scratch, &shorter));
+    CHECK(expr_fold(&shorter, &stack, scratch, &shorter));
     CHECK_EQ_INT(shorter.count, single.count);
     mem_free(scratch);
     arena_destroy(&arena);
