@@ -486,7 +486,7 @@ static bool push_roots(struct gltf *g, struct list *stack) {
         }
         return true;
     }
-    /* Without scenes the roots are those nodes that are nobody's child. */
+    /* In a file without scenes, the nodes without a parent are the roots. */
     uint8_t *child = mem_alloc_zero(count ? count : 1, 1);
     bool ok = child != NULL;
     for (size_t i = 0; ok && i < count; i++) {

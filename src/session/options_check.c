@@ -80,7 +80,7 @@ bool display_parse(const char *text, struct display_choice *out) {
     }
     if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
         return false;
-    /* Without a word the terminal is asked what it can draw. */
+    /* "term" alone: gray asks the terminal what it can draw. */
     out->kind = DISPLAY_TERMINAL;
     for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
         if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {
