@@ -531,18 +531,22 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
     const struct triangle_index *index = s->index;
     if (!index->voxels)
         return false;
+    /* Big triangles belong to no voxel. */
     if (index->big && descend(s, index->big, kind, true, many, leaves_out))
         return true;
+    /* The first voxel. */
     simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
           position = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
     int32_t at[4];
     simd4 start = simd4_max(simd4_all(0), simd4_min(position, simd4_load(index->last_cell)));
     simd4_store_int(at, start);
     start = simd4_whole(start);
+    /* The parameter of the next voxel along each axis, and between two of them. */
     simd4 across = simd4_mul(cell, reciprocal);
     simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), position), across);
     simd4 step_t = simd4_size(across);
     next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
+    /* Voxel after voxel, until something is met or the ray leaves. */
     const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
     const uint32_t *voxel = index->voxels + 1 + index->stride[0] + index->stride[1] + (uint32_t)at[0] +
                             (uint32_t)at[1] * index->stride[0] + (uint32_t)at[2] * index->stride[1];

@@ -236,6 +236,7 @@ static bool keep_slots(struct script_context *context, const struct script_value
 
 static bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
+    /* A file, or vertices and faces. */
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -247,6 +248,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
+        /* A file: its nodes, with materials for its parts. */
         const struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
@@ -267,6 +269,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
             model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
         return result->pointer != NULL;
     }
+    /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
     struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)
