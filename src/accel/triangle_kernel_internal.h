@@ -526,8 +526,8 @@ done:
     return found;
 }
 
-static inline __attribute__((always_inline)) bool fly_camera_voxels(struct search *s, const enum triangle_search kind,
-                                                                    const bool many, const bool leaves_out) {
+static inline __attribute__((always_inline)) bool traverse_voxels(struct search *s, const enum triangle_search kind,
+                                                                  const bool many, const bool leaves_out) {
     const struct triangle_index *index = s->index;
     if (!index->voxels)
         return false;
@@ -569,22 +569,22 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
 }
 
 /* Rays that have been moved to the frame. */
-static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind,
-                                                            const bool leaves_out) {
+static inline __attribute__((always_inline)) bool traverse(struct search *s, const enum triangle_search kind,
+                                                           const bool leaves_out) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
-        return fly_camera_voxels(s, kind, many, leaves_out);
+        return traverse_voxels(s, kind, many, leaves_out);
     return s->far_away ? descend(s, s->index->only, kind, true, many, leaves_out)
                        : descend(s, s->index->only, kind, false, many, leaves_out);
 }
 
 /* Separate from the kernel of the others, which needs its registers. */
-static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
-    return traversal(s, TRIANGLE_NEAREST, false);
+static __attribute__((noinline)) bool traverse_nearest_apart(struct search *s) {
+    return traverse(s, TRIANGLE_NEAREST, false);
 }
 
-static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
-    return traversal(s, TRIANGLE_ANY, false);
+static __attribute__((noinline)) bool traverse_any_apart(struct search *s) {
+    return traverse(s, TRIANGLE_ANY, false);
 }
 
 static inline double power_of_two(uint64_t exponent_bits) {
@@ -695,7 +695,7 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
-        fly_camera_nearest_apart(&s);
+        traverse_nearest_apart(&s);
     else if (set->count > MANY_TRIANGLES)
         descend(&s, index->only, TRIANGLE_NEAREST, false, true, false);
     else
@@ -714,16 +714,16 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     enum ray_start start_case = search_begin(&s);
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
-    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, false);
+    return s.moved ? traverse_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, false);
 }
 
 /* The same without a run of triangles. */
-static __attribute__((noinline)) bool fly_camera_nearest_but_apart(struct search *s) {
-    return traversal(s, TRIANGLE_NEAREST, true);
+static __attribute__((noinline)) bool traverse_nearest_but_apart(struct search *s) {
+    return traverse(s, TRIANGLE_NEAREST, true);
 }
 
-static __attribute__((noinline)) bool fly_camera_any_but_apart(struct search *s) {
-    return traversal(s, TRIANGLE_ANY, true);
+static __attribute__((noinline)) bool traverse_any_but_apart(struct search *s) {
+    return traverse(s, TRIANGLE_ANY, true);
 }
 
 /* An empty run begins after the last triangle. */
@@ -745,7 +745,7 @@ bool KERNEL(nearest_but)(const struct triangle_index *index, const struct triang
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
-        fly_camera_nearest_but_apart(&s);
+        traverse_nearest_but_apart(&s);
     else if (set->count > MANY_TRIANGLES)
         descend(&s, index->only, TRIANGLE_NEAREST, false, true, true);
     else
@@ -771,7 +771,7 @@ bool KERNEL(any_but)(const struct triangle_index *index, const struct triangle_s
     }
     if (start_case == RAY_MISSES)
         return false;
-    if (!(s.moved ? fly_camera_any_but_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, true)))
+    if (!(s.moved ? traverse_any_but_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, true)))
         return false;
     *triangle = s.occluder;
     return true;
@@ -795,5 +795,5 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
         triangle_brute_all(set, &line, visit, context, cost);
     if (start_case != RAY_INSIDE)
         return;
-    traversal(&s, TRIANGLE_ALL, false);
+    traverse(&s, TRIANGLE_ALL, false);
 }

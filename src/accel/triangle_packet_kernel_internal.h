@@ -459,8 +459,8 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     return top;
 }
 
-static inline __attribute__((always_inline)) void fly_camera_all(struct packet *p, uint32_t root, const bool any,
-                                                                 const bool mixed) {
+static inline __attribute__((always_inline)) void traverse_all(struct packet *p, uint32_t root, const bool any,
+                                                               const bool mixed) {
     struct pending_box stack[STACK_ENTRIES];
     uint32_t top = 0;
     if (root & REF_LEAF) {
@@ -481,15 +481,15 @@ static inline __attribute__((always_inline)) void fly_camera_all(struct packet *
     }
 }
 
-static void traversal(struct packet *p, uint32_t root, const bool any) {
+static void traverse(struct packet *p, uint32_t root, const bool any) {
     if (any && p->mixed)
-        fly_camera_all(p, root, true, true);
+        traverse_all(p, root, true, true);
     else if (any)
-        fly_camera_all(p, root, true, false);
+        traverse_all(p, root, true, false);
     else if (p->mixed)
-        fly_camera_all(p, root, false, true);
+        traverse_all(p, root, false, true);
     else
-        fly_camera_all(p, root, false, false);
+        traverse_all(p, root, false, false);
 }
 
 /* ---- beginning ---- */
@@ -635,9 +635,9 @@ static bool begin(struct packet *p, uint64_t active) {
 static void search(struct packet *p, struct triangle_cost *cost, const bool any) {
     const struct triangle_index *index = p->index;
     if (index->big)
-        traversal(p, index->big, any);
+        traverse(p, index->big, any);
     if (index->only != REF_EMPTY)
-        traversal(p, index->only, any);
+        traverse(p, index->only, any);
     cost->triangle_tests += p->tests;
     cost->hierarchy_steps += p->nodes;
 }
