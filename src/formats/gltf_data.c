@@ -11,6 +11,18 @@
 /* The size of all files together that one model may read. */
 #define FETCH_LIMIT (UINT64_C(1) << 33)
 
+/* Vertices and corners per byte of the file, and a minimum for every file. */
+enum { MADE_PER_BYTE = 8, MADE_FREE = 1 << 20 };
+
+bool gltf_produce(struct gltf *g, uint64_t count, const char *where) {
+    uint64_t limit = g->bytes * MADE_PER_BYTE + MADE_FREE;
+    if (count > limit || g->produced > limit - count)
+        return gltf_fail(g, where, "more vertices than a file of %llu bytes can describe",
+                         (unsigned long long)g->bytes);
+    g->produced += count;
+    return true;
+}
+
 static int digit64(char c) {
     return c >= 'A' && c <= 'Z'   ? c - 'A'
            : c >= 'a' && c <= 'z' ? c - 'a' + 26

@@ -17,6 +17,8 @@ struct gltf_accessor {
     enum number_type sparse_type;
 };
 
+/* Counts what is made of the file; false beyond a multiple of its bytes. */
+bool gltf_produce(struct gltf *g, uint64_t count, const char *where);
 bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *size, size_t *stride);
 bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out);
 /* Elements first .. first + count - 1, `components` numbers each. */
