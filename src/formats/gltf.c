@@ -1,7 +1,7 @@
 /* glTF 2.0, as JSON with buffers in other files or inside it, and as GLB. Source: Khronos Group, "glTF 2.0
  * Specification" (ISO/IEC 12113:2022). jansson parses the JSON. The reader takes the nodes of the scene with their
  * transforms, their meshes (triangles, strips, fans; position, normal, first texture coordinates, first colour),
- * materials and pictures. It ignores skins, morphs, animations, cameras and lights. A required extension that the
+ * materials, pictures, cameras and lights. It ignores skins, morphs and animations. A required extension that the
  * reader does not know is an error.
  *
  * Any number of primitives may use one accessor, so a small file can request very large meshes. A multiple of the
@@ -44,6 +44,50 @@ bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
     return error_set(g->error, ERROR_SCENE, "%s: %s: %s", g->path, where, text);
+}
+
+void gltf_lacks(struct gltf *g, const char *where, const char *format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    struct gltf_lack *lacks = g->lacks.items;
+    for (size_t i = 0; i < g->lacks.count; i++)
+        if (strcmp(lacks[i].what, text) == 0) {
+            lacks[i].count++;
+            return;
+        }
+    if (g->lacks.count == MODEL_WARNINGS)
+        return;
+    lacks = list_room(&g->lacks, 1, sizeof *lacks);
+    const char *what = lacks ? arena_copy_text(&g->model->arena, text, strlen(text)) : NULL;
+    if (!what)
+        return;
+    lacks->what = what;
+    lacks->count = 1;
+    (void)snprintf(lacks->first, sizeof lacks->first, "%s", where);
+    g->lacks.count++;
+}
+
+static void report_lacks(struct gltf *g) {
+    const struct gltf_lack *lacks = g->lacks.items;
+    for (size_t i = 0; i < g->lacks.count; i++)
+        if (lacks[i].count == 1)
+            model_warn(g->model, "%s: %s: %s", g->path, lacks[i].first, lacks[i].what);
+        else
+            model_warn(g->model, "%s: %s and %zu more: %s", g->path, lacks[i].first, lacks[i].count - 1, lacks[i].what);
+    list_destroy(&g->lacks);
+}
+
+const char *gltf_name(const struct gltf *g, const json_t *object) {
+    const char *name = json_string_value(json_object_get(object, "name"));
+    if (!name)
+        return "";
+    name = arena_copy_text(&g->model->arena, name, strlen(name));
+    if (!name)
+        error_no_memory(g->error, g->path);
+    return name;
 }
 
 json_t *gltf_array(const struct gltf *g, const char *name) {
@@ -121,8 +165,7 @@ static bool check_extensions(const struct gltf *g) {
 
 /* One warning each for extensions that would change the picture. */
 static void warn_of_extensions(const struct gltf *g) {
-    static const char *const without_effect[] = {"KHR_lights_punctual",
-                                                 "KHR_materials_iridescence",
+    static const char *const without_effect[] = {"KHR_materials_iridescence",
                                                  "KHR_materials_anisotropy",
                                                  "KHR_materials_dispersion",
                                                  "KHR_materials_pbrSpecularGlossiness",
@@ -158,7 +201,7 @@ static bool load(struct gltf *g) {
     for (size_t i = 0; i < json_array_size(meshes); i++)
         if (!gltf_read_mesh(g, i, json_array_get(meshes, i)))
             return false;
-    return gltf_read_nodes(g);
+    return gltf_read_nodes(g) && gltf_read_animations(g);
 }
 
 /* Bounds the memory that jansson needs before it starts. */
@@ -267,6 +310,7 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
     mem_free(g.buffers);
     mem_free(g.images);
     json_decref(g.root);
+    report_lacks(&g);
     return ok;
 }
 

@@ -5,5 +5,7 @@
 #include "formats/gltf_internal.h"
 
 bool gltf_read_nodes(struct gltf *g);
+/* Only their names and durations. */
+bool gltf_read_animations(struct gltf *g);
 
 #endif

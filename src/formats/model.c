@@ -518,6 +518,9 @@ void model_destroy(struct model *model) {
     list_destroy(&model->meshes);
     list_destroy(&model->materials);
     list_destroy(&model->nodes);
+    list_destroy(&model->cameras);
+    list_destroy(&model->lights);
+    list_destroy(&model->animations);
     arena_destroy(&model->arena);
     *model = (struct model){0};
 }

@@ -67,6 +67,32 @@ struct model_node {
     struct transform parent_from_node;
 };
 
+/* A camera looks along -z of its own space; y is up. */
+struct model_camera {
+    const char *name; /* its own, or that of its node; "": none */
+    struct affine model_from_camera;
+    double vertical_angle; /* radians; 0: the camera is orthographic */
+    double aspect;         /* width by height; 0: that of the picture */
+    double half_size[2];   /* of an orthographic camera: half of width and height */
+};
+
+enum model_light_kind { MODEL_LIGHT_DIRECTIONAL, MODEL_LIGHT_POINT, MODEL_LIGHT_SPOT };
+
+/* A light is at the origin of its own space and shines along -z. */
+struct model_light {
+    const char *name; /* as of cameras */
+    enum model_light_kind kind;
+    struct affine model_from_light;
+    struct vec3 intensity; /* colour times candela; of directional lights times lux */
+    double range;          /* it shines as far as this; 0: everywhere */
+    double inner, outer;   /* radians, of spots: full light up to inner, none from outer on */
+};
+
+struct model_animation {
+    const char *name; /* "": none */
+    double duration;  /* seconds */
+};
+
 /* Searches for a file that does not exist under the name that the file in `folder` ("" or with a final slash) contains.
  * *path is NULL if there is none. *refused: the name leads out of the readable folders, so gray does not search. False
  * with an error. */
@@ -93,7 +119,8 @@ struct model {
     struct arena arena; /* names */
     const char *path;
     struct model_options options;
-    struct list materials, meshes, nodes; /* struct model_material, model_mesh, model_node */
+    struct list materials, meshes, nodes;    /* struct model_material, model_mesh, model_node */
+    struct list cameras, lights, animations; /* struct model_camera, model_light, model_animation */
     const char *warnings[MODEL_WARNINGS];
     int warning_count;
     bool refused; /* model_find: the last name leads out of the readable folders */
@@ -119,6 +146,15 @@ static inline struct model_mesh *model_meshes(const struct model *model) {
 }
 static inline struct model_node *model_nodes(const struct model *model) {
     return model->nodes.items;
+}
+static inline struct model_camera *model_cameras(const struct model *model) {
+    return model->cameras.items;
+}
+static inline struct model_light *model_lights(const struct model *model) {
+    return model->lights.items;
+}
+static inline struct model_animation *model_animations(const struct model *model) {
+    return model->animations.items;
 }
 
 /* --- for the readers --- */
