@@ -262,7 +262,7 @@ static bool finish_mesh(struct model *model, struct model_mesh *m, struct error 
     struct mesh_tables own = {0};
     bool ok = true;
     if (model->options.weld)
-        ok = mesh_input_weld(&input, &own, error);
+        ok = mesh_input_weld(&input, &own, model->options.weld_distance, error);
     if (ok && model->options.flip)
         ok = mesh_input_flip(&input, &own, error);
     if (ok && model->options.smooth)

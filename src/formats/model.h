@@ -77,8 +77,9 @@ typedef bool model_search(void *context, const char *folder, const char *name, c
 struct model_options {
     bool smooth;         /* computed normals instead of the file's */
     double smooth_angle; /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
-    bool weld, flip;     /* one vertex for each position; faces reversed */
-    bool forgive;        /* faces with indices of nothing are left out */
+    bool weld, flip;      /* one vertex for each position; faces reversed */
+    double weld_distance; /* with weld: vertices closer than this become one; 0: only those at equal positions */
+    bool forgive;         /* faces with indices of nothing are left out */
     const struct path_policy *path_policy; /* the readable folders; NULL: all */
     model_search *search;                  /* or NULL; only while the file is read */
     void *search_context;

@@ -23,9 +23,10 @@ static void destroy_model(void *object) {
 
 const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                                 const struct model_options *options, bool *fresh, struct error *error) {
-    char key[4096 + 80];
-    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %d %d", canonical, options->smooth, options->smooth_angle,
-                          options->weld, options->flip, options->forgive);
+    char key[4096 + 120];
+    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d", canonical, options->smooth,
+                          options->smooth_angle, options->weld, options->weld_distance, options->flip,
+                          options->forgive);
     *fresh = false;
     if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: its path is too long", path);

@@ -252,7 +252,7 @@ static struct mesh *smoothed(const struct maker *m, double degrees, bool weld, b
     struct mesh_input input = maker_input(m);
     struct mesh_tables own = {0};
     struct error error = {0};
-    CHECK(!weld || mesh_input_weld(&input, &own, &error));
+    CHECK(!weld || mesh_input_weld(&input, &own, 0, &error));
     CHECK(!flip || mesh_input_flip(&input, &own, &error));
     CHECK(degrees < 0 || mesh_input_smooth(&input, &own, degrees, &error));
     struct mesh *mesh = mesh_create(&input, &error);
