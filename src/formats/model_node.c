@@ -24,9 +24,9 @@ static void destroy_model(void *object) {
 const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                                 const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 120];
-    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d", canonical, options->smooth,
-                          options->smooth_angle, options->weld, options->weld_distance, options->flip,
-                          options->forgive);
+    int length =
+        snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d", canonical, options->smooth, options->smooth_angle,
+                 options->weld, options->weld_distance, options->flip, options->forgive);
     *fresh = false;
     if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: its path is too long", path);
@@ -257,11 +257,16 @@ static const struct material *make_material(struct scene *scene, const struct mo
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
         tint =
             vec3_all(from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
-    if (from->by_vertex && !by_vertex(scene, m, error))
-        return NULL;
     const struct material *top = m;
     if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
         return NULL;
+    /* The colours of the mesh multiply the picture, too. */
+    if (from->by_vertex) {
+        struct material *coloured = top == m ? m : scene_material(scene, MATERIAL_IMAGE, top, error);
+        if (!coloured || !by_vertex(scene, coloured, error))
+            return NULL;
+        top = coloured;
+    }
     top = with_maps(scene, from, top, error);
     if (!top || !clear || from->illum != 7)
         return top;
