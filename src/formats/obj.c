@@ -279,7 +279,7 @@ static bool add_colour(struct reader *reader, const double *values, int count) {
 
 /* v: x y z, with w, r g b, or both; w is not used. */
 static bool read_vertex(struct reader *reader) {
-    double values[7] = {0};
+    double values[7];
     int count;
     const char *wrong = read_numbers(reader, values, 7, &count);
     double *vertex = room(reader, &reader->elements[VERTEX], 1, 3 * sizeof *vertex);
@@ -368,6 +368,10 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
         return fail_word(reader, word, "is not a corner of a face (7, 7/1, 7//3 or 7/1/3)");
     reader->at = p;
     size_t count = reader->elements[kind].count;
+    if (value - 1 < count && !negative) { /* the usual case */
+        *out = (uint32_t)(value - 1);
+        return true;
+    }
     bool exists = value != 0 && value < STRAY && (!negative || value <= count);
     if (!exists && kind != VERTEX) {
         left_out_add(&reader->lost[kind], reader->line);
@@ -390,7 +394,7 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
     if (value >= STRAY)
         return fail_word(reader, word, "has an index that is too large");
     *out = (uint32_t)(value - 1);
-    return value <= count || add_ahead(reader, kind, (size_t)value);
+    return add_ahead(reader, kind, (size_t)value);
 }
 
 /* 7, 7/1, 7//3, 7/1/3. Some files have slashes with nothing after them, which mean nothing. */
@@ -525,10 +529,12 @@ static bool read_libraries(struct reader *reader) {
     return true;
 }
 
-/* The lists as they were before the first corner of a face. */
-static void forget_face(struct reader *reader, size_t corners, const size_t ahead[KINDS]) {
+/* The lists as they were before the first corner of the face of this line. */
+static void forget_face(struct reader *reader, size_t corners, size_t line) {
     for (int kind = VERTEX; kind < KINDS; kind++) {
-        reader->ahead[kind].count = ahead[kind];
+        const struct doubt *ahead = reader->ahead[kind].items;
+        while (reader->ahead[kind].count && ahead[reader->ahead[kind].count - 1].line >= line)
+            reader->ahead[kind].count--;
         if (reader->indices[kind].count > corners)
             reader->indices[kind].count = corners;
     }
@@ -536,7 +542,6 @@ static void forget_face(struct reader *reader, size_t corners, const size_t ahea
 
 static bool read_face(struct reader *reader) {
     size_t line = reader->line, first = reader->indices[VERTEX].count;
-    const size_t ahead[] = {reader->ahead[VERTEX].count, reader->ahead[UV].count, reader->ahead[NORMAL].count};
     uint32_t *start = room(reader, &reader->starts, 2, sizeof *start); /* the final end included */
     if (!start)
         return false;
@@ -546,7 +551,7 @@ static bool read_face(struct reader *reader) {
             return false;
     }
     if (reader->indices[VERTEX].count - first < 3) {
-        forget_face(reader, first, ahead);
+        forget_face(reader, first, line);
         left_out_add(&reader->short_faces, line);
         return true;
     }

@@ -84,9 +84,10 @@ struct ply {
     } picture;                /* of a comment TextureFile, or NULL */
     struct list odd_vertices; /* struct odd_vertex */
     struct left_out odd_normals, odd_uvs, odd_colours, short_faces, unseen_colours;
-    struct list values;    /* uint32_t: the last list read */
-    struct list pending;   /* double: the texture coordinates of one face */
-    uint64_t vertex_total; /* what the header says */
+    double numbers[SCALARS]; /* of one face */
+    struct list values;      /* uint32_t: the last list read */
+    struct list pending;     /* double: the texture coordinates of one face */
+    uint64_t vertex_total;   /* what the header says */
 };
 
 static bool fail(const struct ply *ply, const char *what) {
@@ -438,7 +439,7 @@ static bool read_vertex(struct ply *ply, const struct element *element, double v
         const uint8_t *before = ply->at;
         if (!read_number(ply, p->type, &value[p->meaning]))
             return false;
-        if (p->meaning >= X && p->meaning <= Z && !isfinite(value[p->meaning]) && !odd)
+        if (!isfinite(value[p->meaning]) && p->meaning >= X && p->meaning <= Z && !odd)
             odd = before;
     }
     return !odd || note_odd_vertex(ply, odd);
@@ -614,7 +615,7 @@ static bool pad_colours(struct ply *ply, size_t count) {
 
 static bool read_face(struct ply *ply, const struct element *element, bool corner_uvs) {
     bool any = false;
-    double value[SCALARS] = {0};
+    double *value = ply->numbers;
     ply->pending.count = 0;
     for (int k = 0; k < element->property_count; k++) {
         const struct property *p = &ply->properties[element->first + k];
