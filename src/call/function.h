@@ -119,7 +119,8 @@ enum {
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
-    OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
+    /* Of KIND_CHOICE and KIND_BOOLEAN: a number is accepted, in the range of the parameter; `boolean` is true then. */
+    OR_NUMBER = 256,
     OR_CURVE = 2048, /* of KIND_CHOICE: also accepts a function of the light, which sets `curve` */
     /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and vector is 1. Of
      * KIND_FUNCTION: it is a function of the direction. */

@@ -25,9 +25,10 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
                                 const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 400];
     int length =
-        snprintf(key, sizeof key, "%s|%d %.17g %d %d %d|%d %.17g %s|%s", canonical, options->smooth,
-                 options->smooth_angle, options->weld, options->flip, options->forgive, options->animated,
-                 options->time, options->animation ? options->animation : "", options->variant ? options->variant : "");
+        snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d|%d %.17g %s|%s", canonical, options->smooth,
+                 options->smooth_angle, options->weld, options->weld_distance, options->flip, options->forgive,
+                 options->animated, options->time, options->animation ? options->animation : "",
+                 options->variant ? options->variant : "");
     *fresh = false;
     if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: %s is too long", path,
@@ -298,11 +299,16 @@ static const struct material *make_material(struct scene *scene, const struct mo
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
         tint =
             vec3_all(from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
-    if (from->by_vertex && !by_vertex(scene, m, error))
-        return NULL;
     const struct material *top = m;
     if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
         return NULL;
+    /* The colours of the mesh multiply the picture, too. */
+    if (from->by_vertex) {
+        struct material *coloured = top == m ? m : scene_material(scene, MATERIAL_IMAGE, top, error);
+        if (!coloured || !by_vertex(scene, coloured, error))
+            return NULL;
+        top = coloured;
+    }
     top = with_maps(scene, from, top, error);
     if (!top || !clear || from->illum != 7)
         return top;

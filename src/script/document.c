@@ -44,13 +44,14 @@ static void describe_parameter(const struct script_parameter *p, char out[DOCUME
     bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
     choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
-    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE ? " or a texture"
-                       : p->flags & OR_CURVE                          ? " or a function"
-                       : p->flags & OR_COMPASS                        ? " or {azimuth = ..., elevation = ...}"
-                       : p->flags & OR_PAIR                           ? " or two numbers"
-                       : p->flags & OR_SKY                            ? " or a sky"
-                       : p->kind == KIND_NUMBER && choices[0]         ? " or "
-                                                                      : "";
+    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE    ? " or a texture"
+                       : p->flags & OR_CURVE                             ? " or a function"
+                       : p->flags & OR_COMPASS                           ? " or {azimuth = ..., elevation = ...}"
+                       : p->flags & OR_PAIR                              ? " or two numbers"
+                       : p->flags & OR_SKY                               ? " or a sky"
+                       : p->kind == KIND_BOOLEAN && p->flags & OR_NUMBER ? " or a number"
+                       : p->kind == KIND_NUMBER && choices[0]            ? " or "
+                                                                         : "";
     size_t used = (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s%s", p->name,
                                    p->kind == KIND_CHOICE ? choices : kind_words(p->kind), more,
                                    p->kind == KIND_NUMBER ? choices : "");
@@ -188,6 +189,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
         return "string|gr.texture|gr.sky";
     if (p->kind == KIND_TEXT && (p->flags & OR_PAIR))
         return "string|number[]";
+    if (p->kind == KIND_BOOLEAN && (p->flags & OR_NUMBER))
+        return "boolean|number";
     if (p->kind == KIND_DIRECTION && (p->flags & OR_COMPASS))
         return "gr.triple|{azimuth: number, elevation: number}";
     choices_words(p, "|", out, CHOICES_SIZE);

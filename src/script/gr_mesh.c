@@ -49,8 +49,8 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_SMOOTH] =
         {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "the given normals",
          "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
-    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                   "Whether vertices at the same position become one."},
+    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL | OR_NUMBER, ABOVE(0), NULL, "false",
+                   "Whether vertices at the same position become one; a number: those closer than this."},
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are reversed."},
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
@@ -70,6 +70,7 @@ static void read_options(const struct script_value *args, struct model_options *
     options->smooth = args[MESH_SMOOTH].given;
     options->smooth_angle = args[MESH_SMOOTH].number;
     options->weld = args[MESH_WELD].boolean;
+    options->weld_distance = args[MESH_WELD].number;
     options->flip = args[MESH_FLIP].boolean;
     options->animated = args[MESH_TIME].given || args[MESH_ANIMATION].given;
     options->time = args[MESH_TIME].number;
@@ -204,7 +205,7 @@ static struct mesh *mesh_from_tables(struct script_context *context, const struc
     struct mesh_tables own = {0};
     read_options(args, &options);
     struct mesh *mesh = NULL;
-    if ((!options.weld || mesh_input_weld(&input, &own, error)) &&
+    if ((!options.weld || mesh_input_weld(&input, &own, options.weld_distance, error)) &&
         (!options.flip || mesh_input_flip(&input, &own, error)) &&
         (!options.smooth || mesh_input_smooth(&input, &own, options.smooth_angle, error)))
         mesh = assets_mesh(context->scene.assets, &input, error);
