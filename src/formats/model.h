@@ -46,6 +46,8 @@ struct model_material {
     int illum;
     struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
 };
+#define MODEL_MAPS(m)                                                                                                  \
+    &(m)->map_kd, &(m)->map_ks, &(m)->map_ke, &(m)->map_d, &(m)->map_bump, &(m)->map_normal, &(m)->map_metal
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
@@ -127,12 +129,14 @@ static inline struct model_node *model_nodes(const struct model *model) {
 struct model_mesh *model_add_mesh(struct model *model, struct error *error);
 struct model_material *model_add_material(struct model *model, struct error *error); /* plain gray, nothing else */
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
-/* Warnings beyond the limit are dropped; the first ones are kept. */
+/* Warnings beyond the limit are dropped; the first ones are kept, equal ones once. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A file that the model names. gray tries its folder with any spelling of the path, then the bare name, then the search
  * of the options. If *path is NULL, model_why_missing() returns the reason. */
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 const char *model_why_missing(const struct model *model);
+/* A warning, once for each name, of a picture that model_find just did not find. `where`: "FILE" or "FILE:LINE". */
+void model_warn_missing(struct model *model, const char *where, const char *name);
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);

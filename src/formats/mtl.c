@@ -144,8 +144,10 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     size_t length;
     const char *name = rest(l, &length);
-    if (length == 0)
-        return fail(l, "the name of a picture is missing");
+    if (length == 0) {
+        model_warn(l->model, "%s:%zu: the name of a picture is missing, so the line has no effect", l->path, l->line);
+        return true;
+    }
     map->scale[0] = scale[0], map->scale[1] = scale[1];
     map->offset[0] = offset[0], map->offset[1] = offset[1];
     map->strength = strength[0];
@@ -169,9 +171,11 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     if (!model_find(l->model, name, length, &map->path, l->error))
         return false;
-    if (!map->path && !l->model->options.single_file)
-        model_warn(l->model, "%s:%zu: the picture '%.200s' %s", l->path, l->line, map->name,
-                   model_why_missing(l->model));
+    const char *where = map->path ? "" : arena_format(&l->model->arena, "%s:%zu", l->path, l->line);
+    if (!where)
+        return error_no_memory(l->error, l->path);
+    if (!map->path)
+        model_warn_missing(l->model, where, map->name);
     return true;
 }
 

@@ -121,8 +121,7 @@ TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
     } cases[] = {{"newmtl a\nKd 1 x 1\n", "c.mtl:2: 'x' is not a finite number"},
                  {"newmtl a\nKd\n", "c.mtl:2: '' is not a finite number"},
                  {"newmtl a\nNs nan\n", "c.mtl:2: 'nan' is not a finite number"},
-                 {"\nnewmtl  \n", "c.mtl:2: newmtl needs a name"},
-                 {"newmtl a\nmap_Kd -s 1 1\n", "c.mtl:2: the name of a picture is missing"}};
+                 {"\nnewmtl  \n", "c.mtl:2: newmtl needs a name"}};
     test_write_text(in_folder("c.obj"), SQUARE "mtllib c.mtl\nf 1 2 3\n");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct model_options options = {0};
@@ -132,6 +131,18 @@ TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
         CHECK(strlen(error.text) > strlen(test_folder()));
         CHECK_TEXT(error.text + strlen(test_folder()) + 1, cases[i].message);
     }
+}
+
+TEST(a_map_without_a_name_has_no_effect_but_a_warning) {
+    test_write_text(in_folder("n.obj"), SQUARE "mtllib n.mtl\nusemtl a\nf 1 2 3\n");
+    test_write_text(in_folder("n.mtl"), "newmtl a\nmap_Kd -s 1 1\nKd 1 0 0\nmap_Ke\nKe 1 1 1\n");
+    struct model model;
+    if (!read_model(&model, "n.obj"))
+        return;
+    CHECK_EQ_INT(model.warning_count, 2);
+    CHECK(strstr(model.warnings[0], "n.mtl:2: the name of a picture is missing, so the line has no effect"));
+    CHECK(!material(&model, "a")->map_kd.name && material(&model, "a")->kd.x == 1);
+    model_destroy(&model);
 }
 
 TEST(mtl_and_pictures_outside_the_readable_folders_are_not_there) {
@@ -210,7 +221,7 @@ TEST(mtl_materials_follow_their_mesh) {
     struct model_placing placing = {.name = "p"};
     bool fresh;
     scene_init(&scene, &assets);
-    const struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
+    struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
     CHECK(model && fresh);
     CHECK(model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error) == model && !fresh);
     struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
