@@ -164,6 +164,9 @@ void model_warn(struct model *model, const char *format, ...) {
     for (char *c = text; *c; c++) /* names from the file may contain any bytes */
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
+    for (int i = 0; i < model->warning_count; i++)
+        if (strcmp(model->warnings[i], text) == 0)
+            return;
     char *copy = arena_copy_text(&model->arena, text, strlen(text));
     if (copy)
         model->warnings[model->warning_count++] = copy;
@@ -288,6 +291,17 @@ bool model_find(struct model *model, const char *name, size_t length, const char
 const char *model_why_missing(const struct model *model) {
     return model->refused ? "lies outside the folders that scenes may read (--allow-read DIR adds one)"
                           : "is not there";
+}
+
+void model_warn_missing(struct model *model, const char *where, const char *name) {
+    char text[512];
+    if (model->options.single_file)
+        return;
+    (void)snprintf(text, sizeof text, "the picture '%.200s' %s", name, model_why_missing(model));
+    for (int i = 0; i < model->warning_count; i++)
+        if (strstr(model->warnings[i], text))
+            return;
+    model_warn(model, "%s: %s", where, text);
 }
 
 /* --- from tables to meshes --- */

@@ -52,6 +52,9 @@ struct model_material {
     struct model_texture map_gloss;
     struct vec3 gloss_colour;
 };
+#define MODEL_MAPS(m)                                                                                                  \
+    &(m)->map_kd, &(m)->map_ks, &(m)->map_ke, &(m)->map_d, &(m)->map_bump, &(m)->map_normal, &(m)->map_metal,          \
+        &(m)->map_gloss
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
@@ -176,7 +179,7 @@ static inline struct model_animation *model_animations(const struct model *model
 struct model_mesh *model_add_mesh(struct model *model, struct error *error);
 struct model_material *model_add_material(struct model *model, struct error *error); /* plain gray, nothing else */
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
-/* The last one that is kept says that there are more. */
+/* Equal warnings are kept once. The last one that is kept says that there are more. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A file that the model names. gray tries its folder with any spelling of the path, then the bare name, then the search
  * of the options. If *path is NULL, model_why_missing() returns the reason. */
@@ -210,6 +213,8 @@ void model_warn_unread(struct model *model, const char *path, const struct unrea
 
 /* The colours of the mesh multiply its materials; faces without a material get a white one. */
 bool model_show_colours(struct model *model, struct model_mesh *mesh, struct error *error);
+/* A warning, once for each name, of a picture that model_find just did not find. `where`: "FILE" or "FILE:LINE". */
+void model_warn_missing(struct model *model, const char *where, const char *name);
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);

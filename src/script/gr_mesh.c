@@ -78,8 +78,13 @@ static void read_options(const struct script_value *args, struct model_options *
     options->variant = args[MESH_VARIANT].given ? args[MESH_VARIANT].text : NULL;
 }
 
-static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
-                                         struct error *error) {
+static void warn_of_model(struct script_context *context, const struct model *model, int first) {
+    for (int i = first; i < model->warning_count; i++)
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+}
+
+static struct model *model_of_file(struct script_context *context, const struct script_value *args,
+                                   struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
@@ -94,9 +99,9 @@ static const struct model *model_of_file(struct script_context *context, const s
         return NULL;
     }
     bool fresh;
-    const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
-    for (int i = 0; model && fresh && i < model->warning_count; i++)
-        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+    struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
+    if (model && fresh)
+        warn_of_model(context, model, 0);
     return model;
 }
 
@@ -263,7 +268,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
         /* A file: its nodes, with materials for its parts. */
-        const struct model *model = model_of_file(context, args, error);
+        struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
@@ -279,8 +284,11 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
             result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
             return result->pointer != NULL;
         }
-        result->pointer =
-            model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
+        if (!model || !check_parts(model, parts, error))
+            return false;
+        int warned = model->warning_count;
+        result->pointer = model_add_nodes(&context->scene, model, &placing, error);
+        warn_of_model(context, model, warned);
         return result->pointer != NULL;
     }
     /* Tables: one node. */
