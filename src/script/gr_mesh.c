@@ -289,6 +289,34 @@ static const struct script_parameter glyphs_parameters[] = {
     [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
 };
 
+/* The bytes of letter k of a text in UTF-8. */
+static int letter_bytes(const char *at) {
+    int count = 1;
+    while ((at[count] & 0xc0) == 0x80)
+        count++;
+    return count;
+}
+
+/* One warning names the letters of a text that the font lacks. */
+static void warn_of_missing(struct script_context *context, const char *path, const char *string,
+                            const struct font_text *text) {
+    enum { NAMED = 8 };
+    char names[NAMED * 8 + 1] = "", more[32] = "";
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < text->count; string += letter_bytes(string), k++) {
+        bool is_new = text->glyphs[k].missing;
+        for (uint32_t i = 0; i < k && is_new; i++)
+            is_new = text->glyphs[i].code != text->glyphs[k].code;
+        if (is_new && ++count <= NAMED)
+            (void)snprintf(names + strlen(names), sizeof names - strlen(names), "%s\"%.*s\"", count > 1 ? ", " : "",
+                           letter_bytes(string), string);
+    }
+    if (count > NAMED)
+        (void)snprintf(more, sizeof more, " and %u others", count - NAMED);
+    if (count > 0)
+        sandbox_warn(&context->sandbox, "%s has no letter for %s%s", path, names, more);
+}
+
 static bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     char path[PATH_SIZE];
@@ -309,10 +337,8 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);
-    for (uint32_t k = 0; done && k < text->count; k++)
-        if (text->glyphs[k].missing)
-            context_warn_once(context, WARNED_OTHER, "%s has no letter U+%04X, and maybe others", path,
-                              text->glyphs[k].code);
+    if (done)
+        warn_of_missing(context, path, args[GLYPHS_TEXT].text, text);
     result->pointer = text;
     return done;
 }
