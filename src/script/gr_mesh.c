@@ -64,19 +64,43 @@ static void read_options(const struct script_value *args, struct model_options *
     options->flip = args[MESH_FLIP].boolean;
 }
 
+/* Finds the file of a mesh. Scenes of courses name it without its ending, as gr.mesh('cow', 'cow'), and the puppets
+ * of one course have the name of the mesh first: gr.mesh('sphere', 'torso'). */
+static bool find_mesh(struct script_context *context, const struct script_value *args, char path[PATH_SIZE],
+                      struct error *error) {
+    static const char *const endings[] = {".obj", ".ply", ".stl", ".glb", ".gltf"};
+    const char *name = args[MESH_FILE].text, *slash = strrchr(name, '/');
+    if (files_require(&context->sandbox, name, path, error))
+        return true;
+    if (error->kind != ERROR_SCENE || error->limit || error->refused || strchr(slash ? slash : name, '.'))
+        return false;
+    const char *bases[] = {name, args[MESH_NAME].given ? args[MESH_NAME].text : name};
+    for (size_t k = 0; k < 2 * COUNT(endings); k++) {
+        char file[PATH_SIZE];
+        struct error other;
+        const char *base = bases[k / COUNT(endings)];
+        int length = snprintf(file, sizeof file, "%s%s", base, endings[k % COUNT(endings)]);
+        if (length >= PATH_SIZE || !files_require(&context->sandbox, file, path, &other))
+            continue;
+        if (base != name)
+            sandbox_warn(&context->sandbox, "there is no mesh '%s'; '%s' is shown", name, file);
+        return true;
+    }
+    return false;
+}
+
 static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
                                          struct error *error) {
-    const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
                                     .search_context = &context->sandbox,
                                     .forgive = context->lenient != NULL};
     read_options(args, &options);
-    if (!files_require(&context->sandbox, name, path, error))
+    if (!find_mesh(context, args, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
-        error_set(error, ERROR_SCENE, "cannot find '%s'", name);
+        error_set(error, ERROR_SCENE, "cannot find '%s'", args[MESH_FILE].text);
         return NULL;
     }
     bool fresh;
@@ -347,7 +371,7 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
 
 static const struct script_function mesh_rows[] = {
     GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
-       "material verts faces", "name file", "name verts faces", "material file"),
+       "material verts faces", "name file", "name verts faces", "material file", "name verts normals faces"),
     GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
     GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),

@@ -63,6 +63,14 @@ static const struct corner corners[] = {
     {"coroutine.wrap(module)('three') assert(package.loaded.three)", NULL},
     {"assert(table.foreach({a = 1}, function() return 5 end) == 5)", NULL},
     {"assert(table.foreachi({1, 2}, function(i) if i == 2 then return 6 end end) == 6)", NULL},
+    /* scenes of courses */
+    {"gr.mesh('m', 'flag') gr.mesh('flag', 'torso') gr.joint('knee') gr.joint('hip', {-10, 0, 10})", NULL},
+    {"gr.mesh('m', 'nothing')", "cannot find 'nothing'"},
+    {"gr.mesh('m', 'flag.ply')", "cannot find 'flag.ply'"},
+    {"local up, v = {0, 0, 1}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}} gr.mesh('m', v, {up, up, up}, {{0, 1, 2}})", NULL},
+    {"gr.mesh('m', {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}}, {{0, 1, 2}})", "normals ends with number 0"},
+    {"require('readobj') local v, f = readobj('elsewhere/pole.obj') assert(#v == 3 and #f == 1)", NULL},
+    {"require('readobj') local v, f = readobj('pole.obj') assert(#v == 3 and #f == 1)", NULL},
     /* handles and other values */
     {"gr.sphere(io.stdout)", "a userdata"},
     {"gr.sphere(coroutine.create(print))", "a coroutine"},
@@ -160,6 +168,8 @@ static void put(const char *name, const char *text, size_t size) {
 static void write_files(void) {
     write_white_png("pic1.png", 8, 8);
     put("flag.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\nf 1 2 3\n", 36);
+    CHECK_EQ_INT(mkdir(test_path("meshes"), 0777), 0);
+    put("meshes/pole.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 32);
     put("bad.lua", "x = = 1", 7);
     put("thrower.lua", "local x = nil; return x.y", 25);
     put("good.lua", "return 5", 8);
