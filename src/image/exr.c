@@ -479,12 +479,12 @@ static uint64_t pixels_per_byte(exr_context_t context) {
 /* Whether the file can hold the data window, and the display window is not much larger than that. */
 static bool check_sizes(const struct picture *p, int64_t width, int64_t height, size_t size, struct error *error) {
     const int64_t small = 1 << 22; /* pixels of a display window that any file may have */
-    uint64_t most = pixels_per_byte(p->context) * size;
+    uint64_t max = pixels_per_byte(p->context) * size;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
-    if ((size_t)p->height / 256 > size / 8 || (uint64_t)p->width * (uint64_t)p->height > most)
+    if ((size_t)p->height / 256 > size / 8 || (uint64_t)p->width * (uint64_t)p->height > max)
         return error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", p->path);
     if (width < 1 || height < 1 || width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE ||
-        (width * height > small && (uint64_t)width * (uint64_t)height > most))
+        (width * height > small && (uint64_t)width * (uint64_t)height > max))
         return error_set(error, ERROR_SCENE, "%s: broken EXR: its display window is no window, or too large", p->path);
     return true;
 }

@@ -119,9 +119,9 @@ static bool gr_instances(struct script_context *context, const struct script_val
 enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN };
 static const struct script_parameter joint_parameters[] = {
     [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
-    [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
+    [JOINT_X] = {"x", KIND_TRIPLE, OPTIONAL, ANY, "degrees", "{0, 0, 0}",
                  "Smallest, initial and largest angle about x; gray draws the initial one."},
-    [JOINT_Y] = {"y", KIND_TRIPLE, 0, ANY, "degrees", NULL, "The same for y."},
+    [JOINT_Y] = {"y", KIND_TRIPLE, OPTIONAL, ANY, "degrees", "{0, 0, 0}", "The same for y."},
     [JOINT_CHILDREN] = CHILDREN,
 };
 
@@ -228,7 +228,6 @@ static bool gr_geometry(struct script_context *context, const struct script_valu
 
 /* An open surface has no inside. Open surfaces further below are found when the world is built. */
 static bool check_operand(const struct node *operand, struct error *error) {
-    struct vec3 a, b;
     if (operand->kind == NODE_CSG && operand->operation == NODE_CLIPPED)
         return error_set(error, ERROR_SCENE,
                          "'%s' is clipped, cut open without caps, so it has no inside; intersect it instead",
@@ -239,13 +238,13 @@ static bool check_operand(const struct node *operand, struct error *error) {
         const char *why = shape_why_open(&operand->shape);
         return !why || error_set(error, ERROR_SCENE, "'%s' %s", operand->name, why);
     }
-    if (!mesh_open_edge(operand->shape.mesh, &a, &b))
+    if (!mesh_is_open(operand->shape.mesh))
         return true;
     const char *file = mesh_file(operand->shape.mesh);
-    return error_set(error, ERROR_SCENE,
-                     "mesh '%s'%s%.200s is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "
-                     "{%.6g, %.6g, %.6g} is open",
-                     operand->name, file ? " of " : "", file ? file : "", a.x, a.y, a.z, b.x, b.y, b.z);
+    char edges[600];
+    mesh_describe_open_edges(operand->shape.mesh, edges, sizeof edges);
+    return error_set(error, ERROR_SCENE, "mesh '%s'%s%.200s is not closed, so it has no inside: %s", operand->name,
+                     file ? " of " : "", file ? file : "", edges);
 }
 
 /* With --lenient an operand may be a feature that does not exist yet. The result shows the other operands, unless they
@@ -382,7 +381,7 @@ static const struct script_function node_rows[] = {
     GR("instances", instances_parameters, RESULT_NODE, gr_instances,
        "A node at many positions; each position costs a tenth of the memory of a node.", "of at"),
     GR("joint", joint_parameters, RESULT_NODE, gr_joint,
-       "A node that rotates about x and y, with limits of the angles.", "name x y"),
+       "A node that rotates about x and y, with limits of the angles.", "name x? y?"),
     GR("sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere; by default of radius 1 at the origin.",
        "material", "name"),
     GR("cube", cube_parameters, RESULT_NODE, gr_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",
