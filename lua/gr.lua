@@ -1010,28 +1010,28 @@ function gr.wood_pnd_material(material, f, density, interp, mix) end
 
 ---@class gr.td_cube_material.fields
 ---@field material gr.material material (a material): The base material.
----@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image on each side of the unit cube, over another material.
 ---@param material gr.material material (a material): The base material.
----@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_cube_material.fields): gr.material
 function gr.td_cube_material(material, png) end
 
 ---@class gr.td_sphere_material.fields
 ---@field material gr.material material (a material): The base material.
----@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image around the unit sphere, over another material.
 ---@param material gr.material material (a material): The base material.
----@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_sphere_material.fields): gr.material
 function gr.td_sphere_material(material, png) end
@@ -1055,7 +1055,7 @@ function gr.difresnel_material(material) end
 function gr.difresneld_material(material) end
 
 ---@class gr.texture.fields
----@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@field file string|gr.texture file (the name of a picture file or a texture): A picture file.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1063,15 +1063,16 @@ function gr.difresneld_material(material) end
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
+---@field alpha? boolean alpha (true or false; default false): Whether the alpha of the picture is the opacity of the surface.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
----@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@param file string|gr.texture file (the name of a picture file or a texture): A picture file.
 ---@return gr.texture
 ---@overload fun(fields: gr.texture.fields): gr.texture
 function gr.texture(file) end
 
 ---@class gr.bump.fields
----@field file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@field file string|gr.texture|function file (the name of a picture file or a texture): A picture file, or any texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1083,7 +1084,7 @@ function gr.texture(file) end
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
 ---A bump map or normal map for node:set_bump.
----@param file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@param file string|gr.texture|function file (the name of a picture file or a texture): A picture file, or any texture.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.texture
 ---@overload fun(fields: gr.bump.fields): gr.texture
@@ -1091,7 +1092,7 @@ function gr.bump(file, height) end
 
 ---@class gr.image_material.fields
 ---@field material gr.material material (a material): The base material.
----@field image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field image string|gr.texture image (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1103,14 +1104,14 @@ function gr.bump(file, height) end
 
 ---An image mapped by the texture coordinates of the shape, over another material.
 ---@param material gr.material material (a material): The base material.
----@param image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param image string|gr.texture image (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.image_material.fields): gr.material
 function gr.image_material(material, image) end
 
 ---@class gr.bump_material.fields
 ---@field material gr.material material (a material): The base material.
----@field image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@field image string|gr.texture|function image (the name of a picture file or a texture): A picture file, or a result of gr.bump.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1123,7 +1124,7 @@ function gr.image_material(material, image) end
 
 ---A bump map or normal map over another material.
 ---@param material gr.material material (a material): The base material.
----@param image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@param image string|gr.texture|function image (the name of a picture file or a texture): A picture file, or a result of gr.bump.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.material
 ---@overload fun(fields: gr.bump_material.fields): gr.material
@@ -1999,12 +2000,12 @@ function node:faces() end
 function node:set_material(material) end
 
 ---Replaces kd of a shape by an image.
----@param texture string|gr.texture texture (the name of a picture file or a texture): A texture, or the name of a PNG or JPEG file.
+---@param texture string|gr.texture texture (the name of a picture file or a texture): A texture, or the name of a picture file.
 ---@return gr.node
 function node:set_texture(texture) end
 
 ---Sets the bump map of a shape.
----@param bump string|gr.texture|function bump (the name of a picture file or a texture): A result of gr.bump, or the name of a PNG or JPEG file.
+---@param bump string|gr.texture|function bump (the name of a picture file or a texture): A result of gr.bump, or the name of a picture file.
 ---@return gr.node
 function node:set_bump(bump) end
 

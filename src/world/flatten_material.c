@@ -117,7 +117,10 @@ static const struct material *covered(struct flattening *f, const struct texture
     struct material *material = derived(f, MATERIAL_IMAGE, base);
     struct texture_image mapped = *image;
     mapped.mapping = MAPPING_UV;
-    return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) ? material : NULL;
+    return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) &&
+                   material_cut_by_alpha(material, &mapped, f->arena, f->error)
+               ? material
+               : NULL;
 }
 
 /* Likewise its bump or normal map. */
