@@ -161,6 +161,9 @@ function gr.nh_box(name, corner, size) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh of polygons, flat or with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -212,6 +215,9 @@ function gr.model(file) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.mesh: every mesh is fast.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -238,6 +244,9 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -266,6 +275,9 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.vn_mesh.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.

@@ -6,8 +6,8 @@
  *
  * Any number of primitives may use one accessor, so a small file can request very large meshes. A multiple of the
  * size of the file bounds everything that is made from it. */
+#include "formats/gltf_animation_internal.h"
 #include "formats/gltf_material_internal.h"
-#include "formats/gltf_mesh_internal.h"
 #include "formats/gltf_node_internal.h"
 
 #ifndef HAVE_JANSSON
@@ -55,7 +55,8 @@ void gltf_lacks(struct gltf *g, const char *where, const char *format, ...) {
     struct gltf_lack *lacks = g->lacks.items;
     for (size_t i = 0; i < g->lacks.count; i++)
         if (strcmp(lacks[i].what, text) == 0) {
-            lacks[i].count++;
+            lacks[i].count += strcmp(lacks[i].last, where) != 0; /* some elements are read twice */
+            (void)snprintf(lacks[i].last, sizeof lacks[i].last, "%s", where);
             return;
         }
     if (g->lacks.count == MODEL_WARNINGS)
@@ -67,6 +68,7 @@ void gltf_lacks(struct gltf *g, const char *where, const char *format, ...) {
     lacks->what = what;
     lacks->count = 1;
     (void)snprintf(lacks->first, sizeof lacks->first, "%s", where);
+    (void)snprintf(lacks->last, sizeof lacks->last, "%s", where);
     g->lacks.count++;
 }
 
@@ -78,6 +80,18 @@ static void report_lacks(struct gltf *g) {
         else
             model_warn(g->model, "%s: %s and %zu more: %s", g->path, lacks[i].first, lacks[i].count - 1, lacks[i].what);
     list_destroy(&g->lacks);
+}
+
+bool gltf_choice_fails(const struct gltf *g, const char *kind, const json_t *list, const char *wanted) {
+    char names[300] = "";
+    size_t length = 0;
+    for (size_t i = 0; i < json_array_size(list) && length < sizeof names; i++) {
+        const char *name = json_string_value(json_object_get(json_array_get(list, i), "name"));
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s'%s'", i ? ", " : "", name ? name : "");
+    }
+    if (length >= sizeof names)
+        memcpy(names + sizeof names - 4, "...", 4);
+    return gltf_fail(g, kind, "the file has no '%.100s'%s%s", wanted, length ? "; it has " : "", names);
 }
 
 const char *gltf_name(const struct gltf *g, const json_t *object) {
@@ -142,45 +156,42 @@ bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, d
 
 /* --- the file --- */
 
-static bool check_extensions(const struct gltf *g) {
-    static const char *const known[] = {
-        "KHR_materials_ior",        "KHR_materials_transmission", "KHR_materials_specular",
-        "KHR_materials_volume",     "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-        "KHR_texture_transform",    "KHR_mesh_quantization",      "KHR_materials_clearcoat",
-        "KHR_materials_sheen",      "KHR_lights_punctual",        "KHR_materials_iridescence",
-        "KHR_materials_anisotropy", "KHR_materials_dispersion",
-    };
-    const json_t *required = gltf_array(g, "extensionsRequired");
-    for (size_t i = 0; i < json_array_size(required); i++) {
-        const char *name = json_string_value(json_array_get(required, i));
-        bool found = false;
-        for (size_t k = 0; name && k < sizeof known / sizeof known[0]; k++)
-            found |= strcmp(name, known[k]) == 0;
-        if (!found)
-            return gltf_fail(g, "extensionsRequired", "the file needs '%.100s', which is not supported",
-                             name ? name : "something without a name");
-    }
-    return true;
+/* Extensions that gray reads; then those whose loss only changes how a surface looks, so that a file may require them.
+ */
+static const char *const read_extensions[] = {
+    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_specular",
+    "KHR_materials_volume",    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_materials_clearcoat", "KHR_materials_sheen",        "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_variants",  "KHR_texture_transform",      "KHR_mesh_quantization",
+    "KHR_lights_punctual",     "EXT_mesh_gpu_instancing",    "EXT_texture_webp"};
+static const char *const without_effect[] = {"KHR_materials_iridescence", "KHR_materials_anisotropy",
+                                             "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"};
+
+static bool is_one_of(const char *name, const char *const *list, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, list[i]) == 0)
+            return true;
+    return false;
 }
 
-/* One warning each for extensions that would change the picture. */
-static void warn_of_extensions(const struct gltf *g) {
-    static const char *const without_effect[] = {"KHR_materials_iridescence",
-                                                 "KHR_materials_anisotropy",
-                                                 "KHR_materials_dispersion",
-                                                 "KHR_materials_pbrSpecularGlossiness",
-                                                 "KHR_materials_diffuse_transmission",
-                                                 "KHR_texture_basisu",
-                                                 "EXT_texture_webp",
-                                                 "EXT_mesh_gpu_instancing",
-                                                 "KHR_materials_variants"};
-    const json_t *used = gltf_array(g, "extensionsUsed");
+/* A required extension must be known; the others that are not read have one warning each. */
+static bool check_extensions(struct gltf *g) {
+    const size_t read = sizeof read_extensions / sizeof *read_extensions;
+    const size_t known = sizeof without_effect / sizeof *without_effect;
+    const json_t *required = gltf_array(g, "extensionsRequired"), *used = gltf_array(g, "extensionsUsed");
+    for (size_t i = 0; i < json_array_size(required); i++) {
+        const char *name = json_string_value(json_array_get(required, i));
+        if (!name || (!is_one_of(name, read_extensions, read) && !is_one_of(name, without_effect, known)))
+            return gltf_fail(g, "extensionsRequired", "the file needs '%.100s', which is not supported%s",
+                             name ? name : "something without a name",
+                             name && strstr(name, "compression") ? "; export it without compression" : "");
+    }
     for (size_t i = 0; i < json_array_size(used); i++) {
         const char *name = json_string_value(json_array_get(used, i));
-        for (size_t k = 0; name && k < sizeof without_effect / sizeof *without_effect; k++)
-            if (strcmp(name, without_effect[k]) == 0)
-                model_warn(g->model, "%s: %s is not read", g->path, name);
+        if (name && !is_one_of(name, read_extensions, read))
+            model_warn(g->model, "%s: %.100s is not read", g->path, name);
     }
+    return true;
 }
 
 static bool load(struct gltf *g) {
@@ -190,18 +201,20 @@ static bool load(struct gltf *g) {
                          version ? version : "none");
     if (!check_extensions(g))
         return false;
-    warn_of_extensions(g);
     g->buffer_count = json_array_size(gltf_array(g, "buffers"));
     g->buffers = mem_alloc_zero(g->buffer_count ? g->buffer_count : 1, sizeof *g->buffers);
     if (!g->buffers)
         return error_no_memory(g->error, g->path);
     if (!gltf_read_materials(g))
         return false;
-    const json_t *meshes = gltf_array(g, "meshes");
-    for (size_t i = 0; i < json_array_size(meshes); i++)
-        if (!gltf_read_mesh(g, i, json_array_get(meshes, i)))
-            return false;
-    return gltf_read_nodes(g) && gltf_read_animations(g);
+    if (!gltf_list_animations(g) || !gltf_read_nodes(g))
+        return false;
+    /* Without a face, the reason why the first one is missing is the error. */
+    const struct gltf_lack *lack = g->lacks.count ? g->lacks.items : NULL;
+    for (size_t i = 0; lack && i < g->model->meshes.count; i++)
+        if (model_meshes(g->model)[i].starts.count)
+            lack = NULL;
+    return !lack || gltf_fail(g, lack->first, "%s", lack->what);
 }
 
 /* Bounds the memory that jansson needs before it starts. */
@@ -309,6 +322,7 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
         image_release(g.images[i]);
     mem_free(g.buffers);
     mem_free(g.images);
+    mem_free(g.plain);
     json_decref(g.root);
     report_lacks(&g);
     return ok;

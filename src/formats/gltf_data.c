@@ -226,6 +226,25 @@ static bool sparse_part(struct gltf *g, const json_t *sparse, struct gltf_access
     return true;
 }
 
+/* The element of a root array that another one names, or NULL. */
+static const json_t *named_by(const struct gltf *g, const json_t *object, const char *key, const char *of) {
+    const json_t *index = json_object_get(object, key);
+    bool fine = json_is_integer(index) && json_integer_value(index) >= 0;
+    return fine ? json_array_get(gltf_array(g, of), (size_t)json_integer_value(index)) : NULL;
+}
+
+bool gltf_has_bytes(const struct gltf *g, uint32_t index) {
+    const json_t *accessor = json_array_get(gltf_array(g, "accessors"), index);
+    if (!json_object_get(accessor, "bufferView"))
+        return json_object_get(accessor, "sparse") != NULL;
+    const json_t *view = named_by(g, accessor, "bufferView", "bufferViews");
+    const json_t *buffer = named_by(g, view, "buffer", "buffers");
+    bool is_packed = json_object_get(json_object_get(view, "extensions"), "EXT_meshopt_compression") ||
+                     json_object_get(json_object_get(view, "extensions"), "KHR_meshopt_compression");
+    return !is_packed || json_object_get(buffer, "uri") ||
+           (g->binary && buffer == json_array_get(gltf_array(g, "buffers"), 0));
+}
+
 bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
     static const struct {
         const char *name;

@@ -11,19 +11,46 @@
 
 struct primitive {
     char where[96];
+    const json_t *source;
     uint32_t position, normal, uv, colour, indices, material;
+    uint32_t joints[2], weights[2]; /* four joints of a vertex each */
     uint64_t mode;
 };
 
 static bool read_primitive(struct gltf *g, const json_t *source, struct primitive *p) {
     const json_t *attributes = json_object_get(source, "attributes");
-    return gltf_index(g, attributes, "POSITION", "accessors", &p->position, p->where) &&
+    p->source = source;
+    if (json_object_get(attributes, "JOINTS_2"))
+        gltf_lacks(g, p->where, "only the first 8 joints of a vertex are read");
+    return gltf_index(g, attributes, "JOINTS_0", "accessors", &p->joints[0], p->where) &&
+           gltf_index(g, attributes, "JOINTS_1", "accessors", &p->joints[1], p->where) &&
+           gltf_index(g, attributes, "WEIGHTS_0", "accessors", &p->weights[0], p->where) &&
+           gltf_index(g, attributes, "WEIGHTS_1", "accessors", &p->weights[1], p->where) &&
+           gltf_index(g, attributes, "POSITION", "accessors", &p->position, p->where) &&
            gltf_index(g, attributes, "NORMAL", "accessors", &p->normal, p->where) &&
            gltf_index(g, attributes, "TEXCOORD_0", "accessors", &p->uv, p->where) &&
            gltf_index(g, attributes, "COLOR_0", "accessors", &p->colour, p->where) &&
            gltf_index(g, source, "indices", "accessors", &p->indices, p->where) &&
            gltf_index(g, source, "material", "materials", &p->material, p->where) &&
            gltf_whole(g, source, "mode", 4, &p->mode, p->where);
+}
+
+/* Leaves out attributes whose bytes only an unknown extension has. False: the primitive cannot be shown. */
+static bool keep_readable(struct gltf *g, struct primitive *p) {
+    if (json_array_size(gltf_array(g, "extensionsUsed")) == 0 && !json_object_get(p->source, "extensions"))
+        return true;
+    uint32_t *attributes[] = {&p->normal, &p->uv, &p->colour, &p->joints[0], &p->joints[1]};
+    if ((p->position != MODEL_NONE && !gltf_has_bytes(g, p->position)) ||
+        (p->indices != MODEL_NONE && !gltf_has_bytes(g, p->indices))) {
+        gltf_lacks(g, p->where, "it is left out: the file does not have its vertices in a form that gray reads");
+        return false;
+    }
+    for (size_t i = 0; i < sizeof attributes / sizeof attributes[0]; i++)
+        if (*attributes[i] != MODEL_NONE && !gltf_has_bytes(g, *attributes[i])) {
+            gltf_lacks(g, p->where, "an attribute is left out: the file does not have it in a form that gray reads");
+            *attributes[i] = MODEL_NONE;
+        }
+    return true;
 }
 
 /* The vertices that a primitive uses, as a list or as a range. */
@@ -114,13 +141,112 @@ static bool append_colours(struct gltf *g, struct list *list, const double *from
     return true;
 }
 
+/* --- deformation --- */
+
+/* Adds the weighted differences of the morph targets. */
+static bool morph(struct gltf *g, const struct primitive *p, const struct corners *corners, const char *attribute,
+                  const struct gltf_deformation *by, struct attribute *to) {
+    const json_t *targets = json_object_get(p->source, "targets");
+    for (size_t k = 0; k < by->weight_count && k < json_array_size(targets); k++) {
+        const json_t *target = json_array_get(targets, k);
+        uint32_t accessor;
+        if (json_object_get(target, "TEXCOORD_0") || json_object_get(target, "COLOR_0"))
+            gltf_lacks(g, p->where, "morphs of colours and of texture coordinates are not read");
+        if (by->weights[k] == 0)
+            continue;
+        if (!gltf_index(g, target, attribute, "accessors", &accessor, p->where))
+            return false;
+        struct attribute by_target = {0};
+        bool ok = accessor == MODEL_NONE || (gltf_produce(g, corners->vertices, p->where) &&
+                                             read_attribute(g, p, accessor, 3, corners, &by_target));
+        for (uint64_t i = 0; ok && by_target.numbers && i < corners->vertices; i++)
+            for (uint64_t c = 0; c < 3; c++)
+                to->numbers[i * (uint64_t)to->components + c] +=
+                    by->weights[k] * by_target.numbers[i * (uint64_t)by_target.components + c];
+        mem_free(by_target.numbers);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+/* The joints and weights of the vertices. */
+struct skinning {
+    struct attribute joints[2], weights[2];
+};
+
+static bool read_skinning(struct gltf *g, const struct primitive *p, const struct corners *corners,
+                          const struct gltf_deformation *by, struct skinning *out) {
+    for (int k = 0; by->joints && k < 2; k++) {
+        if (p->joints[k] == MODEL_NONE || p->weights[k] == MODEL_NONE)
+            continue;
+        if (!read_attribute(g, p, p->joints[k], 4, corners, &out->joints[k]) ||
+            !read_attribute(g, p, p->weights[k], 4, corners, &out->weights[k]))
+            return false;
+        for (uint64_t i = 0; i < 4 * corners->vertices; i++)
+            if (out->weights[k].numbers[i] != 0 && !(out->joints[k].numbers[i] < (double)by->joint_count))
+                return gltf_fail(g, p->where, "joint %.0f, but the skin has only %zu", out->joints[k].numbers[i],
+                                 by->joint_count);
+    }
+    return true;
+}
+
+static void skinning_destroy(struct skinning *skinning) {
+    for (int k = 0; k < 2; k++) {
+        mem_free(skinning->joints[k].numbers);
+        mem_free(skinning->weights[k].numbers);
+    }
+}
+
+/* The weighted mean of the maps of a vertex's joints; the first joint if it has no weight. */
+static struct affine mean_of_joints(const struct skinning *skinning, uint64_t vertex, const struct affine *joints) {
+    struct affine sum = {0};
+    double total = 0;
+    for (int k = 0; k < 2 && skinning->joints[k].numbers; k++)
+        for (uint64_t i = 4 * vertex; i < 4 * vertex + 4; i++) {
+            double weight = skinning->weights[k].numbers[i];
+            if (weight == 0)
+                continue;
+            const struct affine *joint = &joints[(size_t)skinning->joints[k].numbers[i]];
+            total += weight;
+            for (int row = 0; row < 3; row++)
+                for (int column = 0; column < 4; column++)
+                    sum.m[row][column] += weight * joint->m[row][column];
+        }
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++)
+            sum.m[row][column] /= total;
+    return total != 0 ? sum : joints[0];
+}
+
+/* Normals as the triangles around them turn: by the cofactors, which exist without an inverse, too. */
+static struct vec3 turn_normal(const struct affine *map, struct vec3 normal) {
+    const double(*m)[4] = map->m;
+    struct vec3 x = {m[0][0], m[1][0], m[2][0]}, y = {m[0][1], m[1][1], m[2][1]}, z = {m[0][2], m[1][2], m[2][2]};
+    return vec3_add_scaled(vec3_add_scaled(vec3_scale(vec3_cross(y, z), normal.x), vec3_cross(z, x), normal.y),
+                           vec3_cross(x, y), normal.z);
+}
+
+/* Positions or normals under the maps of the joints, or under the flat one. */
+static void deform(const struct corners *corners, const struct skinning *skinning, const struct gltf_deformation *by,
+                   bool is_normal, struct attribute *to) {
+    for (uint64_t i = 0; i < corners->vertices; i++) {
+        double *at = to->numbers + i * (uint64_t)to->components;
+        struct vec3 v = {at[0], at[1], at[2]};
+        struct affine map = skinning->joints[0].numbers ? mean_of_joints(skinning, i, by->joints) : *by->flat;
+        v = is_normal ? turn_normal(&map, v) : affine_point(&map, v);
+        at[0] = v.x, at[1] = v.y, at[2] = v.z;
+    }
+}
+
 /* The attributes that all primitives of a mesh must have so that its tables stay parallel. */
 struct mesh_plan {
     bool normals, uvs, colours;
 };
 
 static bool add_vertices(struct gltf *g, const struct primitive *p, const struct corners *corners,
-                         const struct mesh_plan *plan, struct model_mesh *mesh) {
+                         const struct mesh_plan *plan, const struct gltf_deformation *by, struct model_mesh *mesh) {
+    struct skinning skinning = {0};
     const struct {
         uint32_t accessor;
         int min, kept;
@@ -130,24 +256,28 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
                   {p->normal, 3, 3, &mesh->normals, false},
                   {p->uv, 2, 2, &mesh->uvs, false},
                   {p->colour, 3, 3, &mesh->colours, true}};
-    for (size_t t = 0; t < sizeof tables / sizeof tables[0]; t++) {
+    bool fine = read_skinning(g, p, corners, by, &skinning), moves = by->flat || skinning.joints[0].numbers;
+    for (size_t t = 0; fine && t < sizeof tables / sizeof tables[0]; t++) {
         struct attribute attribute = {0};
         bool given = tables[t].accessor != MODEL_NONE;
         if (!given && !(tables[t].colour && plan->colours))
             continue;
         bool ok = !given || read_attribute(g, p, tables[t].accessor, tables[t].min, corners, &attribute);
+        if (ok && t < 2)
+            ok = morph(g, p, corners, t ? "NORMAL" : "POSITION", by, &attribute);
+        if (ok && t < 2 && moves)
+            deform(corners, &skinning, by, t == 1, &attribute);
         double *numbers = attribute.numbers;
         int components = attribute.components;
         for (uint64_t i = 0; ok && t == 2 && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
-        ok = ok &&
-             (tables[t].colour ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
-                               : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
+        fine = ok &&
+               (tables[t].colour ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
+                                 : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
         mem_free(numbers);
-        if (!ok)
-            return false;
     }
-    return true;
+    skinning_destroy(&skinning);
+    return fine;
 }
 
 /* The first indices of this primitive's vertices in the tables, and its material. */
@@ -200,7 +330,7 @@ static bool add_triangles(struct gltf *g, const struct primitive *p, const struc
 }
 
 static bool add_primitive(struct gltf *g, const struct primitive *p, const struct mesh_plan *plan, uint32_t slot,
-                          struct model_mesh *mesh) {
+                          const struct gltf_deformation *by, struct model_mesh *mesh) {
     struct gltf_accessor a;
     if (p->position == MODEL_NONE)
         return gltf_fail(g, p->where, "it has no POSITION");
@@ -213,7 +343,7 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
     bool ok = read_corners(g, p, a.count, &corners);
     if (ok && mesh->vertices.count + corners.vertices > model_max(g->model))
         ok = gltf_fail(g, p->where, "too many vertices");
-    ok = ok && add_vertices(g, p, &corners, plan, mesh) && add_triangles(g, p, &corners, plan, &bases, mesh);
+    ok = ok && add_vertices(g, p, &corners, plan, by, mesh) && add_triangles(g, p, &corners, plan, &bases, mesh);
     mem_free(corners.index);
     return ok;
 }
@@ -238,7 +368,8 @@ static bool slot_of(struct gltf *g, struct model_mesh *mesh, uint32_t material, 
     return true;
 }
 
-bool gltf_read_mesh(struct gltf *g, size_t number, const json_t *source) {
+bool gltf_read_mesh(struct gltf *g, uint32_t number, const struct gltf_deformation *by) {
+    const json_t *source = json_array_get(gltf_array(g, "meshes"), number);
     const json_t *primitives = json_object_get(source, "primitives");
     const char *name = json_string_value(json_object_get(source, "name"));
     struct model_mesh *mesh = model_add_mesh(g->model, g->error);
@@ -254,21 +385,23 @@ bool gltf_read_mesh(struct gltf *g, size_t number, const json_t *source) {
     /* The first pass finds what the mesh has: its arrays are the same for all primitives. */
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < json_array_size(primitives); i++) {
-            (void)snprintf(p.where, sizeof p.where, "meshes[%zu].primitives[%zu]", number, i);
+            (void)snprintf(p.where, sizeof p.where, "meshes[%u].primitives[%zu]", number, i);
             if (!read_primitive(g, json_array_get(primitives, i), &p))
                 return false;
             if (p.mode > 6)
                 return gltf_fail(g, p.where, "the mode %llu is unknown", (unsigned long long)p.mode);
             if (p.mode < 4) {
                 if (pass == 0)
-                    model_warn(g->model, "%s: %s: points and lines are not shown", g->path, p.where);
+                    gltf_lacks(g, p.where, "points and lines are not shown");
                 continue;
             }
+            if (!keep_readable(g, &p))
+                continue;
             plan.normals |= p.normal != MODEL_NONE;
             plan.uvs |= p.uv != MODEL_NONE;
             plan.colours |= p.colour != MODEL_NONE;
             uint32_t slot;
-            if (pass == 1 && (!slot_of(g, mesh, p.material, &slot) || !add_primitive(g, &p, &plan, slot, mesh)))
+            if (pass == 1 && (!slot_of(g, mesh, p.material, &slot) || !add_primitive(g, &p, &plan, slot, by, mesh)))
                 return false;
         }
     return true;

@@ -5,7 +5,5 @@
 #include "formats/gltf_internal.h"
 
 bool gltf_read_nodes(struct gltf *g);
-/* Only their names and durations. */
-bool gltf_read_animations(struct gltf *g);
 
 #endif

@@ -493,6 +493,7 @@ static bool parse(struct model *model, const char *path, struct file_bytes file,
         file_unmap(&file);
     ok = ok && model_finish(model, error);
     model->options.search = NULL;
+    model->options.animation = model->options.variant = NULL;
     if (!ok)
         model_destroy(model);
     return ok;

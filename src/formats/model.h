@@ -101,10 +101,14 @@ typedef bool model_search(void *context, const char *folder, const char *name, c
 
 /* Zero values: as in the file. */
 struct model_options {
-    bool smooth;         /* computed normals instead of the file's */
-    double smooth_angle; /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
-    bool weld, flip;     /* one vertex for each position; faces reversed */
-    bool forgive;        /* faces with indices of nothing are left out */
+    bool smooth;           /* computed normals instead of the file's */
+    double smooth_angle;   /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
+    bool weld, flip;       /* one vertex for each position; faces reversed */
+    bool forgive;          /* faces with indices of nothing are left out */
+    bool animated;         /* the nodes are as the animation moves them at the time; else at rest */
+    double time;           /* seconds */
+    const char *animation; /* a name, or a number from 1; NULL: the first one */
+    const char *variant;   /* of the materials (KHR_materials_variants); NULL: none */
     const struct path_policy *path_policy; /* the readable folders; NULL: all */
     model_search *search;                  /* or NULL; only while the file is read */
     void *search_context;

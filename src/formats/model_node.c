@@ -23,12 +23,15 @@ static void destroy_model(void *object) {
 
 const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                                 const struct model_options *options, bool *fresh, struct error *error) {
-    char key[4096 + 80];
-    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %d %d", canonical, options->smooth, options->smooth_angle,
-                          options->weld, options->flip, options->forgive);
+    char key[4096 + 400];
+    int length =
+        snprintf(key, sizeof key, "%s|%d %.17g %d %d %d|%d %.17g %s|%s", canonical, options->smooth,
+                 options->smooth_angle, options->weld, options->flip, options->forgive, options->animated,
+                 options->time, options->animation ? options->animation : "", options->variant ? options->variant : "");
     *fresh = false;
     if ((size_t)length >= sizeof key) {
-        error_set(error, ERROR_SCENE, "%s: its path is too long", path);
+        error_set(error, ERROR_SCENE, "%s: %s is too long", path,
+                  strlen(canonical) > 4000 ? "its path" : "the name of an animation or a variant");
         return NULL;
     }
     /* The same file, read in the same way. */

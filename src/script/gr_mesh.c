@@ -29,7 +29,10 @@ enum {
     MESH_FLIP,
     MESH_CULL,
     MESH_MATERIALS,
-    MESH_FACE_MATERIALS
+    MESH_FACE_MATERIALS,
+    MESH_TIME,
+    MESH_ANIMATION,
+    MESH_VARIANT
 };
 static const struct script_parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
@@ -57,6 +60,12 @@ static const struct script_parameter mesh_parameters[] = {
                         "Materials by the names of the parts in the file; with face_materials, a list."},
     [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
                              "With faces: the index into materials of each face, from 1."},
+    [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
+                   "The moment of the file's animation (glTF)."},
+    [MESH_ANIMATION] = {"animation", KIND_TEXT, OPTIONAL, ANY, NULL, "the first one",
+                        "The name of an animation in the file, or its number from 1."},
+    [MESH_VARIANT] = {"variant", KIND_TEXT, OPTIONAL, ANY, NULL, "the file's default",
+                      "The name of a variant of the materials in the file (glTF)."},
 };
 
 static void read_options(const struct script_value *args, struct model_options *options) {
@@ -64,6 +73,10 @@ static void read_options(const struct script_value *args, struct model_options *
     options->smooth_angle = args[MESH_SMOOTH].number;
     options->weld = args[MESH_WELD].boolean;
     options->flip = args[MESH_FLIP].boolean;
+    options->animated = args[MESH_TIME].given || args[MESH_ANIMATION].given;
+    options->time = args[MESH_TIME].number;
+    options->animation = args[MESH_ANIMATION].given ? args[MESH_ANIMATION].text : NULL;
+    options->variant = args[MESH_VARIANT].given ? args[MESH_VARIANT].text : NULL;
 }
 
 static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
