@@ -143,8 +143,8 @@ bool picture_files_check_output(const struct options *options, struct error *err
     bool free_name = !options->output || strcmp(options->output, "-") == 0 || options->force;
     if (free_name || options->animation != ANIMATION_NONE || !output_name(options->output, 1, name, NAME_LIMIT) ||
         ending_of(name) != ENDING_OTHER ||
-        /* Later checks refuse it by its contents, or write to it. */
-        (is_there(name) && !begins(name, picture_file_is)))
+        /* A pipe or a device has any name. */
+        (is_there(name) && !file_is_regular(name)))
         return true;
     for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++)
         snprintf(moving + strlen(moving), sizeof moving - strlen(moving), "%s%s", moving[0] ? ", " : "", animations[i]);

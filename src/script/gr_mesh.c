@@ -272,7 +272,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
                                         .part_count = parts->count};
         if (args[MESH_FACE_MATERIALS].given)
             return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
-        if (!model && script_of(context)->is_model) /* the message is complete */
+        if (!model && context->scene.is_model) /* the message is complete */
             return error_elsewhere(error);
         if (!model && context->lenient && error->kind == ERROR_SCENE && !error->limit) {
             lenient_warn(context, "%s: a cube takes its place", error->text);

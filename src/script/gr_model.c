@@ -22,7 +22,7 @@ struct transform models_turn(const struct script_context *context) {
     const struct script *script = script_of(context);
     bool is_z = context->sandbox.options->up == MODEL_UP_Z ||
                 (context->sandbox.options->up == MODEL_UP_AUTO && model_is_stl(context->sandbox.files.path));
-    return script->is_model && is_z ? transform_rotate(0, -90) : transform_identity();
+    return script->context.scene.is_model && is_z ? transform_rotate(0, -90) : transform_identity();
 }
 
 bool models_note(struct script_context *context, struct node *node, const struct model *model, struct error *error) {
@@ -30,7 +30,7 @@ bool models_note(struct script_context *context, struct node *node, const struct
     struct script_model *entry = arena_alloc(&context->sandbox.keep, sizeof *entry);
     if (!entry)
         return error_no_memory(error, "a model");
-    if (script->is_model) {
+    if (script->context.scene.is_model) {
         struct transform turn = models_turn(context);
         node->parent_from_node = transform_compose(&turn, &node->parent_from_node);
     }

@@ -410,7 +410,7 @@ static bool render_turntable(struct script_context *context, const struct render
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
         if (context->scene.studio && !first->changed) /* the light of a studio turns with the camera */
-            studio_light(&request, script_of(context)->is_model, lights);
+            studio_light(&request, context->scene.is_model, lights);
         if (!host->render(host->context, &request, error))
             return false;
     }
@@ -425,7 +425,7 @@ static bool name_picture(struct script_context *context, struct script_value *fi
     bool numbered = script->several_pictures || number > 1;
     (void)snprintf(end, sizeof end, numbered ? "-%u.png" : ".png", (unsigned)number);
     context_picture_name(context, end, name, sizeof name);
-    if (script->is_model && (namesakes > 0 || assets_has_image(context->scene.assets, name))) {
+    if (script->context.scene.is_model && (namesakes > 0 || assets_has_image(context->scene.assets, name))) {
         (void)snprintf(end, sizeof end, namesakes > 1 ? "-render-%u.png" : "-render.png", (unsigned)namesakes);
         context_picture_name(context, end, name, sizeof name);
     }
@@ -501,15 +501,16 @@ static bool light_dark_picture(struct script_context *context, const struct scri
     struct scene *scene = &context->scene;
     bool studio = script->only_named_pictures && !args[RENDER_LIGHTS].given && !args[RENDER_AMBIENT].given &&
                   !args[RENDER_BACKGROUND].given && !args[RENDER_SKY].given;
-    if (studio && !script->is_model && !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
+    if (studio && !script->context.scene.is_model &&
+        !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
         return false;
     if (scene->studio != studio)
         scene_note_change(scene);
     scene->studio = studio;
     if (!studio)
         return true;
-    studio_light(request, script->is_model, lights);
-    if (script->studio_noticed || script->host->repeats || script->is_model)
+    studio_light(request, script->context.scene.is_model, lights);
+    if (script->studio_noticed || script->host->repeats || script->context.scene.is_model)
         return true;
     script->studio_noticed = true;
     char text[PATH_SIZE + 256];

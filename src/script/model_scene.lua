@@ -66,7 +66,7 @@ return function(gr, path, file, options)
     end
     if chosen 'exposure' then scene.exposure = nil end
 
-    if not chosen 'integrator' then
+    if not chosen 'integrator' and not chosen 'style' then
         scene.integrator = 'path'
         if not chosen 'denoise' then scene.denoise = true end
         if not chosen 'spp' and not chosen 'noise' then scene.spp = SAMPLES end

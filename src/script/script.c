@@ -146,7 +146,7 @@ static int run_scene(lua_State *L) {
     lua_settop(L, 0);
     limits_open(L);
     dialect_run(L);
-    if (script->is_model) {
+    if (script->context.scene.is_model) {
         model_scene_run(L);
     } else {
         if (files_load(L, script->context.sandbox.files.path) != LUA_OK)
@@ -180,7 +180,7 @@ static bool choose_order(struct script *script, struct error *error) {
     struct scene *scene = &script->context.scene;
     const char *path = sandbox->files.path;
     struct order_finding finding;
-    if (script->is_model) {
+    if (script->context.scene.is_model) {
         script->only_named_pictures = true;
         return true;
     }
@@ -338,11 +338,12 @@ static struct sandbox sandbox_of_script(const char *path, const struct script_op
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error) {
-    struct script script = {.host = host, .out = arena, .is_model = model_is_named(path)};
+    struct script script = {.host = host, .out = arena};
     struct sandbox *sandbox = &script.context.sandbox;
     *traceback = NULL;
     *sandbox = sandbox_of_script(path, options, host);
     scene_init(&script.context.scene, host->assets);
+    script.context.scene.is_model = model_is_named(path);
     struct path_policy path_policy = {0};
     /* The message if the message handler failed. */
     error_set(&script.failure, ERROR_SCENE, "%s: an error while an error was reported", path);

@@ -14,7 +14,6 @@ struct script {
     const char *traceback;
     struct error failure;                       /* the message of a script error, made by the message handler */
     bool only_named_pictures, several_pictures; /* struct order_finding */
-    bool is_model;                              /* the file is a model: model_scene.lua is the script */
     bool studio_noticed;
     uint32_t pictures; /* that gr.render has made */
     uint32_t unnamed;  /* pictures without a file name so far */
