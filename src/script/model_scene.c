@@ -56,31 +56,36 @@ static int fail(lua_State *L) {
     sandbox_raise_error(sandbox, &error);
 }
 
-/* Adds a line "WHAT: 'NAME', 'NAME'": the names of the items of a list, each at `offset` in `size` bytes. */
-static void add_names(luaL_Buffer *out, const char *what, const struct list *list, size_t size, size_t offset) {
-    luaL_addstring(out, what);
-    for (size_t i = 0; i < list->count; i++) {
-        const char *name;
-        memcpy(&name, (const char *)list->items + i * size + offset, sizeof name);
-        luaL_addstring(out, i > 0 ? ", '" : ": '");
-        for (; name && *name; name++)
-            luaL_addchar(out, (unsigned char)*name < ' ' || *name == 0x7f ? '?' : *name);
-        luaL_addchar(out, '\'');
-    }
-    luaL_addstring(out, list->count == 0 ? ": none\n" : "\n");
+/* Adds a name and what comes before it. */
+static void add_name(luaL_Buffer *out, const char *before, const char *name) {
+    luaL_addstring(out, before);
+    luaL_addchar(out, '\'');
+    for (; *name; name++)
+        luaL_addchar(out, (unsigned char)*name < ' ' || *name == 0x7f ? '?' : *name);
+    luaL_addchar(out, '\'');
 }
 
-/* The names in the model of a node, a line for each kind. */
+/* The names in the model of a node, a line for each kind. Materials without a name are left out: nothing can name
+ * them. */
 static int contents(lua_State *L) {
     const struct model *model = models_find(context_of(L), handle_at(L, 1)->pointer);
+    const char *before;
     luaL_Buffer out;
     luaL_buffinit(L, &out);
-#define NAMES(what, member, type)                                                                                      \
-    add_names(&out, what, &model->member, sizeof(struct type), offsetof(struct type, name))
-    NAMES("cameras", cameras, model_camera);
-    NAMES("lights", lights, model_light);
-    NAMES("materials", materials, model_material);
-    NAMES("animations", animations, model_animation);
+#define NAMES(member, all)                                                                                             \
+    before = #member ": ";                                                                                             \
+    for (size_t i = 0; i < model->member.count; i++) {                                                                 \
+        const char *name = model_##member(model)[i].name;                                                              \
+        if (!(all) && !(name && name[0]))                                                                              \
+            continue;                                                                                                  \
+        add_name(&out, before, name);                                                                                  \
+        before = ", ";                                                                                                 \
+    }                                                                                                                  \
+    luaL_addstring(&out, before[0] == ',' ? "\n" : #member ": none\n");
+    NAMES(cameras, true)
+    NAMES(lights, true)
+    NAMES(materials, false)
+    NAMES(animations, true)
 #undef NAMES
     luaL_pushresult(&out);
     return 1;
