@@ -194,12 +194,26 @@ static bool check_extensions(struct gltf *g) {
     return true;
 }
 
+/* KHR_materials_variants: the number of the one that the options name. */
+static bool choose_variant(struct gltf *g) {
+    const char *wanted = g->model->options.variant;
+    const json_t *extension = json_object_get(json_object_get(g->root, "extensions"), "KHR_materials_variants");
+    const json_t *variants = json_object_get(extension, "variants");
+    g->variant = MODEL_NONE;
+    for (size_t i = 0; wanted && i < json_array_size(variants); i++) {
+        const char *name = json_string_value(json_object_get(json_array_get(variants, i), "name"));
+        if (name && strcmp(name, wanted) == 0)
+            g->variant = (uint32_t)i;
+    }
+    return !wanted || g->variant != MODEL_NONE || gltf_choice_fails(g, "variant", variants, wanted);
+}
+
 static bool load(struct gltf *g) {
     const char *version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));
     if (!version || version[0] != '2')
         return gltf_fail(g, "asset", "glTF of version 2 is read, this file is of version '%.20s'",
                          version ? version : "none");
-    if (!check_extensions(g))
+    if (!check_extensions(g) || !choose_variant(g))
         return false;
     g->buffer_count = json_array_size(gltf_array(g, "buffers"));
     g->buffers = mem_alloc_zero(g->buffer_count ? g->buffer_count : 1, sizeof *g->buffers);

@@ -31,6 +31,7 @@ struct gltf {
     uint64_t bytes;    /* of the file and of everything it refers to */
     uint64_t produced; /* vertices and corners so far */
     struct list lacks; /* struct gltf_lack */
+    uint32_t variant;  /* of the materials, or MODEL_NONE */
     uint32_t *plain;   /* the meshes of the model as the file has them, or MODEL_NONE */
 };
 

@@ -12,10 +12,23 @@
 struct primitive {
     char where[96];
     const json_t *source;
-    uint32_t position, normal, uv, colour, indices, material;
+    uint32_t position, normal, uv, second_uv, colour, indices, material;
     uint32_t joints[2], weights[2]; /* four joints of a vertex each */
     uint64_t mode;
 };
+
+/* The material of the chosen variant, if the primitive has one of its own for it. */
+static bool read_variant(struct gltf *g, struct primitive *p) {
+    const json_t *extension = json_object_get(json_object_get(p->source, "extensions"), "KHR_materials_variants");
+    const json_t *mappings = json_object_get(extension, "mappings");
+    for (size_t i = 0; g->variant != MODEL_NONE && i < json_array_size(mappings); i++) {
+        const json_t *mapping = json_array_get(mappings, i), *variants = json_object_get(mapping, "variants");
+        for (size_t k = 0; k < json_array_size(variants); k++)
+            if (json_integer_value(json_array_get(variants, k)) == (json_int_t)g->variant)
+                return gltf_index(g, mapping, "material", "materials", &p->material, p->where);
+    }
+    return true;
+}
 
 static bool read_primitive(struct gltf *g, const json_t *source, struct primitive *p) {
     const json_t *attributes = json_object_get(source, "attributes");
@@ -29,9 +42,10 @@ static bool read_primitive(struct gltf *g, const json_t *source, struct primitiv
            gltf_index(g, attributes, "POSITION", "accessors", &p->position, p->where) &&
            gltf_index(g, attributes, "NORMAL", "accessors", &p->normal, p->where) &&
            gltf_index(g, attributes, "TEXCOORD_0", "accessors", &p->uv, p->where) &&
+           gltf_index(g, attributes, "TEXCOORD_1", "accessors", &p->second_uv, p->where) &&
            gltf_index(g, attributes, "COLOR_0", "accessors", &p->colour, p->where) &&
            gltf_index(g, source, "indices", "accessors", &p->indices, p->where) &&
-           gltf_index(g, source, "material", "materials", &p->material, p->where) &&
+           gltf_index(g, source, "material", "materials", &p->material, p->where) && read_variant(g, p) &&
            gltf_whole(g, source, "mode", 4, &p->mode, p->where);
 }
 
@@ -39,7 +53,7 @@ static bool read_primitive(struct gltf *g, const json_t *source, struct primitiv
 static bool keep_readable(struct gltf *g, struct primitive *p) {
     if (json_array_size(gltf_array(g, "extensionsUsed")) == 0 && !json_object_get(p->source, "extensions"))
         return true;
-    uint32_t *attributes[] = {&p->normal, &p->uv, &p->colour, &p->joints[0], &p->joints[1]};
+    uint32_t *attributes[] = {&p->normal, &p->uv, &p->second_uv, &p->colour, &p->joints[0], &p->joints[1]};
     if ((p->position != MODEL_NONE && !gltf_has_bytes(g, p->position)) ||
         (p->indices != MODEL_NONE && !gltf_has_bytes(g, p->indices))) {
         gltf_lacks(g, p->where, "it is left out: the file does not have its vertices in a form that gray reads");
@@ -241,39 +255,41 @@ static void deform(const struct corners *corners, const struct skinning *skinnin
 
 /* The attributes that all primitives of a mesh must have so that its tables stay parallel. */
 struct mesh_plan {
-    bool normals, uvs, colours;
+    bool normals, uvs, second_uvs, colours;
 };
 
 static bool add_vertices(struct gltf *g, const struct primitive *p, const struct corners *corners,
                          const struct mesh_plan *plan, const struct gltf_deformation *by, struct model_mesh *mesh) {
+    enum { POSITION, NORMAL, UV, SECOND_UV, COLOUR };
     struct skinning skinning = {0};
+    /* Beside others with second coordinates, the first ones are both. */
+    uint32_t second = !plan->second_uvs || p->second_uv == MODEL_NONE ? p->uv : p->second_uv;
     const struct {
         uint32_t accessor;
         int min, kept;
         struct list *list;
-        bool colour;
-    } tables[] = {{p->position, 3, 3, &mesh->vertices, false},
-                  {p->normal, 3, 3, &mesh->normals, false},
-                  {p->uv, 2, 2, &mesh->uvs, false},
-                  {p->colour, 3, 3, &mesh->colours, true}};
+    } tables[] = {[POSITION] = {p->position, 3, 3, &mesh->vertices},
+                  [NORMAL] = {p->normal, 3, 3, &mesh->normals},
+                  [UV] = {p->uv, 2, 2, &mesh->uvs},
+                  [SECOND_UV] = {plan->second_uvs ? second : MODEL_NONE, 2, 2, &mesh->second_uvs},
+                  [COLOUR] = {p->colour, 3, 3, &mesh->colours}};
     bool fine = read_skinning(g, p, corners, by, &skinning), moves = by->flat || skinning.joints[0].numbers;
     for (size_t t = 0; fine && t < sizeof tables / sizeof tables[0]; t++) {
         struct attribute attribute = {0};
         bool given = tables[t].accessor != MODEL_NONE;
-        if (!given && !(tables[t].colour && plan->colours))
+        if (!given && !(t == COLOUR && plan->colours))
             continue;
         bool ok = !given || read_attribute(g, p, tables[t].accessor, tables[t].min, corners, &attribute);
-        if (ok && t < 2)
-            ok = morph(g, p, corners, t ? "NORMAL" : "POSITION", by, &attribute);
-        if (ok && t < 2 && moves)
-            deform(corners, &skinning, by, t == 1, &attribute);
+        if (ok && t <= NORMAL)
+            ok = morph(g, p, corners, t == NORMAL ? "NORMAL" : "POSITION", by, &attribute);
+        if (ok && t <= NORMAL && moves)
+            deform(corners, &skinning, by, t == NORMAL, &attribute);
         double *numbers = attribute.numbers;
         int components = attribute.components;
-        for (uint64_t i = 0; ok && t == 2 && i < corners->vertices; i++) /* v from below */
+        for (uint64_t i = 0; ok && (t == UV || t == SECOND_UV) && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
-        fine = ok &&
-               (tables[t].colour ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
-                                 : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
+        fine = ok && (t == COLOUR ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
+                                  : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
         mem_free(numbers);
     }
     skinning_destroy(&skinning);
@@ -397,8 +413,11 @@ bool gltf_read_mesh(struct gltf *g, uint32_t number, const struct gltf_deformati
             }
             if (!keep_readable(g, &p))
                 continue;
+            if (p.uv == MODEL_NONE)
+                p.uv = p.second_uv;
             plan.normals |= p.normal != MODEL_NONE;
             plan.uvs |= p.uv != MODEL_NONE;
+            plan.second_uvs |= p.second_uv != MODEL_NONE;
             plan.colours |= p.colour != MODEL_NONE;
             uint32_t slot;
             if (pass == 1 && (!slot_of(g, mesh, p.material, &slot) || !add_primitive(g, &p, &plan, slot, by, mesh)))

@@ -18,14 +18,15 @@
 
 /* A picture that a material names. */
 struct model_texture {
-    const char *name;           /* as written in the file; NULL: none */
-    const char *path;           /* the path of the file found; NULL: embedded or missing */
-    struct image *image;        /* the bytes of an embedded picture, owned by the model */
-    double scale[2], offset[2]; /* position on the picture = scale * uv + offset; v starts at the lower edge */
-    double strength;            /* of bumps and normals */
-    double cutoff;              /* for opacities: values above 0 are all or nothing */
-    bool by_alpha;              /* the alpha channel contains it, not the colour */
-    bool without_alpha;         /* the alpha channel is ignored */
+    const char *name;                     /* as written in the file; NULL: none */
+    const char *path;                     /* the path of the file found; NULL: embedded or missing */
+    struct image *image;                  /* the bytes of an embedded picture, owned by the model */
+    double scale[2], cross[2], offset[2]; /* position = scale * uv + cross * vu + offset; v starts at the lower edge */
+    bool second;                          /* by the second texture coordinates */
+    double strength;                      /* of bumps and normals */
+    double cutoff;                        /* for opacities: values above 0 are all or nothing */
+    bool by_alpha;                        /* the alpha channel contains it, not the colour */
+    bool without_alpha;                   /* the alpha channel is ignored */
     enum image_wrap wrap_u, wrap_v;
     enum image_filter filter;
 };
@@ -45,12 +46,17 @@ struct model_material {
     bool by_vertex; /* the colours of the vertices multiply kd */
     int illum;
     struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
+    /* Of layered materials: the colour is the reflectance head on (times gloss_colour), alpha times 1 - roughness the
+     * gloss; both take the place of the numbers. */
+    struct model_texture map_gloss;
+    struct vec3 gloss_colour;
 };
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
     const char *name;
     struct list vertices, normals, uvs, colours;      /* double[3], double[3], double[2], float[3] by vertex */
+    struct list second_uvs;                           /* double[2], as many as uvs, or empty */
     struct list starts;                               /* uint32_t: faces, and after finishing the end */
     struct list vertex_index, normal_index, uv_index; /* uint32_t per corner; MODEL_NONE: this corner has none */
     struct list face_slot;                            /* uint32_t per face, or empty */

@@ -76,7 +76,9 @@ static bool find_map(struct scene *scene, const struct model_texture *map, struc
                                   .wrap_v = map->wrap_v,
                                   .apart = true,
                                   .scale = {map->scale[0], map->scale[1]},
+                                  .cross = {map->cross[0], map->cross[1]},
                                   .offset = {map->offset[0], map->offset[1]},
+                                  .second = map->second,
                                   .tint = vec3_all(1)};
     return true;
 }
@@ -191,6 +193,43 @@ static bool multiply_by_metal(struct scene *scene, const struct model_material *
            material_multiply(m, INPUT_METALNESS, blue, arena, error);
 }
 
+/* A picture of the reflectance head on makes the surface a metal of that colour where it is above that of all common
+ * dielectrics, and its alpha is the gloss. */
+static bool multiply_by_gloss(struct scene *scene, const struct model_material *from, struct openpbr *layers,
+                              struct material *m, struct error *error) {
+    static const double metal_from = 0.3;
+    struct texture_image image, diffuse;
+    bool there, coloured;
+    if (!find_map(scene, &from->map_gloss, &image, &there, error) || !there)
+        return !there && multiply_by_colours(scene, from, m, error);
+    if (!find_map(scene, &from->map_kd, &diffuse, &coloured, error))
+        return false;
+    struct arena *arena = &scene->arena;
+    const struct texture *white = texture_keep(arena, texture_number(1), error), *parts[6];
+    if (!white)
+        return false;
+    image.alpha = ALPHA_STRAIGHT;
+    image.tint = from->gloss_colour;
+    diffuse.alpha = ALPHA_IGNORED;
+    diffuse.tint = from->kd;
+    struct texture below = coloured ? texture_image(&diffuse, white) : texture_constant(from->kd);
+    bool ok = (parts[0] = texture_keep(arena, texture_image(&image, white), error)) &&
+              (parts[1] = texture_keep(arena, texture_map(parts[0], FUNCTION_STEP, metal_from), error)) &&
+              (parts[2] = texture_keep(arena, below, error)) &&
+              (parts[3] = texture_keep(arena, texture_mix(parts[0], parts[2], parts[1]), error));
+    image.alpha = ALPHA_ONLY;
+    ok = ok && (parts[4] = texture_keep(arena, texture_image(&image, white), error)) &&
+         (parts[5] = texture_keep(arena, texture_number(1 - from->roughness), error)) &&
+         (parts[4] = texture_keep(arena, texture_multiply(parts[4], parts[5]), error)) &&
+         (parts[5] = texture_keep(arena, texture_map(parts[4], FUNCTION_COMPLEMENT, 0), error));
+    m->phong.kd = m->phong.ks = vec3_all(1);
+    m->phong.roughness = m->phong.reflect = layers->base_metalness = 1;
+    layers->specular_ior = 1.5;
+    return ok && material_multiply(m, INPUT_KD, parts[3], arena, error) &&
+           material_multiply(m, INPUT_METALNESS, parts[1], arena, error) &&
+           material_multiply(m, INPUT_ROUGHNESS, parts[5], arena, error);
+}
+
 /* Opacity below 1 is that of a surface with holes. */
 static bool multiply_by_opacity(struct scene *scene, const struct model_material *from, struct material *m,
                                 struct error *error) {
@@ -221,7 +260,7 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.absorption = from->absorption;
     m->phong.two_sided = from->two_sided || from->transmission > 0;
     m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
-    bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_colours(scene, from, m, error) &&
+    bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_gloss(scene, from, layers, m, error) &&
               multiply_by_metal(scene, from, m, error) && multiply_by_opacity(scene, from, m, error);
     return ok ? with_maps(scene, from, m, error) : NULL;
 }

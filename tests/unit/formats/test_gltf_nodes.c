@@ -271,6 +271,56 @@ TEST(gltf_animations_move_nodes_and_weights_at_a_time) {
     bytes_free(&b);
 }
 
+TEST(a_variant_of_gltf_materials_is_chosen_by_its_name) {
+    static const char rest[] =
+        "\"accessors\":[" POSITIONS "],\"extensions\":{\"KHR_materials_variants\":{\"variants\":["
+        "{\"name\":\"day\"},{\"name\":\"night\"}]}},\"extensionsUsed\":[\"KHR_materials_variants\"],"
+        "\"materials\":[{\"name\":\"white\"},{\"name\":\"black\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0,\"extensions\":{"
+        "\"KHR_materials_variants\":{\"mappings\":[{\"material\":1,\"variants\":[1]}]}}}]}]";
+    static const char *const cases[][2] = {{NULL, "white"}, {"day", "white"}, {"night", "black"}};
+    struct bytes b = {0};
+    struct model model;
+    struct error error = {0};
+    add_triangle(&b);
+    for (size_t i = 0; i < 3; i++) {
+        struct model_options options = {.variant = cases[i][0]};
+        CHECK(parse_with(&model, &b, rest, &options, &error));
+        CHECK_TEXT(((const char **)model_meshes(&model)->slot_names.items)[0], cases[i][1]);
+        CHECK_EQ_INT(model.warning_count, 0);
+        model_destroy(&model);
+    }
+    struct model_options options = {.variant = "dusk"};
+    CHECK(!parse_with(&model, &b, rest, &options, &error));
+    CHECK_TEXT(error.text, "t.gltf: variant: the file has no 'dusk'; it has 'day', 'night'");
+    bytes_free(&b);
+}
+
+TEST(gltf_meshes_have_second_texture_coordinates) {
+    static const double uvs[] = {0, 0, 0, 0, 0, 0, 0.25, 0.5, 1.25, 0.5, 0.25, 0.5};
+    struct bytes b = {0};
+    struct model model;
+    struct error error = {0};
+    struct surface surface;
+    struct ray ray = {.origin = {0.25, 0.25, 1}, .direction = {0, 0, -1}, .t_max = INFINITY};
+    add_triangle(&b);
+    add_floats(&b, uvs, 12);
+    CHECK(parse_with(
+        &model, &b,
+        "\"accessors\":[" POSITIONS "," ACCESSOR(36, 5126, 3, "VEC2") "," ACCESSOR(
+            60, 5126, 3, "VEC2") "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1,"
+                                 "\"TEXCOORD_1\":2}}]}]",
+        NULL, &error));
+    CHECK_TEXT(error.text, "");
+    mesh_describe(model_meshes(&model)->mesh, &ray, &(struct crossing){.u = 0.5, .v = 0.25}, &surface);
+    CHECK(surface.has_uv && surface.has_second);
+    CHECK_NEAR(surface.u, 0, 0);
+    CHECK_NEAR(surface.second.u, 0.75, 1e-12);
+    CHECK_NEAR(surface.second.v, 0.5, 1e-12);
+    model_destroy(&model);
+    bytes_free(&b);
+}
+
 TEST(an_animation_that_a_file_does_not_have_is_an_error_that_names_what_it_has) {
     struct model_options options = {.animated = true, .animation = "run"};
     struct bytes b = {0};

@@ -39,7 +39,9 @@ static struct hit middle(void) {
                         .normal_geometric = {0, 0, 1},
                         .raise = {0, 0, 1},
                         .dpdu = {1, 0, 0},
-                        .dpdv = {0, 1, 0}};
+                        .dpdv = {0, 1, 0},
+                        .has_second = true,
+                        .second = {3.5 / 16, 0.25, {1, 0, 0}, {0, 1, 0}}};
 }
 
 /* inputs, bsdf: what a hit in the middle has. */
@@ -185,6 +187,48 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
         CHECK_NEAR(inputs.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
         CHECK_NEAR(inputs.kd.x, 0.2, 1e-12);
         CHECK_NEAR(inputs.kd.y, 0.5 * 0.4, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
+    }
+}
+
+TEST(gltf_pictures_by_second_or_turned_coordinates_are_looked_up_there) {
+    struct error error = {0};
+    CHECK(png_write_from(FILE_AT(in_folder("tilt.png")),
+                         &(struct png_source){.width = 16, .height = 16, .bytes = ramp_row}, NULL, &error));
+    write_even("colour 1.png", 51, 102, 255);
+    write_two_materials(
+        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,\"texCoord\":1}},"
+        "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":1,\"extensions\":{\"KHR_texture_transform\":{"
+        "\"scale\":[0.5,1]}}}},{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,"
+        "\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}");
+    struct surface_inputs inputs = {0};
+    if (inputs_of_file("m.gltf", "a", &inputs)) {
+        CHECK_NEAR(inputs.kd.x, 30.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.emission.x, 35.0 / 255, 1e-12);
+    }
+    if (inputs_of_file("m.gltf", "b", &inputs)) /* u is v, which counts from the upper edge */
+        CHECK_NEAR(inputs.kd.x, 115.0 / 255, 1e-12);
+}
+
+TEST(gltf_materials_of_specular_colour_and_gloss_are_layers) {
+    write_even("colour 1.png", 128, 102, 204);
+    write_even("tilt.png", 26, 13, 13);
+    write_two_materials(
+        "{\"name\":\"a\",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,1,1,1],"
+        "\"specularFactor\":[0.25,0.125,0.25],\"glossinessFactor\":0.75,\"diffuseTexture\":{\"index\":0}}}},"
+        "{\"name\":\"b\",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"glossinessFactor\":0.75,"
+        "\"diffuseTexture\":{\"index\":1},\"specularGlossinessTexture\":{\"index\":0}}}}");
+    struct surface_inputs inputs = {0};
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
+        CHECK_NEAR(inputs.kd.x, 0.5 * 128 / 255, 1e-12);
+        CHECK_NEAR(inputs.ks.y, 0.5, 1e-12);
+        CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 0, 0);
+    }
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) { /* as bright as a metal */
+        CHECK_NEAR(inputs.kd.z, 204.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
         CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
     }
 }
