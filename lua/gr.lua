@@ -192,6 +192,9 @@ function gr.mesh(material, verts, faces) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.mesh of a file: its node, which also has its cameras and lights.
 ---@param file string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.

@@ -169,7 +169,7 @@ static bool is_settled(const struct script *script, const struct script_model *e
 
 void models_report_unused(const struct script *script) {
     char text[PATH_SIZE + 256], cameras[48] = "", lights[48] = "";
-    if (script->host->repeats)
+    if (script->host->repeats || script->context.scene.is_model)
         return;
     for (const struct script_model *entry = script->models; entry; entry = entry->next) {
         size_t seen = entry->model->cameras.count, lit = entry->model->lights.count;

@@ -25,6 +25,11 @@ static int chosen(lua_State *L) {
     return 0;
 }
 
+static int is_animated(lua_State *L) {
+    lua_pushboolean(L, models_find(context_of(L), handle_at(L, 1)->pointer)->animations.count > 0);
+    return 1;
+}
+
 /* The kd of the ground, from the direction of view. */
 static int ground(lua_State *L) {
     const struct script *script = script_of(context_of(L));
@@ -95,6 +100,7 @@ void model_scene_run(lua_State *L) {
     static const luaL_Reg helpers[] = {{"chosen", chosen},
                                        {"ground", ground},
                                        {"fail", fail},
+                                       {"is_animated", is_animated},
                                        {"contents", contents},
                                        {"light_in_middle", light_in_middle},
                                        {NULL, NULL}};
@@ -105,12 +111,14 @@ void model_scene_run(lua_State *L) {
     lua_getglobal(L, "gr");
     lua_pushstring(L, path);
     lua_pushstring(L, slash ? slash + 1 : path);
-    lua_createtable(L, 0, 3);
+    lua_createtable(L, 0, 4);
     lua_pushstring(L, options->camera);
     lua_setfield(L, -2, "camera");
     lua_pushboolean(L, options->sky != NULL);
     lua_setfield(L, -2, "sky");
     lua_pushboolean(L, script->host->checks);
     lua_setfield(L, -2, "checks");
+    lua_pushboolean(L, script->host->frame.number > 0);
+    lua_setfield(L, -2, "moves");
     lua_call(L, 4, 0);
 }

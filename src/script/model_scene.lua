@@ -39,6 +39,7 @@ end
 
 return function(gr, path, file, options)
     local model = gr.model{file = file}
+    if options.moves and is_animated(model) then model = gr.model{file = file, time = gr.time} end
     local found, low, high = pcall(model.bounds, model)
     if not found then fail(path .. ': no face of this file has an area') end
     local radius = size_of(low, high)
