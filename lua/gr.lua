@@ -77,14 +77,14 @@ function gr.instances(of, at) end
 
 ---@class gr.joint.fields
 ---@field name? string name (a string; default 'joint'): Name of the node, for messages.
----@field x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@field y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@field x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@field y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@field children? gr.node[] children (a table of nodes; default {}): Child nodes.
 
 ---A node that rotates about x and y, with limits of the angles.
 ---@param name string name (a string; default 'joint'): Name of the node, for messages.
----@param x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@param y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@param x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@param y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@return gr.node
 ---@overload fun(fields: gr.joint.fields): gr.node
 function gr.joint(name, x, y) end
@@ -173,6 +173,7 @@ function gr.nh_box(name, corner, size) end
 ---@overload fun(name: string, file: string): gr.node
 ---@overload fun(name: string, verts: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(material: gr.material, file: string): gr.node
+---@overload fun(name: string, verts: gr.triple[], normals: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(fields: gr.mesh.fields): gr.node
 function gr.mesh(material, verts, faces) end
 
