@@ -108,7 +108,9 @@ void model_scene_run(lua_State *L) {
     const struct script_options *options = script->context.sandbox.options;
     const char *path = script->context.sandbox.files.path, *slash = strrchr(path, '/');
     embedded_run(L, model_scene_lua, helpers);
-    lua_getglobal(L, "gr");
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE); /* -D may have replaced the global */
+    lua_getfield(L, -1, "gr");
+    lua_remove(L, -2);
     lua_pushstring(L, path);
     lua_pushstring(L, slash ? slash + 1 : path);
     lua_createtable(L, 0, 4);
