@@ -7,7 +7,9 @@
 #include "formats/font.h"
 #include "formats/model_node.h"
 #include "mesh/mesh_smooth.h"
+#include "script/gr_model_internal.h"
 #include "script/rows_internal.h"
+#include "script/script_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -302,6 +304,8 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
                                         .part_count = parts->count};
         if (args[MESH_FACE_MATERIALS].given)
             return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
+        if (!model && context->scene.is_model) /* the message is complete */
+            return error_elsewhere(error);
         if (!model && context->lenient && error->kind == ERROR_SCENE && !error->limit) {
             lenient_warn(context, "%s: a cube takes its place", error->text);
             *error = (struct error){0};
@@ -313,7 +317,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
         int warned = model->warning_count;
         result->pointer = model_add_nodes(&context->scene, model, &placing, error);
         warn_of_model(context, model, warned);
-        return result->pointer != NULL;
+        return result->pointer && models_note(context, result->pointer, model, error);
     }
     /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
@@ -397,6 +401,8 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
 static const struct script_function mesh_rows[] = {
     GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
        "material verts faces", "name file", "name verts faces", "material file", "name verts normals faces"),
+    GR("model", mesh_parameters, RESULT_NODE, gr_mesh,
+       "The same as gr.mesh of a file: its node, which also has its cameras and lights.", "file"),
     GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
     GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),
