@@ -77,14 +77,14 @@ function gr.instances(of, at) end
 
 ---@class gr.joint.fields
 ---@field name? string name (a string; default 'joint'): Name of the node, for messages.
----@field x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@field y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@field x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@field y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@field children? gr.node[] children (a table of nodes; default {}): Child nodes.
 
 ---A node that rotates about x and y, with limits of the angles.
 ---@param name string name (a string; default 'joint'): Name of the node, for messages.
----@param x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@param y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@param x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@param y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@return gr.node
 ---@overload fun(fields: gr.joint.fields): gr.node
 function gr.joint(name, x, y) end
@@ -161,6 +161,9 @@ function gr.nh_box(name, corner, size) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh of polygons, flat or with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -170,6 +173,7 @@ function gr.nh_box(name, corner, size) end
 ---@overload fun(name: string, file: string): gr.node
 ---@overload fun(name: string, verts: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(material: gr.material, file: string): gr.node
+---@overload fun(name: string, verts: gr.triple[], normals: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(fields: gr.mesh.fields): gr.node
 function gr.mesh(material, verts, faces) end
 
@@ -189,6 +193,9 @@ function gr.mesh(material, verts, faces) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.mesh: every mesh is fast.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -215,6 +222,9 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -243,6 +253,9 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.vn_mesh.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.

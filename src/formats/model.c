@@ -133,7 +133,8 @@ struct model_material *model_add_material(struct model *model, struct error *err
                                         .map_d = none,
                                         .map_bump = none,
                                         .map_normal = none,
-                                        .map_metal = none};
+                                        .map_metal = none,
+                                        .map_gloss = none};
     model->materials.count++;
     return material;
 }
@@ -163,6 +164,9 @@ void model_warn(struct model *model, const char *format, ...) {
     for (char *c = text; *c; c++) /* names from the file may contain any bytes */
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
+    for (int i = 0; i < model->warning_count; i++)
+        if (strcmp(model->warnings[i], text) == 0)
+            return;
     char *copy = arena_copy_text(&model->arena, text, strlen(text));
     if (copy)
         model->warnings[model->warning_count++] = copy;
@@ -289,11 +293,22 @@ const char *model_why_missing(const struct model *model) {
                           : "is not there";
 }
 
+void model_warn_missing(struct model *model, const char *where, const char *name) {
+    char text[512];
+    if (model->options.single_file)
+        return;
+    (void)snprintf(text, sizeof text, "the picture '%.200s' %s", name, model_why_missing(model));
+    for (int i = 0; i < model->warning_count; i++)
+        if (strstr(model->warnings[i], text))
+            return;
+    model_warn(model, "%s: %s", where, text);
+}
+
 /* --- from tables to meshes --- */
 
 static void tables_destroy(struct model_mesh *m) {
-    struct list *lists[] = {&m->vertices,     &m->normals,      &m->uvs,      &m->colours,  &m->starts,
-                            &m->vertex_index, &m->normal_index, &m->uv_index, &m->face_slot};
+    struct list *lists[] = {&m->vertices, &m->normals,      &m->uvs,          &m->second_uvs, &m->colours,
+                            &m->starts,   &m->vertex_index, &m->normal_index, &m->uv_index,   &m->face_slot};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
         list_destroy(lists[i]);
 }
@@ -316,6 +331,7 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
     if (m->uvs.count && (m->uvs_by_vertex || m->uv_index.count)) {
         input.uv_count = (uint32_t)m->uvs.count;
         input.uvs = m->uvs.items;
+        input.second_uvs = m->second_uvs.count ? m->second_uvs.items : NULL;
         input.uv_index = m->uvs_by_vertex ? m->vertex_index.items : m->uv_index.items;
     }
     if (m->face_slot.count && m->slots.count > 1)
@@ -370,7 +386,10 @@ static bool check_tables(const struct model *model, const struct model_mesh *m, 
         const char *what;
         const struct list *rows;
         size_t width;
-    } tables[] = {{"vertex", &m->vertices, 3}, {"normal", &m->normals, 3}, {"texture coordinate", &m->uvs, 2}};
+    } tables[] = {{"vertex", &m->vertices, 3},
+                  {"normal", &m->normals, 3},
+                  {"texture coordinate", &m->uvs, 2},
+                  {"second texture coordinate", &m->second_uvs, 2}};
     for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
         size_t row = row_beyond(tables[i].rows, tables[i].width);
         if (row != SIZE_MAX)
@@ -382,7 +401,8 @@ static bool check_tables(const struct model *model, const struct model_mesh *m, 
 
 static bool texture_in_range(const struct model_texture *map) {
     return number_in_range(map->scale[0]) && number_in_range(map->scale[1]) && number_in_range(map->offset[0]) &&
-           number_in_range(map->offset[1]) && number_in_range(map->strength);
+           number_in_range(map->offset[1]) && number_in_range(map->cross[0]) && number_in_range(map->cross[1]) &&
+           number_in_range(map->strength);
 }
 
 static bool material_in_range(const struct model_material *m) {
@@ -391,7 +411,8 @@ static bool material_in_range(const struct model_material *m) {
            vec3_within(m->absorption, NUMBER_LIMIT) && number_in_range(m->layers.specular_ior) &&
            number_in_range(m->ior) && texture_in_range(&m->map_kd) && texture_in_range(&m->map_ks) &&
            texture_in_range(&m->map_ke) && texture_in_range(&m->map_d) && texture_in_range(&m->map_bump) &&
-           texture_in_range(&m->map_normal) && texture_in_range(&m->map_metal);
+           texture_in_range(&m->map_normal) && texture_in_range(&m->map_metal) && texture_in_range(&m->map_gloss) &&
+           vec3_within(m->gloss_colour, NUMBER_LIMIT);
 }
 
 static bool node_in_range(const struct model_node *node) {
@@ -591,6 +612,7 @@ static bool parse(struct model *model, const char *path, struct file_bytes file,
         file_unmap(&file);
     ok = ok && model_finish(model, error);
     model->options.search = NULL;
+    model->options.animation = model->options.variant = NULL;
     if (!ok)
         model_destroy(model);
     return ok;
@@ -620,8 +642,8 @@ void model_destroy(struct model *model) {
     }
     for (size_t i = 0; i < model->materials.count; i++) {
         struct model_material *m = &model_materials(model)[i];
-        struct model_texture *maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,   &m->map_d,
-                                        &m->map_bump, &m->map_normal, &m->map_metal};
+        struct model_texture *maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,    &m->map_d,
+                                        &m->map_bump, &m->map_normal, &m->map_metal, &m->map_gloss};
         for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
             if (maps[k]->image)
                 image_release(maps[k]->image);
@@ -629,6 +651,9 @@ void model_destroy(struct model *model) {
     list_destroy(&model->meshes);
     list_destroy(&model->materials);
     list_destroy(&model->nodes);
+    list_destroy(&model->cameras);
+    list_destroy(&model->lights);
+    list_destroy(&model->animations);
     arena_destroy(&model->arena);
     *model = (struct model){0};
 }

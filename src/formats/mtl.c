@@ -172,9 +172,11 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     if (!model_find(l->model, name, length, &map->path, l->error))
         return false;
-    if (!map->path && !l->model->options.single_file)
-        model_warn(l->model, "%s:%zu: the picture '%.200s' %s", l->path, l->line, map->name,
-                   model_why_missing(l->model));
+    const char *where = map->path ? "" : arena_format(&l->model->arena, "%s:%zu", l->path, l->line);
+    if (!where)
+        return error_no_memory(l->error, l->path);
+    if (!map->path)
+        model_warn_missing(l->model, where, map->name);
     return true;
 }
 

@@ -31,6 +31,7 @@ void mesh_release(struct mesh *mesh) {
     mem_free(mesh->normals);
     mem_free(mesh->normal_corners);
     mem_free(mesh->uvs);
+    mem_free(mesh->second_uvs);
     mem_free(mesh->uv_corners);
     mem_free(mesh->colours);
     mem_free(mesh->materials);
@@ -150,6 +151,8 @@ size_t mesh_memory(const struct mesh *mesh) {
         bytes += mesh->normal_count * sizeof *mesh->normals + triangles * sizeof *mesh->normal_corners;
     if (mesh->uvs)
         bytes += mesh->uv_count * sizeof *mesh->uvs + triangles * sizeof *mesh->uv_corners;
+    if (mesh->second_uvs)
+        bytes += mesh->uv_count * sizeof *mesh->second_uvs;
     if (mesh->colours)
         bytes += (mesh->colours_by_triangle ? mesh->triangle_count : mesh->vertex_count) * sizeof *mesh->colours;
     if (mesh->materials)
@@ -346,12 +349,10 @@ static double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-/* at: the barycentric coordinates; e1, e2: the edges from the first corner. */
-static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
-                        struct surface *out) {
-    const uint32_t *corner = mesh->uv_corners[triangle];
-    const double *a = mesh->uvs[corner[0]], *b = mesh->uvs[corner[1]], *c = mesh->uvs[corner[2]];
-    out->has_uv = true;
+/* uvs: those of the corners; at: the barycentric coordinates; e1, e2: the edges from the first corner. */
+static void describe_uv(const double (*uvs)[2], const uint32_t corner[3], struct vec3 at, struct vec3 e1,
+                        struct vec3 e2, struct second_uv *out) {
+    const double *a = uvs[corner[0]], *b = uvs[corner[1]], *c = uvs[corner[2]];
     out->u = at.x * a[0] + at.y * b[0] + at.z * c[0];
     out->v = at.x * a[1] + at.y * b[1] + at.z * c[1];
     double du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
@@ -360,6 +361,23 @@ static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 
         return;
     out->dpdu = vec3_scale(vec3_sub(vec3_scale(e1, dv2), vec3_scale(e2, dv1)), 1 / area);
     out->dpdv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / area);
+}
+
+static void describe_all_uvs(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
+                             struct surface *out) {
+    const uint32_t *corner = mesh->uv_corners[triangle];
+    struct second_uv first = {0};
+    describe_uv((const double(*)[2])mesh->uvs, corner, at, e1, e2, &first);
+    out->has_uv = true;
+    out->u = first.u;
+    out->v = first.v;
+    out->dpdu = first.dpdu;
+    out->dpdv = first.dpdv;
+    out->has_second = mesh->second_uvs != NULL;
+    if (!out->has_second)
+        return;
+    out->second = (struct second_uv){0};
+    describe_uv((const double(*)[2])mesh->second_uvs, corner, at, e1, e2, &out->second);
 }
 
 bool mesh_is_plain(const struct mesh *mesh, uint32_t triangle) {
@@ -390,7 +408,7 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
             out->shading_normal = mixed;
     }
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
-        describe_uv(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
+        describe_all_uvs(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {
         bool whole = mesh->colours_by_triangle;
         const float *p = mesh->colours[whole ? triangle : corner[0]], *q = mesh->colours[whole ? triangle : corner[1]],
@@ -433,6 +451,8 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
         h = hash_bytes(input->uvs, input->uv_count * sizeof *input->uvs, h);
         h = hash_bytes(input->uv_index, corners * sizeof *input->uv_index, h);
     }
+    if (input->second_uvs)
+        h = hash_bytes(input->second_uvs, input->uv_count * sizeof *input->second_uvs, h);
     if (input->face_material)
         h = hash_bytes(input->face_material, input->face_count * sizeof *input->face_material, h);
     if (input->colours)
@@ -517,6 +537,13 @@ static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_
         mesh->uv_count = input->uv_count;
         if (input->uv_count)
             memcpy(mesh->uvs, input->uvs, input->uv_count * sizeof *mesh->uvs);
+        if (input->second_uvs) {
+            mesh->second_uvs = mem_alloc(input->uv_count * sizeof *mesh->second_uvs);
+            if (!mesh->second_uvs)
+                return false;
+            if (input->uv_count)
+                memcpy(mesh->second_uvs, input->second_uvs, input->uv_count * sizeof *mesh->second_uvs);
+        }
     }
     if (input->colours) {
         mesh->colours_by_triangle = input->colours_by_face;

@@ -37,6 +37,7 @@ struct mesh_input {
     const uint32_t *normal_index;
     uint32_t uv_count;
     const double (*uvs)[2];
+    const double (*second_uvs)[2]; /* as many, with the same indices, or NULL */
     const uint32_t *uv_index;
     const uint32_t *face_material; /* material slot per face, or NULL */
     const float (*colours)[3];     /* of the vertices, or NULL */

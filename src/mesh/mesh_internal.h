@@ -20,7 +20,8 @@ struct mesh {
     uint32_t (*corners)[3];
     double (*normals)[3]; /* unit length; NULL when the input has none */
     uint32_t (*normal_corners)[3];
-    double (*uvs)[2]; /* NULL when the input has none */
+    double (*uvs)[2];        /* NULL when the input has none */
+    double (*second_uvs)[2]; /* the same */
     uint32_t (*uv_corners)[3];
     float (*colours)[3]; /* of the vertices, or NULL */
     bool colours_by_triangle;

@@ -36,10 +36,12 @@ static int position_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;
     lua_Debug frame;
+    /* The coroutine is an optional first argument. */
     if (lua_isthread(L, 1)) {
         from = lua_tothread(L, 1);
         at = 2;
     }
+    /* A function, or a level of the stack. */
     if (lua_isfunction(L, at)) {
         lua_pushvalue(L, at);
         lua_xmove(L, from, 1);
@@ -52,6 +54,7 @@ static int position_info(lua_State *L) {
         }
         lua_getinfo(from, "Sl", &frame);
     }
+    /* The position only. */
     lua_createtable(L, 0, 3);
     lua_pushlstring(L, frame.source, frame.srclen);
     lua_setfield(L, -2, "source");
@@ -81,6 +84,21 @@ static int collect_garbage(lua_State *L) {
     lua_insert(L, 1);
     lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
     return lua_gettop(L);
+}
+
+/* Lua's warn(text, ...), with the line of the scene. Control messages ("@on") have no effect. */
+static int warn(lua_State *L) {
+    for (int k = 1; k == 1 || k <= lua_gettop(L); k++)
+        (void)luaL_checkstring(L, k);
+    lua_concat(L, lua_gettop(L));
+    if (*lua_tostring(L, 1) == '@')
+        return 0;
+    struct sandbox *sandbox = sandbox_of(L);
+    const struct running_function outer = sandbox->running; /* it does not warn */
+    sandbox->running = (struct running_function){0};
+    sandbox_warn(sandbox, "%s", lua_tostring(L, 1));
+    sandbox->running = outer;
+    return 0;
 }
 
 struct allowed {
@@ -162,6 +180,7 @@ void libraries_open(lua_State *L) {
     }
     embedded_open(L);
     set_function(L, "os", "exit", end_script);
+    set_function(L, LUA_GNAME, "warn", warn);
     if (sandbox_of(L)->options->no_sandbox)
         return;
     for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)

@@ -300,6 +300,7 @@ static void annotate_function(struct document *document, const struct script_fun
     int index;
     char names[DOCUMENT_LINE] = "";
     document_add(document, "---%s\n", function->help);
+    /* The parameters of the first form. */
     while (form_next(function, &form, &index, &optional)) {
         char type[CHOICES_SIZE], line[DOCUMENT_LINE];
         const struct script_parameter *p = &function->parameters[index];
@@ -320,6 +321,7 @@ static void annotate_function(struct document *document, const struct script_fun
                      function->owner == OWNER_NODE ? "node." : "", function->name);
         (void)snprintf(names + used, sizeof names - used, ", fields");
     }
+    /* Its result, the other forms, and the form with named fields. */
     if (result)
         annotate_results(document, result);
     for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++)
@@ -331,6 +333,7 @@ static void annotate_function(struct document *document, const struct script_fun
         add_result(document, function);
         document_add(document, "\n");
     }
+    /* The function itself. */
     document_add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name,
                  names);
 }

@@ -27,7 +27,10 @@ enum {
     MESH_FLIP,
     MESH_CULL,
     MESH_MATERIALS,
-    MESH_FACE_MATERIALS
+    MESH_FACE_MATERIALS,
+    MESH_TIME,
+    MESH_ANIMATION,
+    MESH_VARIANT
 };
 static const struct script_parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
@@ -55,6 +58,12 @@ static const struct script_parameter mesh_parameters[] = {
                         "Materials by the names of the parts in the file; with face_materials, a list."},
     [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
                              "With faces: the index into materials of each face, from 1."},
+    [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
+                   "The moment of the file's animation (glTF)."},
+    [MESH_ANIMATION] = {"animation", KIND_TEXT, OPTIONAL, ANY, NULL, "the first one",
+                        "The name of an animation in the file, or its number from 1."},
+    [MESH_VARIANT] = {"variant", KIND_TEXT, OPTIONAL, ANY, NULL, "the file's default",
+                      "The name of a variant of the materials in the file (glTF)."},
 };
 
 static void read_options(const struct script_value *args, struct model_options *options) {
@@ -63,27 +72,60 @@ static void read_options(const struct script_value *args, struct model_options *
     options->weld = args[MESH_WELD].boolean;
     options->weld_distance = args[MESH_WELD].number;
     options->flip = args[MESH_FLIP].boolean;
+    options->animated = args[MESH_TIME].given || args[MESH_ANIMATION].given;
+    options->time = args[MESH_TIME].number;
+    options->animation = args[MESH_ANIMATION].given ? args[MESH_ANIMATION].text : NULL;
+    options->variant = args[MESH_VARIANT].given ? args[MESH_VARIANT].text : NULL;
 }
 
-static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
-                                         struct error *error) {
-    const char *name = args[MESH_FILE].text;
+static void warn_of_model(struct script_context *context, const struct model *model, int first) {
+    for (int i = first; i < model->warning_count; i++)
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+}
+
+/* Finds the file of a mesh. Scenes of courses name it without its ending, as gr.mesh('cow', 'cow'), and the puppets
+ * of one course have the name of the mesh first: gr.mesh('sphere', 'torso'). */
+static bool find_mesh(struct script_context *context, const struct script_value *args, char path[PATH_SIZE],
+                      struct error *error) {
+    static const char *const endings[] = {".obj", ".ply", ".stl", ".glb", ".gltf"};
+    const char *name = args[MESH_FILE].text, *slash = strrchr(name, '/');
+    if (files_require(&context->sandbox, name, path, error))
+        return true;
+    if (error->kind != ERROR_SCENE || error->limit || error->refused || strchr(slash ? slash : name, '.'))
+        return false;
+    const char *bases[] = {name, args[MESH_NAME].given ? args[MESH_NAME].text : name};
+    for (size_t k = 0; k < 2 * COUNT(endings); k++) {
+        char file[PATH_SIZE];
+        struct error other;
+        const char *base = bases[k / COUNT(endings)];
+        int length = snprintf(file, sizeof file, "%s%s", base, endings[k % COUNT(endings)]);
+        if (length >= PATH_SIZE || !files_require(&context->sandbox, file, path, &other))
+            continue;
+        if (base != name)
+            sandbox_warn(&context->sandbox, "there is no mesh '%s'; '%s' is shown", name, file);
+        return true;
+    }
+    return false;
+}
+
+static struct model *model_of_file(struct script_context *context, const struct script_value *args,
+                                   struct error *error) {
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
                                     .search_context = &context->sandbox,
                                     .forgive = context->lenient != NULL};
     read_options(args, &options);
-    if (!files_require(&context->sandbox, name, path, error))
+    if (!find_mesh(context, args, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
-        error_set(error, ERROR_SCENE, "cannot find '%s'", name);
+        error_set(error, ERROR_SCENE, "cannot find '%s'", args[MESH_FILE].text);
         return NULL;
     }
     bool fresh;
-    const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
-    for (int i = 0; model && fresh && i < model->warning_count; i++)
-        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+    struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
+    if (model && fresh)
+        warn_of_model(context, model, 0);
     return model;
 }
 
@@ -237,6 +279,7 @@ static bool keep_slots(struct script_context *context, const struct script_value
 
 static bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
+    /* A file, or vertices and faces. */
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -248,7 +291,8 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
-        const struct model *model = model_of_file(context, args, error);
+        /* A file: its nodes, with materials for its parts. */
+        struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
@@ -264,10 +308,14 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
             result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
             return result->pointer != NULL;
         }
-        result->pointer =
-            model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
+        if (!model || !check_parts(model, parts, error))
+            return false;
+        int warned = model->warning_count;
+        result->pointer = model_add_nodes(&context->scene, model, &placing, error);
+        warn_of_model(context, model, warned);
         return result->pointer != NULL;
     }
+    /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
     struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)
@@ -290,6 +338,34 @@ static const struct script_parameter glyphs_parameters[] = {
     [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
 };
 
+/* The bytes of letter k of a text in UTF-8. */
+static int letter_bytes(const char *at) {
+    int count = 1;
+    while ((at[count] & 0xc0) == 0x80)
+        count++;
+    return count;
+}
+
+/* One warning names the letters of a text that the font lacks. */
+static void warn_of_missing(struct script_context *context, const char *path, const char *string,
+                            const struct font_text *text) {
+    enum { NAMED = 8 };
+    char names[NAMED * 8 + 1] = "", more[32] = "";
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < text->count; string += letter_bytes(string), k++) {
+        bool is_new = text->glyphs[k].missing;
+        for (uint32_t i = 0; i < k && is_new; i++)
+            is_new = text->glyphs[i].code != text->glyphs[k].code;
+        if (is_new && ++count <= NAMED)
+            (void)snprintf(names + strlen(names), sizeof names - strlen(names), "%s\"%.*s\"", count > 1 ? ", " : "",
+                           letter_bytes(string), string);
+    }
+    if (count > NAMED)
+        (void)snprintf(more, sizeof more, " and %u others", count - NAMED);
+    if (count > 0)
+        sandbox_warn(&context->sandbox, "%s has no letter for %s%s", path, names, more);
+}
+
 static bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     char path[PATH_SIZE];
@@ -310,10 +386,8 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);
-    for (uint32_t k = 0; done && k < text->count; k++)
-        if (text->glyphs[k].missing)
-            context_warn_once(context, WARNED_OTHER, "%s has no letter U+%04X, and maybe others", path,
-                              text->glyphs[k].code);
+    if (done)
+        warn_of_missing(context, path, args[GLYPHS_TEXT].text, text);
     result->pointer = text;
     return done;
 }
@@ -322,7 +396,7 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
 
 static const struct script_function mesh_rows[] = {
     GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
-       "material verts faces", "name file", "name verts faces", "material file"),
+       "material verts faces", "name file", "name verts faces", "material file", "name verts normals faces"),
     GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
     GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),

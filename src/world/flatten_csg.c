@@ -249,6 +249,7 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, const str
         frame->content = operand;
         break;
     }
+    /* An operand without effect leaves no trace. */
     forget_decided(draft, frame);
     return ok;
 }

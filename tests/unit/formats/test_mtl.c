@@ -202,6 +202,18 @@ TEST(mtl_material_without_a_name_is_that_of_faces_without_one) {
     }
 }
 
+TEST(a_map_without_a_name_has_no_effect_but_a_warning) {
+    test_write_text(in_folder("n.obj"), SQUARE "mtllib n.mtl\nusemtl a\nf 1 2 3\n");
+    test_write_text(in_folder("n.mtl"), "newmtl a\nmap_Kd -s 1 1\nKd 1 0 0\nmap_Ke\nKe 1 1 1\n");
+    struct model model;
+    if (!read_model(&model, "n.obj"))
+        return;
+    CHECK_EQ_INT(model.warning_count, 1);
+    CHECK(strstr(model.warnings[0], "n.mtl:2: the name of a picture is missing (2 times, the first here)"));
+    CHECK(!material(&model, "a")->map_kd.name && material(&model, "a")->kd.x == 1);
+    model_destroy(&model);
+}
+
 TEST(mtl_and_pictures_outside_the_readable_folders_are_not_there) {
     char inner[400], path[500];
     (void)snprintf(inner, sizeof inner, "%s/inner/deep", test_folder());
@@ -278,7 +290,7 @@ TEST(mtl_materials_follow_their_mesh) {
     struct model_placing placing = {.name = "p"};
     bool fresh;
     scene_init(&scene, &assets);
-    const struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
+    struct model *model = model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error);
     CHECK(model && fresh);
     CHECK(model_asset(&assets, in_folder("p.obj"), "p", &options, &fresh, &error) == model && !fresh);
     struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;

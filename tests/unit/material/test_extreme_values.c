@@ -857,7 +857,7 @@ TEST(numbers_of_mesh_files_have_the_limit_of_scripts) {
         {"a.stl", STL_FACET("-1e31"), "a.stl: a number of vertex 1" LIMIT_WORDS},
         {"b.stl", STL_FACET("1e30"), NULL},
         {"a.gltf", GLTF(",\"translation\":[1e31,0,0]", ""), "a.gltf: the transform of node 1"},
-        {"b.gltf", GLTF(",\"scale\":[1,1e-320,1]", ""), "b.gltf: the transform of node 1"},
+        {"b.gltf", GLTF(",\"scale\":[1,1e-320,1]", ""), NULL}, /* without an inverse it is flat */
         {"c.gltf", GLTF(",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,1e300,0,1]", ""), "c.gltf: the transform of node 1"},
         {"d.gltf", GLTF("", ",\"emissiveFactor\":[0,1e40,0]"), "d.gltf: a number of material 1" LIMIT_WORDS},
         {"e.gltf", GLTF(",\"translation\":[1e30,0,0],\"rotation\":[1e200,0,0,1]", ""), "e.gltf"},
