@@ -42,7 +42,7 @@ struct script_context;
  *   KIND_MATERIAL: material
  *   KIND_MATERIALS: materials, count; names as well, in byte order, or a list: names is NULL
  *   KIND_IMAGE: image, or text: the name of its file
- *   KIND_BACKGROUND: vector, or text = "gradient", or sky, or program
+ *   KIND_BACKGROUND: vector, or text = "gradient" or "transparent", or sky, or program
  *   KIND_FOG: fog
  *   KIND_CAUSTICS: number: photons, vector.x: radius; a number alone is the photons
  *   KIND_NODES: nodes, count
