@@ -554,6 +554,10 @@ void csg_describe(const struct csg *csg, const struct ray *ray, const struct cro
         out->normal = vec3_negate(out->normal);
         out->shading_normal = vec3_negate(out->shading_normal);
     }
+    if (out->has_second) {
+        out->second.dpdu = affine_vector(&map->forward, out->second.dpdu);
+        out->second.dpdv = affine_vector(&map->forward, out->second.dpdv);
+    }
     out->dpdu = affine_vector(&map->forward, out->dpdu);
     out->dpdv = affine_vector(&map->forward, out->dpdv);
     double rounding = 0;

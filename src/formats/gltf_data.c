@@ -11,6 +11,18 @@
 /* The size of all files together that one model may read. */
 #define FETCH_LIMIT (UINT64_C(1) << 33)
 
+/* Vertices and corners per byte of the file, and a minimum for every file. */
+enum { MADE_PER_BYTE = 8, MADE_FREE = 1 << 20 };
+
+bool gltf_produce(struct gltf *g, uint64_t count, const char *where) {
+    uint64_t limit = g->bytes * MADE_PER_BYTE + MADE_FREE;
+    if (count > limit || g->produced > limit - count)
+        return gltf_fail(g, where, "more vertices than a file of %llu bytes can describe",
+                         (unsigned long long)g->bytes);
+    g->produced += count;
+    return true;
+}
+
 static int digit64(char c) {
     return c >= 'A' && c <= 'Z'   ? c - 'A'
            : c >= 'a' && c <= 'z' ? c - 'a' + 26
@@ -212,6 +224,25 @@ static bool sparse_part(struct gltf *g, const json_t *sparse, struct gltf_access
     if (out->sparse_count && (!out->sparse_indices || !out->sparse_values))
         return gltf_fail(g, where, "its sparse part has no data");
     return true;
+}
+
+/* The element of a root array that another one names, or NULL. */
+static const json_t *named_by(const struct gltf *g, const json_t *object, const char *key, const char *of) {
+    const json_t *index = json_object_get(object, key);
+    bool fine = json_is_integer(index) && json_integer_value(index) >= 0;
+    return fine ? json_array_get(gltf_array(g, of), (size_t)json_integer_value(index)) : NULL;
+}
+
+bool gltf_has_bytes(const struct gltf *g, uint32_t index) {
+    const json_t *accessor = json_array_get(gltf_array(g, "accessors"), index);
+    if (!json_object_get(accessor, "bufferView"))
+        return json_object_get(accessor, "sparse") != NULL;
+    const json_t *view = named_by(g, accessor, "bufferView", "bufferViews");
+    const json_t *buffer = named_by(g, view, "buffer", "buffers");
+    bool is_packed = json_object_get(json_object_get(view, "extensions"), "EXT_meshopt_compression") ||
+                     json_object_get(json_object_get(view, "extensions"), "KHR_meshopt_compression");
+    return !is_packed || json_object_get(buffer, "uri") ||
+           (g->binary && buffer == json_array_get(gltf_array(g, "buffers"), 0));
 }
 
 bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {

@@ -17,7 +17,11 @@ struct gltf_accessor {
     enum number_type sparse_type;
 };
 
+/* Counts what is made of the file; false beyond a multiple of its bytes. */
+bool gltf_produce(struct gltf *g, uint64_t count, const char *where);
 bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *size, size_t *stride);
+/* Whether the file has the accessor's bytes; an extension that compresses them may leave them out. */
+bool gltf_has_bytes(const struct gltf *g, uint32_t index);
 bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out);
 /* Elements first .. first + count - 1, `components` numbers each. */
 bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint64_t first, uint64_t count,

@@ -30,10 +30,26 @@ struct gltf {
     size_t image_count;
     uint64_t bytes;    /* of the file and of everything it refers to */
     uint64_t produced; /* vertices and corners so far */
+    struct list lacks; /* struct gltf_lack */
+    uint32_t variant;  /* of the materials, or MODEL_NONE */
+    uint32_t *plain;   /* the meshes of the model as the file has them, or MODEL_NONE */
+};
+
+/* What the reader leaves out: one warning for each kind. */
+struct gltf_lack {
+    const char *what;
+    char first[96], last[96]; /* elements */
+    size_t count;
 };
 
 /* Sets the error "FILE: WHERE: what" and returns false. */
 bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* An element of the file is left out, for this reason. */
+void gltf_lacks(struct gltf *g, const char *where, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Sets the error that the file has no `kind` ("animation") of that name or number, and which of `list` it has. */
+bool gltf_choice_fails(const struct gltf *g, const char *kind, const json_t *list, const char *wanted);
+/* The name of an object in the model's arena, or "". NULL with an error: no memory. */
+const char *gltf_name(const struct gltf *g, const json_t *object);
 /* The array of that name at the root, or NULL. */
 json_t *gltf_array(const struct gltf *g, const char *name);
 /* An integer >= 0; `otherwise` if it is absent. False: the value is something else. */

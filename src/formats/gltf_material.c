@@ -1,6 +1,6 @@
 /* Materials of glTF, converted to layers of OpenPBR while they are read. Source: glTF 2.0, section 3.9 and appendix
  * B; extensions KHR_materials_ior, _specular, _transmission, _volume, _clearcoat, _sheen, _emissive_strength,
- * _unlit, KHR_texture_transform.
+ * _unlit, _pbrSpecularGlossiness, KHR_texture_transform.
  *
  * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of
  * glTF has the index 1.5 and does not darken the layers below it. A transmitting surface without a volume is a thin
@@ -26,15 +26,48 @@ static double unit(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* Adds the picture images[index] to the map: decoded if it is inside the file, otherwise its path. */
+/* A picture inside the file; NULL and an error if it cannot be read. */
+static struct image *decode_image(struct gltf *g, const json_t *image, const char *uri, const char *where) {
+    uint8_t *decoded = NULL;
+    const uint8_t *data;
+    size_t size, stride;
+    uint32_t view;
+    char *title = arena_format(&g->model->arena, "%s: %s", g->path, where);
+    if (!title) {
+        error_no_memory(g->error, g->path);
+        return NULL;
+    }
+    if (uri) {
+        if (!gltf_decode_data(g, uri, &decoded, &size, where))
+            return NULL;
+        data = decoded;
+    } else if (!gltf_index(g, image, "bufferView", "bufferViews", &view, where) ||
+               (view == MODEL_NONE && !gltf_fail(g, where, "it has neither uri nor bufferView")) ||
+               !gltf_view(g, view, &data, &size, &stride)) {
+        return NULL;
+    }
+    struct image *out = image_parse(title, data, size, g->error);
+    mem_free(decoded);
+    return out;
+}
+
+/* A picture without a name takes the place of one that cannot be read, so that it is tried and reported once. */
+static bool replace_image(struct gltf *g, uint32_t index) {
+    if (g->error->kind != ERROR_SCENE || g->error->limit)
+        return false;
+    model_warn(g->model, "%s (the picture has no effect)", g->error->text);
+    *g->error = (struct error){0};
+    g->images[index] = image_create("", 1, 1, 8, (const uint8_t[4]){0}, g->error);
+    return g->images[index] != NULL;
+}
+
+/* Adds the picture images[index] to the map: decoded if it is inside the file, otherwise its path; neither if it cannot
+ * be used. */
 static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map) {
     char where[64];
     (void)snprintf(where, sizeof where, "images[%u]", index);
     const json_t *image = json_array_get(gltf_array(g, "images"), index);
     const char *uri = json_string_value(json_object_get(image, "uri"));
-    uint8_t *decoded = NULL;
-    const uint8_t *data;
-    size_t size, stride;
     map->name = arena_format(&g->model->arena, "%s", where);
     if (!map->name)
         return error_no_memory(g->error, g->path);
@@ -45,34 +78,17 @@ static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map
         map->name = name;
         if (!model_find(g->model, name, strlen(name), &map->path, g->error))
             return false;
-        if (!map->path && !g->model->options.single_file)
-            model_warn(g->model, "%s: the picture '%.200s' %s", g->path, name, model_why_missing(g->model));
+        if (!map->path)
+            model_warn_missing(g->model, g->path, name);
         return true;
     }
     /* An embedded picture is decoded once, for all materials that use it. */
-    if (!g->images[index]) {
-        if (uri) {
-            if (!gltf_decode_data(g, uri, &decoded, &size, where))
-                return false;
-            data = decoded;
-        } else {
-            uint32_t view;
-            if (!gltf_index(g, image, "bufferView", "bufferViews", &view, where))
-                return false;
-            if (view == MODEL_NONE)
-                return gltf_fail(g, where, "it has neither uri nor bufferView");
-            if (!gltf_view(g, view, &data, &size, &stride))
-                return false;
-        }
-        char *title = arena_format(&g->model->arena, "%s: %s", g->path, where);
-        g->images[index] = title ? image_parse(title, data, size, g->error) : NULL;
-        mem_free(decoded);
-        if (!title)
-            return error_no_memory(g->error, g->path);
-        if (!g->images[index])
-            return false;
-    }
-    map->image = image_share(g->images[index]);
+    if (!g->images[index])
+        g->images[index] = decode_image(g, image, uri, where);
+    if (!g->images[index] && !replace_image(g, index))
+        return false;
+    if (image_name(g->images[index])[0] != '\0')
+        map->image = image_share(g->images[index]);
     return true;
 }
 
@@ -84,25 +100,31 @@ static enum image_wrap wrap_of(uint64_t code) {
 static bool read_map(struct gltf *g, const json_t *object, const char *key, struct model_texture *map,
                      const char *where) {
     const json_t *info = json_object_get(object, key);
+    const json_t *transform = json_object_get(json_object_get(info, "extensions"), "KHR_texture_transform");
     uint32_t texture, image, sampler;
     uint64_t set;
     if (!info)
         return true;
-    if (!gltf_index(g, info, "index", "textures", &texture, where) || !gltf_whole(g, info, "texCoord", 0, &set, where))
+    map->name = key; /* there is one, even if it cannot be used */
+    if (!gltf_index(g, info, "index", "textures", &texture, where) ||
+        !gltf_whole(g, info, "texCoord", 0, &set, where) || !gltf_whole(g, transform, "texCoord", set, &set, where))
         return false;
     if (texture == MODEL_NONE)
         return gltf_fail(g, where, "%s has no index", key);
-    if (set != 0) {
-        model_warn(g->model, "%s: %s: %s uses the texture coordinates number %llu; only number 0 is read", g->path,
-                   where, key, (unsigned long long)set);
+    if (set > 1) {
+        gltf_lacks(g, where, "a picture by texture coordinates beyond number 1 is not shown");
         return true;
     }
+    map->second = set == 1;
     const json_t *source = json_array_get(gltf_array(g, "textures"), texture);
-    if (!gltf_index(g, source, "source", "images", &image, where) ||
+    const json_t *webp = json_object_get(json_object_get(source, "extensions"), "EXT_texture_webp");
+    if (!gltf_index(g, json_object_get(source, "source") ? source : webp, "source", "images", &image, where) ||
         !gltf_index(g, source, "sampler", "samplers", &sampler, where))
         return false;
     if (image == MODEL_NONE) {
-        model_warn(g->model, "%s: textures[%u]: its picture is of a kind that is not read", g->path, texture);
+        char name[64];
+        (void)snprintf(name, sizeof name, "textures[%u]", texture);
+        gltf_lacks(g, name, "its picture is of a kind that is not read");
         return true;
     }
     if (sampler != MODEL_NONE) {
@@ -116,18 +138,18 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
         map->filter = nearest == 9728 ? IMAGE_NEAREST : IMAGE_MIPMAP;
     }
     map->strength = number_or(info, "scale", 1);
-    const json_t *transform = json_object_get(json_object_get(info, "extensions"), "KHR_texture_transform");
     if (transform) {
-        double scale[2] = {1, 1}, offset[2] = {0, 0};
+        double scale[2] = {1, 1}, offset[2] = {0, 0}, sine, cosine;
         if (!gltf_numbers(g, transform, "scale", scale, 2, where) ||
             !gltf_numbers(g, transform, "offset", offset, 2, where))
             return false;
-        if (number_or(transform, "rotation", 0) != 0)
-            model_warn(g->model, "%s: %s: a turned texture is shown unturned", g->path, where);
-        /* v starts at the upper edge in glTF, at the lower edge in gray: v' = 1 - (s (1 - v) + o) = s v + (1 - s -
-         * o). */
-        map->scale[0] = scale[0], map->scale[1] = scale[1];
-        map->offset[0] = offset[0], map->offset[1] = 1 - scale[1] - offset[1];
+        /* u' = a u + b v + o, v' = c u + d v + o with v from the upper edge; in gray it is from the lower one: v is
+         * replaced by 1 - v. */
+        el_sincos(number_or(transform, "rotation", 0), &sine, &cosine);
+        double a = cosine * scale[0], b = sine * scale[1], c = -sine * scale[0], d = cosine * scale[1];
+        map->scale[0] = a, map->scale[1] = d;
+        map->cross[0] = -b, map->cross[1] = -c;
+        map->offset[0] = offset[0] + b, map->offset[1] = 1 - d - offset[1];
     }
     return find_image(g, image, map);
 }
@@ -181,6 +203,21 @@ static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_materia
     return true;
 }
 
+/* KHR_materials_pbrSpecularGlossiness: a dielectric whose index gives the reflectance head on. */
+static bool read_gloss(struct gltf *g, const json_t *gloss, struct model_material *m, const char *where) {
+    double colour[3] = {1, 1, 1};
+    if (!gltf_numbers(g, gloss, "specularFactor", colour, 3, where))
+        return false;
+    struct vec3 specular = unit_colour(colour);
+    double max = vec3_max_abs(specular), root = sqrt(fmin(max, 0.98));
+    m->layers.base_metalness = 0;
+    m->layers.specular_ior = (1 + root) / (1 - root);
+    m->ks = max > 0 ? vec3_scale(specular, 1 / max) : specular;
+    m->gloss_colour = specular;
+    m->roughness = 1 - share(gloss, "glossinessFactor", 1);
+    return read_map(g, gloss, "specularGlossinessTexture", &m->map_gloss, where);
+}
+
 static bool read_layers(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
     const json_t *extensions = json_object_get(source, "extensions");
     const json_t *rough = json_object_get(source, "pbrMetallicRoughness");
@@ -207,9 +244,10 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     m->ks = unit_colour(colour);
     m->roughness = share(rough, "roughnessFactor", 1);
     m->transmission = share(json_object_get(extensions, "KHR_materials_transmission"), "transmissionFactor", 0);
-    return read_volume(g, volume, m, where) &&
+    const json_t *gloss = json_object_get(extensions, "KHR_materials_pbrSpecularGlossiness");
+    return read_volume(g, volume, m, where) && (!gloss || read_gloss(g, gloss, m, where)) &&
            read_sheen(g, json_object_get(extensions, "KHR_materials_sheen"), m, where) &&
-           read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where);
+           (gloss || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where));
 }
 
 static bool read_emission(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
@@ -224,14 +262,13 @@ static bool read_emission(struct gltf *g, const json_t *source, struct model_mat
 
 static bool read_material(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
     const json_t *rough = json_object_get(source, "pbrMetallicRoughness");
-    const char *name = json_string_value(json_object_get(source, "name"));
+    const json_t *gloss = json_object_get(json_object_get(source, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    const json_t *colours = gloss ? gloss : rough;
+    const char *picture = gloss ? "diffuseTexture" : "baseColorTexture";
     const char *alpha_mode = json_string_value(json_object_get(source, "alphaMode"));
     double base[4] = {1, 1, 1, 1};
-    if (name)
-        m->name = arena_copy_text(&g->model->arena, name, strlen(name));
-    if (!m->name)
-        return error_no_memory(g->error, g->path);
-    if (!gltf_numbers(g, rough, "baseColorFactor", base, 4, where))
+    m->name = gltf_name(g, source);
+    if (!m->name || !gltf_numbers(g, colours, gloss ? "diffuseFactor" : "baseColorFactor", base, 4, where))
         return false;
     m->kd = unit_colour(base);
     m->two_sided = json_is_true(json_object_get(source, "doubleSided"));
@@ -243,16 +280,16 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     if (blend)
         m->dissolve = unit(base[3]);
     m->map_kd.without_alpha = true;
-    if (mask && base[3] < number_or(source, "alphaCutoff", 0.5) && !json_object_get(rough, "baseColorTexture"))
+    if (mask && base[3] < number_or(source, "alphaCutoff", 0.5) && !json_object_get(colours, picture))
         m->dissolve = 0;
     if (blend || mask) { /* the alpha channel of the colour's picture; factors below 1 apply before the cut */
         double cutoff = number_or(source, "alphaCutoff", 0.5);
         m->map_d.by_alpha = true;
         m->map_d.cutoff = blend ? 0 : base[3] > 0 ? fmax(cutoff / base[3], 1e-9) : INFINITY;
-        if (!read_map(g, rough, "baseColorTexture", &m->map_d, where))
+        if (!read_map(g, colours, picture, &m->map_d, where))
             return false;
     }
-    return read_map(g, rough, "baseColorTexture", &m->map_kd, where) &&
+    return read_map(g, colours, picture, &m->map_kd, where) &&
            read_map(g, source, "normalTexture", &m->map_normal, where) && read_emission(g, source, m, where);
 }
 

@@ -12,6 +12,12 @@
  * it (planar shapes); unknown, but the triangle of the hit is in it (meshes). */
 enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR, CONVEXITY_FACETS };
 
+/* The second texture coordinates of a mesh, with the derivatives of the point. */
+struct second_uv {
+    double u, v;
+    struct vec3 dpdu, dpdv;
+};
+
 /* A surface point in the object space of the shape, filled by shape_describe. */
 struct surface {
     struct vec3 point;          /* in the shape's object space */
@@ -24,6 +30,8 @@ struct surface {
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
+    bool has_second;
+    struct second_uv second; /* object space; not set when has_second is false */
     double error;  /* bound of the distance between `point` and the true surface, object units, from rounding */
     double behind; /* of a hair: as in struct hit, object units; else 0 */
     uint32_t leaf; /* CSG operand, else 0 */
@@ -36,7 +44,7 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     const struct vec3 zero = {0, 0, 0};
     out->point = out->pattern_point = point;
     out->normal = out->shading_normal = out->pattern_normal = normal;
-    out->has_uv = out->has_colour = false;
+    out->has_uv = out->has_colour = out->has_second = false;
     out->colour = out->dpdu = out->dpdv = zero;
     out->u = out->v = 0;
     out->error = error;
@@ -54,10 +62,11 @@ struct hit {
     struct vec3 normal_geometric; /* unit, outward, world */
     struct vec3 normal;           /* unit, interpolated where there are vertex normals; outward side as given */
     struct vec3 pattern_point, pattern_normal;
-    bool has_uv, has_colour;
+    bool has_uv, has_colour, has_second;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
-    struct vec3 dpdu, dpdv; /* world; for spheres only if bumps or functions need them */
+    struct second_uv second; /* world; not set when has_second is false */
+    struct vec3 dpdu, dpdv;  /* world; for spheres only if bumps or functions need them */
     /* If bumps or functions need them: the world vectors of one unit along the operand's outward normal and along its
      * tangents by frame_tangents; the derivatives of pattern_normal along these if known (spheres), else 0. */
     struct vec3 raise, along_a, along_b;

@@ -80,9 +80,10 @@ struct texture_image {
     enum image_wrap wrap_v; /* if `apart` is set, else wrap is for both */
     bool flip_u;
     bool outside; /* on spheres, u runs to the right as seen from outside; the classic mappings are mirrored */
-    /* The point is scale * uv + offset (v from below), the colour is multiplied by tint. */
+    /* The point is scale * uv + cross * vu + offset (v from below), the colour is multiplied by tint. */
     bool apart;
-    double scale[2], offset[2];
+    double scale[2], cross[2], offset[2];
+    bool second; /* the second coordinates of a mesh */
     struct vec3 tint;
     enum texture_alpha alpha;
     enum texture_encoding encoding;

@@ -76,28 +76,49 @@ static void on_cube(const struct hit *hit, struct texcoord *at) {
 
 /* vt counts v from the bottom of the image (OBJ), image rows from the top. */
 static void by_uv(const struct hit *hit, const struct texture_image *image, struct texcoord *at) {
-    double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
-    *at = (struct texcoord){.u = hit->u,
-                            .v = 1 - hit->v,
+    struct second_uv uv = {hit->u, hit->v, hit->dpdu, hit->dpdv};
+    if (image->second)
+        uv = hit->second;
+    double du = vec3_length(uv.dpdu), dv = vec3_length(uv.dpdv);
+    *at = (struct texcoord){.u = uv.u,
+                            .v = 1 - uv.v,
                             .width_u = du > 0 ? hit->footprint / du : 0,
                             .width_v = dv > 0 ? hit->footprint / dv : 0,
                             .wrap_u = image->wrap,
                             .wrap_v = image->wrap,
-                            .dpdu = hit->dpdu,
-                            .dpdv = vec3_negate(hit->dpdv)};
+                            .dpdu = uv.dpdu,
+                            .dpdv = vec3_negate(uv.dpdv)};
+}
+
+/* The linear map of a turned image; the derivatives follow its inverse. */
+static void turn(const struct texture_image *image, struct texcoord *at) {
+    const double *scale = image->scale, *cross = image->cross;
+    double u = at->u, v = 1 - at->v, width_u = at->width_u, width_v = at->width_v;
+    double determinant = scale[0] * scale[1] - cross[0] * cross[1], per = determinant != 0 ? 1 / determinant : 0;
+    struct vec3 along_u = at->dpdu, along_v = vec3_negate(at->dpdv);
+    at->u = scale[0] * u + cross[0] * v + image->offset[0];
+    at->v = 1 - (cross[1] * u + scale[1] * v + image->offset[1]);
+    at->width_u = fabs(scale[0]) * width_u + fabs(cross[0]) * width_v;
+    at->width_v = fabs(cross[1]) * width_u + fabs(scale[1]) * width_v;
+    at->dpdu = vec3_scale(vec3_add_scaled(vec3_scale(along_u, scale[1]), along_v, -cross[1]), per);
+    at->dpdv = vec3_scale(vec3_add_scaled(vec3_scale(along_v, -scale[0]), along_u, cross[0]), per);
 }
 
 /* Repetitions of an image, or a part of it. */
 static void stretch(const struct texture_image *image, struct texcoord *at) {
     const double *scale = image->scale, *offset = image->offset;
+    at->wrap_u = image->wrap;
+    at->wrap_v = image->wrap_v;
+    if (image->cross[0] != 0 || image->cross[1] != 0) {
+        turn(image, at);
+        return;
+    }
     at->u = scale[0] * at->u + offset[0];
     at->v = 1 - (scale[1] * (1 - at->v) + offset[1]);
     at->width_u *= fabs(scale[0]);
     at->width_v *= fabs(scale[1]);
     at->dpdu = scale[0] != 0 ? vec3_scale(at->dpdu, 1 / scale[0]) : vec3_all(0);
     at->dpdv = scale[1] != 0 ? vec3_scale(at->dpdv, 1 / scale[1]) : vec3_all(0);
-    at->wrap_u = image->wrap;
-    at->wrap_v = image->wrap_v;
 }
 
 static void mirror(struct texcoord *at) {
@@ -130,7 +151,7 @@ bool texture_coordinates(const struct texture_image *image, const struct hit *hi
         break;
     case MAPPING_UV:
     case MAPPING_BY_SHAPE:
-        if (!hit->has_uv)
+        if (!hit->has_uv || (image->second && !hit->has_second))
             return false;
         by_uv(hit, image, out);
         break;

@@ -8,6 +8,7 @@
 #include "mesh/mesh_topology.h"
 #include "mesh/triangulate_internal.h"
 
+#include <stdio.h>
 #include <string.h>
 
 struct mesh *mesh_share(struct mesh *mesh) {
@@ -30,6 +31,7 @@ void mesh_release(struct mesh *mesh) {
     mem_free(mesh->normals);
     mem_free(mesh->normal_corners);
     mem_free(mesh->uvs);
+    mem_free(mesh->second_uvs);
     mem_free(mesh->uv_corners);
     mem_free(mesh->colours);
     mem_free(mesh->materials);
@@ -77,12 +79,23 @@ bool mesh_is_closed(const struct mesh *mesh) {
     return mesh->closed;
 }
 
-bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b) {
-    if (mesh->closed || mesh->triangle_count == 0)
-        return false;
-    *a = mesh->open_edge[0];
-    *b = mesh->open_edge[1];
-    return true;
+bool mesh_is_open(const struct mesh *mesh) {
+    return mesh->open_edge_count > 0;
+}
+
+void mesh_describe_open_edges(const struct mesh *mesh, char *text, size_t size) {
+    int used =
+        snprintf(text, size, "the first open edges (of one face, or of faces that disagree about the outside) go");
+    for (uint32_t i = 0; i < mesh->open_edge_count; i++) {
+        const struct vec3 *a = &mesh->open_edges[i][0], *b = &mesh->open_edges[i][1];
+        used += snprintf(text + used, size - (size_t)used, "%s from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}",
+                         i ? "," : "", a->x, a->y, a->z, b->x, b->y, b->z);
+    }
+    /* A hundred thousandth of the size: the seams of exporters are narrower, details are wider. */
+    double length = vec3_length(vec3_sub(mesh->bounds.max, mesh->bounds.min));
+    (void)snprintf(text + used, size - (size_t)used,
+                   "; weld = %.0e in gr.mesh joins vertices closer than that, which closes seams but no holes",
+                   1e-5 * length);
 }
 
 bool mesh_is_outward(const struct mesh *mesh) {
@@ -138,8 +151,10 @@ size_t mesh_memory(const struct mesh *mesh) {
         bytes += mesh->normal_count * sizeof *mesh->normals + triangles * sizeof *mesh->normal_corners;
     if (mesh->uvs)
         bytes += mesh->uv_count * sizeof *mesh->uvs + triangles * sizeof *mesh->uv_corners;
+    if (mesh->second_uvs)
+        bytes += mesh->uv_count * sizeof *mesh->second_uvs;
     if (mesh->colours)
-        bytes += mesh->vertex_count * sizeof *mesh->colours;
+        bytes += (mesh->colours_by_triangle ? mesh->triangle_count : mesh->vertex_count) * sizeof *mesh->colours;
     if (mesh->materials)
         bytes += triangles * sizeof *mesh->materials;
     if (mesh->face_start)
@@ -334,12 +349,10 @@ static double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-/* at: the barycentric coordinates; e1, e2: the edges from the first corner. */
-static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
-                        struct surface *out) {
-    const uint32_t *corner = mesh->uv_corners[triangle];
-    const double *a = mesh->uvs[corner[0]], *b = mesh->uvs[corner[1]], *c = mesh->uvs[corner[2]];
-    out->has_uv = true;
+/* uvs: those of the corners; at: the barycentric coordinates; e1, e2: the edges from the first corner. */
+static void describe_uv(const double (*uvs)[2], const uint32_t corner[3], struct vec3 at, struct vec3 e1,
+                        struct vec3 e2, struct second_uv *out) {
+    const double *a = uvs[corner[0]], *b = uvs[corner[1]], *c = uvs[corner[2]];
     out->u = at.x * a[0] + at.y * b[0] + at.z * c[0];
     out->v = at.x * a[1] + at.y * b[1] + at.z * c[1];
     double du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
@@ -348,6 +361,23 @@ static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 
         return;
     out->dpdu = vec3_scale(vec3_sub(vec3_scale(e1, dv2), vec3_scale(e2, dv1)), 1 / area);
     out->dpdv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / area);
+}
+
+static void describe_all_uvs(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
+                             struct surface *out) {
+    const uint32_t *corner = mesh->uv_corners[triangle];
+    struct second_uv first = {0};
+    describe_uv((const double(*)[2])mesh->uvs, corner, at, e1, e2, &first);
+    out->has_uv = true;
+    out->u = first.u;
+    out->v = first.v;
+    out->dpdu = first.dpdu;
+    out->dpdv = first.dpdv;
+    out->has_second = mesh->second_uvs != NULL;
+    if (!out->has_second)
+        return;
+    out->second = (struct second_uv){0};
+    describe_uv((const double(*)[2])mesh->second_uvs, corner, at, e1, e2, &out->second);
 }
 
 bool mesh_is_plain(const struct mesh *mesh, uint32_t triangle) {
@@ -378,9 +408,11 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
             out->shading_normal = mixed;
     }
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
-        describe_uv(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
+        describe_all_uvs(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {
-        const float *p = mesh->colours[corner[0]], *q = mesh->colours[corner[1]], *r = mesh->colours[corner[2]];
+        bool flat = mesh->colours_by_triangle;
+        const float *p = mesh->colours[flat ? triangle : corner[0]], *q = mesh->colours[flat ? triangle : corner[1]],
+                    *r = mesh->colours[flat ? triangle : corner[2]];
         out->has_colour = true;
         out->colour = vec3_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
                                 w * (double)p[1] + u * (double)q[1] + v * (double)r[1],
@@ -398,12 +430,13 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
 
 uint64_t mesh_input_hash(const struct mesh_input *input) {
     uint32_t corners = input->face_count ? input->face_start[input->face_count] : 0;
-    uint32_t counts[6] = {input->vertex_count,
+    uint32_t counts[7] = {input->vertex_count,
                           input->face_count,
                           input->normals ? input->normal_count : MESH_NONE,
                           input->uvs ? input->uv_count : MESH_NONE,
                           input->face_material != NULL,
-                          input->colours != NULL};
+                          input->colours != NULL,
+                          input->colours_by_face};
     uint64_t h = hash_bytes(counts, sizeof counts, 0);
     /* The counts come first, so that no table can be taken for another one. */
     h = hash_bytes(input->vertices, input->vertex_count * sizeof *input->vertices, h);
@@ -418,10 +451,13 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
         h = hash_bytes(input->uvs, input->uv_count * sizeof *input->uvs, h);
         h = hash_bytes(input->uv_index, corners * sizeof *input->uv_index, h);
     }
+    if (input->second_uvs)
+        h = hash_bytes(input->second_uvs, input->uv_count * sizeof *input->second_uvs, h);
     if (input->face_material)
         h = hash_bytes(input->face_material, input->face_count * sizeof *input->face_material, h);
     if (input->colours)
-        h = hash_bytes(input->colours, input->vertex_count * sizeof *input->colours, h);
+        h = hash_bytes(input->colours,
+                       (input->colours_by_face ? input->face_count : input->vertex_count) * sizeof *input->colours, h);
     return h;
 }
 
@@ -501,12 +537,20 @@ static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_
         mesh->uv_count = input->uv_count;
         if (input->uv_count)
             memcpy(mesh->uvs, input->uvs, input->uv_count * sizeof *mesh->uvs);
+        if (input->second_uvs) {
+            mesh->second_uvs = mem_alloc(input->uv_count * sizeof *mesh->second_uvs);
+            if (!mesh->second_uvs)
+                return false;
+            if (input->uv_count)
+                memcpy(mesh->second_uvs, input->second_uvs, input->uv_count * sizeof *mesh->second_uvs);
+        }
     }
     if (input->colours) {
-        mesh->colours = mem_alloc(input->vertex_count * sizeof *mesh->colours);
+        mesh->colours_by_triangle = input->colours_by_face;
+        mesh->colours = mem_alloc((input->colours_by_face ? triangles : input->vertex_count) * sizeof *mesh->colours);
         if (!mesh->colours)
             return false;
-        if (input->vertex_count)
+        if (input->vertex_count && !input->colours_by_face)
             memcpy(mesh->colours, input->colours, input->vertex_count * sizeof *mesh->colours);
     }
     if (input->face_material) {
@@ -558,6 +602,8 @@ static void add_face(struct mesh *mesh, const struct mesh_input *input, uint32_t
         }
         if (mesh->materials)
             mesh->materials[at] = input->face_material[face];
+        if (mesh->colours_by_triangle)
+            memcpy(mesh->colours[at], input->colours[face], sizeof *mesh->colours);
     }
 }
 
@@ -597,6 +643,8 @@ static uint32_t drop_degenerate(struct mesh *mesh, uint32_t *face_of) {
             memmove(mesh->uv_corners[kept], mesh->uv_corners[i], sizeof *mesh->uv_corners);
         if (mesh->materials)
             mesh->materials[kept] = mesh->materials[i];
+        if (mesh->colours_by_triangle)
+            memmove(mesh->colours[kept], mesh->colours[i], sizeof *mesh->colours);
         face_of[kept++] = face_of[i];
     }
     uint32_t dropped = mesh->triangle_count - kept;
@@ -646,6 +694,8 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
         mesh->normal_corners = shrink(mesh->normal_corners, count * sizeof *mesh->normal_corners);
         mesh->uv_corners = shrink(mesh->uv_corners, count * sizeof *mesh->uv_corners);
         mesh->materials = shrink(mesh->materials, count * sizeof *mesh->materials);
+        if (mesh->colours_by_triangle)
+            mesh->colours = shrink(mesh->colours, count * sizeof *mesh->colours);
     }
     find_bounds(mesh);
     mesh->set = (struct triangle_set){(const double(*)[3])mesh->vertices, (const uint32_t(*)[3])mesh->corners,

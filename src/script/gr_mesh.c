@@ -27,7 +27,10 @@ enum {
     MESH_FLIP,
     MESH_CULL,
     MESH_MATERIALS,
-    MESH_FACE_MATERIALS
+    MESH_FACE_MATERIALS,
+    MESH_TIME,
+    MESH_ANIMATION,
+    MESH_VARIANT
 };
 static const struct script_parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
@@ -46,8 +49,8 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_SMOOTH] =
         {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "the given normals",
          "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
-    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                   "Whether vertices at the same position become one."},
+    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL | OR_NUMBER, ABOVE(0), NULL, "false",
+                   "Whether vertices at the same position become one; a number: those closer than this."},
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are reversed."},
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
@@ -55,13 +58,29 @@ static const struct script_parameter mesh_parameters[] = {
                         "Materials by the names of the parts in the file; with face_materials, a list."},
     [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
                              "With faces: the index into materials of each face, from 1."},
+    [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
+                   "The moment of the file's animation (glTF)."},
+    [MESH_ANIMATION] = {"animation", KIND_TEXT, OPTIONAL, ANY, NULL, "the first one",
+                        "The name of an animation in the file, or its number from 1."},
+    [MESH_VARIANT] = {"variant", KIND_TEXT, OPTIONAL, ANY, NULL, "the file's default",
+                      "The name of a variant of the materials in the file (glTF)."},
 };
 
 static void read_options(const struct script_value *args, struct model_options *options) {
     options->smooth = args[MESH_SMOOTH].given;
     options->smooth_angle = args[MESH_SMOOTH].number;
     options->weld = args[MESH_WELD].boolean;
+    options->weld_distance = args[MESH_WELD].number;
     options->flip = args[MESH_FLIP].boolean;
+    options->animated = args[MESH_TIME].given || args[MESH_ANIMATION].given;
+    options->time = args[MESH_TIME].number;
+    options->animation = args[MESH_ANIMATION].given ? args[MESH_ANIMATION].text : NULL;
+    options->variant = args[MESH_VARIANT].given ? args[MESH_VARIANT].text : NULL;
+}
+
+static void warn_of_model(struct script_context *context, const struct model *model, int first) {
+    for (int i = first; i < model->warning_count; i++)
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
 }
 
 /* Finds the file of a mesh. Scenes of courses name it without its ending, as gr.mesh('cow', 'cow'), and the puppets
@@ -89,8 +108,8 @@ static bool find_mesh(struct script_context *context, const struct script_value 
     return false;
 }
 
-static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
-                                         struct error *error) {
+static struct model *model_of_file(struct script_context *context, const struct script_value *args,
+                                   struct error *error) {
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
@@ -104,9 +123,9 @@ static const struct model *model_of_file(struct script_context *context, const s
         return NULL;
     }
     bool fresh;
-    const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
-    for (int i = 0; model && fresh && i < model->warning_count; i++)
-        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+    struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
+    if (model && fresh)
+        warn_of_model(context, model, 0);
     return model;
 }
 
@@ -215,7 +234,7 @@ static struct mesh *mesh_from_tables(struct script_context *context, const struc
     struct mesh_tables own = {0};
     read_options(args, &options);
     struct mesh *mesh = NULL;
-    if ((!options.weld || mesh_input_weld(&input, &own, error)) &&
+    if ((!options.weld || mesh_input_weld(&input, &own, options.weld_distance, error)) &&
         (!options.flip || mesh_input_flip(&input, &own, error)) &&
         (!options.smooth || mesh_input_smooth(&input, &own, options.smooth_angle, error)))
         mesh = assets_mesh(context->scene.assets, &input, error);
@@ -260,6 +279,7 @@ static bool keep_slots(struct script_context *context, const struct script_value
 
 static bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
+    /* A file, or vertices and faces. */
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -271,7 +291,8 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
-        const struct model *model = model_of_file(context, args, error);
+        /* A file: its nodes, with materials for its parts. */
+        struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
@@ -287,10 +308,14 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
             result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
             return result->pointer != NULL;
         }
-        result->pointer =
-            model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
+        if (!model || !check_parts(model, parts, error))
+            return false;
+        int warned = model->warning_count;
+        result->pointer = model_add_nodes(&context->scene, model, &placing, error);
+        warn_of_model(context, model, warned);
         return result->pointer != NULL;
     }
+    /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
     struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)

@@ -106,6 +106,14 @@ static void surface_to_world(const struct surface *surface, const struct transfo
         hit->dpdu = map ? affine_vector(&map->forward, surface->dpdu) : as_it_is(surface->dpdu);
         hit->dpdv = map ? affine_vector(&map->forward, surface->dpdv) : as_it_is(surface->dpdv);
     }
+    hit->has_second = surface->has_second;
+    if (surface->has_second) {
+        hit->second = surface->second;
+        if (map) {
+            hit->second.dpdu = affine_vector(&map->forward, surface->second.dpdu);
+            hit->second.dpdv = affine_vector(&map->forward, surface->second.dpdv);
+        }
+    }
     hit->curvature = 0;
     hit->has_colour = surface->has_colour;
     hit->colour = surface->colour;
@@ -167,7 +175,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
     hit->normal_geometric = hit->normal = facet->unit_normal;
     hit->pattern_point = point;
     hit->pattern_normal = facet->normal;
-    hit->has_uv = hit->has_colour = false;
+    hit->has_uv = hit->has_colour = hit->has_second = false;
     hit->colour = hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
     hit->u = hit->v = hit->curvature = hit->pattern_scale = 0;
     hit->offset = HIT_OFFSET_ERRORS * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;

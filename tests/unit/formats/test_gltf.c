@@ -104,8 +104,8 @@ TEST(gltf_nodes_have_matrices_or_parts_and_share_their_mesh) {
     struct error error;
     CHECK(parse_text(&model, text, &error));
     CHECK_TEXT(error.text, "");
-    CHECK_EQ_INT(model.nodes.count, 3);
-    CHECK_EQ_INT(model.warning_count, 1);
+    CHECK_EQ_INT(model.nodes.count, 5);
+    CHECK_EQ_INT(model.warning_count, 0);
     struct assets assets = {0};
     struct scene scene;
     struct model_placing placing = {.name = "all"};
@@ -131,6 +131,51 @@ TEST(gltf_nodes_have_matrices_or_parts_and_share_their_mesh) {
     CHECK_NEAR(first->slots[0]->phong.kd.y, 1, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);
+    model_destroy(&model);
+}
+
+TEST(cameras_lights_and_animations_of_gltf_are_listed_with_the_transforms_of_their_nodes) {
+    static const char text[] =
+        "{" ASSET "," TRIANGLE "," MESH ",\"nodes\":[{\"mesh\":0,\"translation\":[0,0,10],\"children\":[1,2,3,4]},"
+        "{\"camera\":0,\"name\":\"front\",\"rotation\":[0,1,0,0],\"translation\":[1,2,3]},{\"camera\":1},"
+        "{\"camera\":2},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}},"
+        "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}},\"scale\":[2,3,4]},"
+        "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":2}}},"
+        "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":9}}}],"
+        "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"aspectRatio\":1.5,\"znear\":1}},"
+        "{\"name\":\"plan\",\"type\":\"orthographic\",\"orthographic\":{\"xmag\":3,\"ymag\":2,\"znear\":0,"
+        "\"zfar\":1}},{\"type\":\"perspective\",\"perspective\":{\"yfov\":0}}],"
+        "\"animations\":[{\"name\":\"walk\",\"channels\":[],\"samplers\":[{\"input\":0,\"output\":0}]},{}],"
+        "\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":["
+        "{\"type\":\"spot\",\"name\":\"key\",\"color\":[1,0.5,0],\"intensity\":40,\"range\":7,"
+        "\"spot\":{\"innerConeAngle\":0.1,\"outerConeAngle\":0.2}},{\"type\":\"directional\"},"
+        "{\"type\":\"point\",\"intensity\":3}]}}}";
+    struct model model;
+    struct error error;
+    CHECK(parse_text(&model, text, &error));
+    CHECK_TEXT(error.text, "");
+    CHECK_EQ_INT(model.cameras.count, 2);
+    CHECK_EQ_INT(model.lights.count, 3);
+    CHECK_EQ_INT(model.animations.count, 2);
+    /* One warning for the camera without an angle, one for the light that does not exist. */
+    CHECK_EQ_INT(model.warning_count, 2);
+    const struct model_camera *camera = model_cameras(&model);
+    struct vec3 at = affine_point(&camera->model_from_camera, vec3_make(0, 0, -1));
+    CHECK_TEXT(camera[0].name, "front");
+    CHECK(camera[0].vertical_angle == 0.5 && camera[0].aspect == 1.5);
+    CHECK(at.x == 1 && at.y == 2 && at.z == 14);
+    CHECK_TEXT(camera[1].name, "plan");
+    CHECK(camera[1].vertical_angle == 0 && camera[1].half_size[0] == 3 && camera[1].half_size[1] == 2);
+    const struct model_light *sun = model_lights(&model), *spot = sun + 1, *point = sun + 2;
+    CHECK_EQ_INT(sun->kind, MODEL_LIGHT_DIRECTIONAL);
+    CHECK(sun->intensity.x == 1 && sun->range == 0 && sun->model_from_light.m[2][3] == 10);
+    CHECK_EQ_INT(spot->kind, MODEL_LIGHT_SPOT);
+    CHECK_TEXT(spot->name, "key");
+    CHECK(spot->intensity.x == 40 && spot->intensity.y == 20 && spot->intensity.z == 0 && spot->range == 7);
+    CHECK(spot->inner == 0.1 && spot->outer == 0.2);
+    CHECK_EQ_INT(point->kind, MODEL_LIGHT_POINT);
+    CHECK(point->intensity.z == 3);
+    CHECK_TEXT(model_animations(&model)[0].name, "walk");
     model_destroy(&model);
 }
 
@@ -354,7 +399,8 @@ TEST(gltf_errors_name_the_element) {
          "t.gltf: asset: glTF of version 2 is read, this file is of version '1.0'"},
         {"{" ASSET "}", "t.gltf: no faces in this file"},
         {"{" ASSET ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
-         "t.gltf: extensionsRequired: the file needs 'KHR_draco_mesh_compression', which is not supported"},
+         "t.gltf: extensionsRequired: the file needs 'KHR_draco_mesh_compression', which is not supported; "
+         "export it without compression"},
         {"{" ASSET "," MESH "}", "t.gltf: meshes[0].primitives[0]: POSITION is 0, but there are only 0 accessors"},
         {"{" ASSET "," TRIANGLE ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}]}",
          "t.gltf: meshes[0].primitives[0]: accessors[1] has 1 numbers an element, not 3"},

@@ -39,7 +39,9 @@ static struct hit middle(void) {
                         .normal_geometric = {0, 0, 1},
                         .raise = {0, 0, 1},
                         .dpdu = {1, 0, 0},
-                        .dpdv = {0, 1, 0}};
+                        .dpdv = {0, 1, 0},
+                        .has_second = true,
+                        .second = {3.5 / 16, 0.25, {1, 0, 0}, {0, 1, 0}}};
 }
 
 /* inputs, bsdf: what a hit in the middle has. */
@@ -51,7 +53,7 @@ static bool surface_of_file(const char *name, const char *material, struct surfa
     struct model_placing placing = {.name = "p"};
     bool fresh, found = false;
     scene_init(&scene, &assets);
-    const struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
+    struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
     struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
     CHECK_TEXT(error.text, "");
     for (uint32_t i = 0; node && i < node->slot_count; i++) {
@@ -189,6 +191,48 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
     }
 }
 
+TEST(gltf_pictures_by_second_or_turned_coordinates_are_looked_up_there) {
+    struct error error = {0};
+    CHECK(png_write_from(FILE_AT(in_folder("tilt.png")),
+                         &(struct png_source){.width = 16, .height = 16, .bytes = ramp_row}, NULL, &error));
+    write_even("colour 1.png", 51, 102, 255);
+    write_two_materials(
+        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,\"texCoord\":1}},"
+        "\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":1,\"extensions\":{\"KHR_texture_transform\":{"
+        "\"scale\":[0.5,1]}}}},{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1,"
+        "\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}");
+    struct surface_inputs inputs = {0};
+    if (inputs_of_file("m.gltf", "a", &inputs)) {
+        CHECK_NEAR(inputs.kd.x, 30.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.emission.x, 35.0 / 255, 1e-12);
+    }
+    if (inputs_of_file("m.gltf", "b", &inputs)) /* u is v, which counts from the upper edge */
+        CHECK_NEAR(inputs.kd.x, 115.0 / 255, 1e-12);
+}
+
+TEST(gltf_materials_of_specular_colour_and_gloss_are_layers) {
+    write_even("colour 1.png", 128, 102, 204);
+    write_even("tilt.png", 26, 13, 13);
+    write_two_materials(
+        "{\"name\":\"a\",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,1,1,1],"
+        "\"specularFactor\":[0.25,0.125,0.25],\"glossinessFactor\":0.75,\"diffuseTexture\":{\"index\":0}}}},"
+        "{\"name\":\"b\",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"glossinessFactor\":0.75,"
+        "\"diffuseTexture\":{\"index\":1},\"specularGlossinessTexture\":{\"index\":0}}}}");
+    struct surface_inputs inputs = {0};
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
+        CHECK_NEAR(inputs.kd.x, 0.5 * 128 / 255, 1e-12);
+        CHECK_NEAR(inputs.ks.y, 0.5, 1e-12);
+        CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 0, 0);
+    }
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) { /* as bright as a metal */
+        CHECK_NEAR(inputs.kd.z, 204.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
+    }
+}
+
 /* By the parameters of gr.openpbr_material. */
 TEST(a_gltf_mask_without_a_picture_shows_or_hides_the_whole_surface) {
     write_two_materials(
@@ -289,4 +333,78 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         arena_destroy(&arena);
     }
     image_release(image);
+}
+
+/* --- pictures that cannot be used --- */
+
+static void check_unusable(const char *name, const char *text, size_t size, const char *reason) {
+    char library[400];
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh;
+    if (text)
+        test_write_file(in_folder(name), text, size);
+    (void)snprintf(library, sizeof library,
+                   "newmtl a\nKd 0.2 0.4 0.6\nKs 0.3 0.3 0.3\nKe 1 1 1\n"
+                   "map_Kd %s\nmap_Ks %s\nmap_Ke %s\nmap_d %s\nmap_bump %s\nnorm %s\n",
+                   name, name, name, name, name, name);
+    test_write_text(in_folder("u.mtl"), library);
+    test_write_text(in_folder("u.obj"), SQUARE "mtllib u.mtl\nusemtl a\nf 1/1 2/2 3/3\n");
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("u.obj"), "u", &(struct model_options){0}, &fresh, &error);
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    if (node) {
+        struct hit hit = middle();
+        struct surface_inputs got;
+        material_inputs_at(node->slots[0], &hit, &got);
+        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(got.ks.x, 0.3, 0);
+        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_NEAR(got.opacity, 1, 0);
+        CHECK_NEAR(got.normal.z, 1, 0);
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK(strstr(model->warnings[0], name) && strstr(model->warnings[0], reason));
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
+TEST(a_picture_that_cannot_be_used_has_no_effect_and_emission_by_it_is_off) {
+    check_unusable("nowhere.png", NULL, 0, "is not there");
+    check_unusable("t.gif", "GIF89a....", 10, "the kind GIF, which gray does not read: convert it to PNG (the picture");
+    check_unusable("t.tif", "II*\0....", 8, "the kind TIFF, which gray does not read: convert it to PNG (the picture");
+    check_unusable("t.png", "\x89PNG\r\n\x1a\n", 8, "truncated PNG");
+    check_unusable("t.bmp", "BM", 2, "broken BMP");
+    check_unusable("t.tga", "", 0, "the file is empty");
+}
+
+TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh;
+    write_even("even.png", 255, 0, 0);
+    test_write_text(in_folder("w.mtl"), "newmtl a\nKd 0.2 0.4 0.6\nKe 1 1 1\nmap_Kd even.png\nmap_Ke even.png\n");
+    test_write_text(in_folder("w.obj"), SQUARE "mtllib w.mtl\nusemtl a\nf 1 2 3\n");
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("w.obj"), "w", &(struct model_options){0}, &fresh, &error);
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    if (node) {
+        struct hit hit = middle();
+        struct surface_inputs got;
+        hit.has_uv = false;
+        material_inputs_at(node->slots[0], &hit, &got);
+        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK(strstr(model->warnings[0],
+                     "the pictures of the material 'a' have no effect on meshes without coordinates"));
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
 }
