@@ -76,7 +76,7 @@ local glyphs = {
 }
 
 --- The strokes of a letter, scaled and moved.
-local function placed(letter, factor, dx, dy)
+local function moved(letter, factor, dx, dy)
     return (glyphs[letter]:match(';(.*)$'):gsub('([%-%d.]+),([%-%d.]+)', function(x, y)
         return ('%.3f,%.3f'):format(x * factor + dx, y * factor + dy)
     end))
@@ -88,18 +88,18 @@ for letter, parts in pairs { ['$'] = 'S;1.8,-.9 1.8,6.9', ['¢'] = 'c;1.5,-.9 1.
     local base, more = parts:match '^(.-)(;.*)$'
     glyphs[letter] = glyphs[base] .. more
 end
-glyphs['æ'] = '5.4;' .. placed('a', 1, 0, 0) .. ';' .. placed('e', 1, 2.6, 0)
-glyphs['œ'] = '5.5;' .. placed('o', 1, 0, 0) .. ';' .. placed('e', 1, 2.7, 0)
-glyphs['%'] = '5.2;' .. placed('o', .6, 0, 3.6) .. ';1.1,0 4.1,6;' .. placed('o', .6, 3.5, 0)
-glyphs['‰'] = '8;' .. placed('o', .6, 0, 3.6) .. ';1.1,0 4.1,6;' .. placed('o', .6, 3.5, 0) .. ';' .. placed('o', .6, 6.3, 0)
-glyphs['ª'], glyphs['º'] = '1.7;' .. placed('a', .6, 0, 3.6) .. ';0,1.9 1.7,1.9', '1.7;' .. placed('o', .6, 0, 3.6) .. ';0,1.9 1.7,1.9'
+glyphs['æ'] = '5.4;' .. moved('a', 1, 0, 0) .. ';' .. moved('e', 1, 2.6, 0)
+glyphs['œ'] = '5.5;' .. moved('o', 1, 0, 0) .. ';' .. moved('e', 1, 2.7, 0)
+glyphs['%'] = '5.2;' .. moved('o', .6, 0, 3.6) .. ';1.1,0 4.1,6;' .. moved('o', .6, 3.5, 0)
+glyphs['‰'] = '8;' .. moved('o', .6, 0, 3.6) .. ';1.1,0 4.1,6;' .. moved('o', .6, 3.5, 0) .. ';' .. moved('o', .6, 6.3, 0)
+glyphs['ª'], glyphs['º'] = '1.7;' .. moved('a', .6, 0, 3.6) .. ';0,1.9 1.7,1.9', '1.7;' .. moved('o', .6, 0, 3.6) .. ';0,1.9 1.7,1.9'
 for letter, digit in pairs { ['¹'] = '1', ['²'] = '2', ['³'] = '3' } do
-    glyphs[letter] = (digit == '1' and '.7;' or '1.7;') .. placed(digit, .57, 0, 2.6)
+    glyphs[letter] = (digit == '1' and '.7;' or '1.7;') .. moved(digit, .57, 0, 2.6)
 end
 for letter, digits in pairs { ['¼'] = '14', ['½'] = '12', ['¾'] = '34' } do
-    glyphs[letter] = '6;' .. placed(digits:sub(1, 1), .57, 0, 2.6) .. ';1.3,-.2 4.5,6.2;' .. placed(digits:sub(2), .57, 4.2, 0)
+    glyphs[letter] = '6;' .. moved(digits:sub(1, 1), .57, 0, 2.6) .. ';1.3,-.2 4.5,6.2;' .. moved(digits:sub(2), .57, 4.2, 0)
 end
-glyphs['™'] = '6;' .. placed('T', .5, 0, 3) .. ';' .. placed('M', .5, 3.4, 3)
+glyphs['™'] = '6;' .. moved('T', .5, 0, 3) .. ';' .. moved('M', .5, 3.4, 3)
 glyphs['\u{ad}'] = glyphs['-'] -- the soft hyphen
 
 -- Accented letters, their letter and the accent, which is centred; capitals are 2 higher than small letters.
@@ -107,7 +107,7 @@ for letter, base, accent in ('ÀA` ÁA´ ÂAˆ ÃA˜ ÄA¨ ÅA˚ ÇC¸ ÈE` ÉE�
     'àa` áa´ âaˆ ãa˜ äa¨ åa˚ çc¸ êeˆ ëe¨ ìı` íı´ îıˆ ïı¨ ñn˜ òo` óo´ ôoˆ õo˜ öo¨ ùu` úu´ ûuˆ üu¨ ýy´ ÿy¨ šsˇ žzˇ'):gmatch '([\xc2-\xcf].)([A-Za-z\xc4]\xb1?)(%S+)' do
     local own, above = tonumber(glyphs[base]:match '^[^;]+'), tonumber(glyphs[accent]:match '^[^;]+')
     local width, rise = math.max(own, above), base:match '%u' and accent ~= '¸' and 2 or 0
-    glyphs[letter] = width .. ';' .. placed(base, 1, (width - own) / 2, 0) .. ';' .. placed(accent, 1, (width - above) / 2, rise)
+    glyphs[letter] = width .. ';' .. moved(base, 1, (width - own) / 2, 0) .. ';' .. moved(accent, 1, (width - above) / 2, rise)
 end
 
 local cache = {}

@@ -1841,7 +1841,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, 'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, glass and light see sky or the default. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
@@ -1925,7 +1925,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, 'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, glass and light see sky or the default. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
@@ -2121,7 +2121,7 @@ function node:translate(x, y, z) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, 'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, glass and light see sky or the default. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.

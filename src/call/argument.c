@@ -697,7 +697,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
             return true;
         if (lua_type(L, index) != LUA_TSTRING)
             value->vector = read_vector(c, index, &argument_path);
-        else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
+        else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0 &&
+                 strcmp(value->text, "transparent") != 0)
             sandbox_raise(&c->sandbox, "%s must be %s, not '%.100s'; %s", argument_path_text(&argument_path, words),
                           kind_words(p->kind), value->text,
                           strchr(value->text, '.') ? "gr.sky_map{image = ...} makes a sky of a picture"

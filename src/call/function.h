@@ -29,7 +29,7 @@ struct script_context;
  * KIND_AXIS (0, 1, 2) text: KIND_FILE (to be read, looked for beside the scene), KIND_OUTPUT (to be written)
  *   KIND_MATERIALS: names in byte order, too, or a list: names is NULL
  *   KIND_IMAGE: image, or text: the name of its file
- *   KIND_BACKGROUND: vector, or text = "gradient", or sky, or program
+ *   KIND_BACKGROUND: vector, or text = "gradient" or "transparent", or sky, or program
  *   KIND_CAUSTICS: number: photons, vector.x: radius; a number alone is the photons
  *   KIND_FACES: starts, indices; KIND_ROWS: starts, numbers; KIND_CURVES: starts, pairs
  *   KIND_FUNCTION: program; KIND_CALLBACK: stays on the stack of Lua, and is called */

@@ -72,7 +72,7 @@ static void make_whole(lua_State *L, int index) {
  * arguments the call needs for that (in table.insert(t, 1.5) the fraction is the value). */
 struct whole_arguments {
     const char *library, *name;
-    int first, last, at_least;
+    int first, last, minimum;
 };
 
 static const struct whole_arguments whole_arguments[] = {
@@ -105,7 +105,7 @@ static void wrap(lua_State *L, const char *library, const char *name, lua_CFunct
 static int cut_fractions(lua_State *L) {
     const struct whole_arguments *row = lua_touserdata(L, lua_upvalueindex(3));
     int top = lua_gettop(L), last = row->last > 0 && row->last < top ? row->last : top;
-    for (int k = row->first; k <= last && top >= row->at_least; k++)
+    for (int k = row->first; k <= last && top >= row->minimum; k++)
         make_whole(L, k);
     return run_original(L);
 }

@@ -134,7 +134,7 @@ static void judge_picture(const struct token *w, struct evidence *evidence) {
     bool after_name = token_is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
     bool after_bracket = token_is_symbol(&w[WINDOW - 2], '(') && token_is(&w[WINDOW - 3], TOKEN_NAME, "render") &&
                          is_after_dot(w, WINDOW - 3);
-    bool is_field = token_is(&w[WINDOW - 2], TOKEN_NAME, "background") || token_is(&w[WINDOW - 2], TOKEN_NAME, "sky");
+    bool is_field = token_is(&w[WINDOW - 3], TOKEN_NAME, "background") || token_is(&w[WINDOW - 3], TOKEN_NAME, "sky");
     if (after_name || after_bracket) {
         evidence->renders = evidence->renders || token_is_symbol(t, '{');
         bool open = token_is_symbol(t, '{') || (after_name && token_is_symbol(t, '('));
@@ -145,7 +145,8 @@ static void judge_picture(const struct token *w, struct evidence *evidence) {
     }
     bool draws = token_is(t, TOKEN_NAME, "frames") && is_after_dot(w, WINDOW - 1);
     evidence->renders = evidence->renders || (draws && token_is(&w[WINDOW - 3], TOKEN_NAME, "gr"));
-    if ((is_field && token_is_symbol(t, '=')) ||
+    /* background = 'transparent' keeps the default for mirrors. */
+    if ((is_field && token_is_symbol(&w[WINDOW - 2], '=') && !token_is(t, TOKEN_STRING, "transparent")) ||
         (token_is(t, TOKEN_NAME, "render_skybox") && is_after_dot(w, WINDOW - 1)))
         evidence->renders_otherwise = true;
 }

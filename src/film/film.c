@@ -138,6 +138,12 @@ static size_t mask_size(const struct film *film, struct film_rectangle r) {
     return film->record.marks ? ((size_t)(r.x1 - r.x0) * (r.y1 - r.y0) + 7) / 8 : 0;
 }
 
+/* The number of floats that pixels without a mark repeat. */
+static uint32_t repeated_floats(struct film_record record) {
+    uint32_t colour = record.floats < 3 ? record.floats : 3;
+    return record.marks ? colour : 0;
+}
+
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t bit = 0, floats = film->record.floats;
@@ -150,8 +156,8 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
             if (marked)
                 mask[bit / 8] |= (uint8_t)(1 << (bit % 8));
             end = put_floats(end, film->pixels[at].rgb, 3);
-            if (marked || !film->record.marks)
-                end = put_floats(end, &film->floats[at * floats], floats);
+            uint32_t from = marked ? 0 : repeated_floats(film->record);
+            end = put_floats(end, &film->floats[at * floats + from], floats - from);
         }
     }
     return (size_t)(end - out);
@@ -160,12 +166,13 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out) {
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t pixels = (r.x1 - r.x0) * (r.y1 - r.y0);
-    size_t head = mask_size(film, r), with_floats = film->record.marks ? 0 : pixels;
+    size_t head = mask_size(film, r), unmarked = pixels;
     if (size < head)
         return false;
     for (uint32_t i = 0; i < pixels && film->record.marks; i++)
-        with_floats += bytes[i / 8] >> (i % 8) & 1;
-    if (size != head + (3 * (size_t)pixels + film->record.floats * with_floats) * sizeof(float))
+        unmarked -= bytes[i / 8] >> (i % 8) & 1;
+    size_t floats = (3 + (size_t)film->record.floats) * pixels - repeated_floats(film->record) * unmarked;
+    if (size != head + floats * sizeof(float))
         return false;
     for (const uint8_t *at = bytes + head; at < bytes + size;) {
         float value;
@@ -191,8 +198,8 @@ bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, si
             next = get_floats(next, film->pixels[at].rgb, 3);
             for (uint32_t i = 0; i < floats; i++)
                 film->floats[at * floats + i] = rgb[i % 3];
-            if (!film->record.marks || film->marked[at])
-                next = get_floats(next, &film->floats[at * floats], floats);
+            uint32_t from = film->marked && film->marked[at] ? 0 : repeated_floats(film->record);
+            next = get_floats(next, &film->floats[at * floats + from], floats - from);
         }
     }
     atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);

@@ -27,9 +27,9 @@ struct film_pixel {
 /* The additional record of a pixel: the integrator of the picture defines it (render_record). */
 struct film_record {
     uint32_t floats; /* at most FILM_RECORD_FLOATS, all finite; the integrator defines their meaning */
-    uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the floats; else 0 */
+    uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the first three floats */
 };
-enum { FILM_RECORD_FLOATS = 81 };
+enum { FILM_RECORD_FLOATS = 83 };
 
 struct film {
     uint32_t width, height;
@@ -112,8 +112,8 @@ void film_clear_unfinished(struct film *film);
 /* Whether a final colour is the largest float, i.e. clamped light. */
 bool film_holds_largest(const struct film *film);
 
-/* A tile as bytes: with marks a bit for each pixel that is marked; then of each pixel the colour and, if it is marked
- * or there are no marks, the floats. At most FILM_PACKED_LIMIT bytes, little-endian. */
+/* A tile as bytes: with marks a bit for each pixel that is marked; then of each pixel the colour and the floats, of one
+ * that is not marked without the first three. At most FILM_PACKED_LIMIT bytes, little-endian. */
 enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * ((3 + FILM_RECORD_FLOATS) * 4) + FILM_TILE * FILM_TILE / 8 };
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
 /* Whether the size of the bytes agrees with their own mask, and all colours are finite; only needs the rectangle and

@@ -14,15 +14,18 @@ enum {
     RECORD_FLOATS = RECORD_SQUARES + 3,
     FEATURE_FLOATS = 2 * PATH_FEATURES,
     LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
+    ALPHA_FLOATS = 2,                         /* seen_through: the sum and its remainder */
 };
-/* After RECORD_FLOATS: the features, then the layers of light, then the line. */
-_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + 1 <= (int)FILM_RECORD_FLOATS,
+/* After RECORD_FLOATS: the features, then the layers of light, then the sum for alpha, then the line. */
+_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + (int)ALPHA_FLOATS + 1 <=
+                   (int)FILM_RECORD_FLOATS,
                "a tile cannot carry the record of a path-traced pixel");
 
 struct film_record path_film_record(unsigned parts) {
     uint32_t floats = RECORD_FLOATS;
     floats += parts & PATH_PART_FEATURES ? FEATURE_FLOATS : 0;
     floats += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    floats += parts & PATH_PART_ALPHA ? ALPHA_FLOATS : 0;
     floats += parts & PATH_PART_LINE ? 1 : 0;
     return (struct film_record){.floats = floats, .marks = 0};
 }
@@ -77,6 +80,9 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
     }
     for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
         pixel.light[i] = load_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i);
+    more += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    if (parts & PATH_PART_ALPHA)
+        pixel.seen_through = (double)more[0] + (double)more[1];
     if (parts & PATH_PART_LINE)
         pixel.line = record[film->record.floats - 1];
     return pixel;
@@ -111,6 +117,11 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
     }
     for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
         store_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i, pixel->light[i]);
+    more += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    if (parts & PATH_PART_ALPHA) {
+        more[0] = (float)pixel->seen_through;
+        more[1] = (float)(pixel->seen_through - (double)more[0]);
+    }
     if (parts & PATH_PART_LINE)
         record[film->record.floats - 1] = pixel->line;
     store_colour(film->pixels[at].rgb, path_pixel_below_line(pixel, path_pixel_mean(pixel)));
@@ -130,11 +141,12 @@ void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *par
         pixel->light[i] = rounded_sums(vec3_add(pixel->light[i], vec3_scale(parts->light[i], weight)));
 }
 
-void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight) {
+void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight) {
     unsigned half = pixel->samples % 2;
     struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
     pixel->sums[half] = rounded_sums(sum);
     pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
+    pixel->seen_through = rounded_sum(pixel->seen_through + weight * seen_through);
     pixel->weights[half] += weight;
     pixel->samples++;
 }
@@ -182,6 +194,24 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
     struct vec3 mean = path_pixel_mean(pixel);
     struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
     return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
+}
+
+/* The record of the integrator whitted has it after the first pass (whitted_record). */
+static const struct film_record whitted_alpha = {.floats = 4, .marks = 1};
+
+bool film_has_alpha(struct film_record record) {
+    return film_record_equal(record, whitted_alpha) || path_film_parts(record) & PATH_PART_ALPHA;
+}
+
+float film_alpha(const struct film *film, size_t at) {
+    if (!film_has_alpha(film->record))
+        return 1;
+    if (film->record.marks)
+        return film->floats[at * film->record.floats + 3];
+    const struct path_pixel pixel = path_film_load(film, at);
+    double seen = over(vec3_all(pixel.seen_through), pixel.weights[0] + pixel.weights[1]).x;
+    double open = (seen > 1 ? 1 : seen > 0 ? seen : 0) * (1 - (double)pixel.line);
+    return (float)(1 - open);
 }
 
 void path_film_draw_lines(const struct film *film, float (*colours)[3]) {

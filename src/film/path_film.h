@@ -21,6 +21,7 @@ struct path_pixel {
     /* Only in records with these parts (enum path_part). */
     float features[2][PATH_FEATURES];     /* of the halves: weighted sums */
     struct vec3 light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
+    double seen_through;                  /* weighted sum of the shares of the samples that see the background */
     float line;                           /* the fraction of the pixel that black lines cover, 0..1 */
 };
 
@@ -33,10 +34,15 @@ unsigned path_film_parts(struct film_record record);
 struct path_pixel path_film_load(const struct film *film, size_t at);
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
 
+/* Whether a film, also one of the integrator whitted, has the alpha of its pixels, and that of a pixel (1 without it).
+ */
+bool film_has_alpha(struct film_record record);
+float film_alpha(const struct film *film, size_t at);
+
 /* Adds sample number pixel->samples. weight: that of the reconstruction filter, 1 or -1. The parts of the sample are
  * added before it. */
 void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
-void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
+void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight);
 
 /* The mean of all samples, and the mean of one half (black if it has no samples); and a colour with the line of the
  * pixel drawn over it. */

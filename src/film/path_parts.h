@@ -8,7 +8,13 @@
 #include <stdbool.h>
 
 /* The parts that films may record for a path-traced pixel besides its colour. */
-enum path_part { PATH_PART_FEATURES = 1, PATH_PART_LIGHT = 2, PATH_PART_LINE = 4, PATH_PARTS = 7 };
+enum path_part {
+    PATH_PART_FEATURES = 1,
+    PATH_PART_LIGHT = 2,
+    PATH_PART_LINE = 4,
+    PATH_PART_ALPHA = 8,
+    PATH_PARTS = 15
+};
 
 /* Features of the first surface on a line of sight that scatters or emits light; mirrors and smooth glass in front
  * of it are skipped. But the light that the first smooth glass reflects counts as white albedo: chance chooses

@@ -66,6 +66,7 @@ bool picture_file_write(const struct file_target *target, const struct picture_s
     struct png_source png = {.width = width,
                              .height = height,
                              .context = source->context,
+                             .alpha = source->alpha,
                              .srgb = source->srgb,
                              .unfinished = source->unfinished};
     if (source->deep)

@@ -39,6 +39,7 @@ struct picture_source {
     bool deep;       /* 16 bits per channel, if the format has them */
     bool srgb;       /* bytes and words are encoded with the sRGB function */
     bool unfinished; /* see struct png_source */
+    bool alpha;      /* bytes and words have 4 numbers a pixel; only for PNG */
 };
 
 /* Writes a file in the format of its name. With a pool, its threads may request rows at the same time. */

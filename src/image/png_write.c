@@ -63,7 +63,7 @@ static unsigned size_of(uint8_t difference) {
 /* Chooses the filter, Sub or Up, with the smaller sum of differences (the heuristic of the standard). */
 static void filter_row(const struct text_writer *writer, const struct packer *packer, bool has_above, uint8_t *out) {
     const uint8_t *row = packer->row, *above = packer->above;
-    size_t pixel = writer->rows->words ? 6 : 3, size = writer->row_bytes;
+    size_t pixel = writer->row_bytes / writer->rows->width, size = writer->row_bytes;
     uint64_t sub = 0, up = 0;
     for (size_t i = pixel; i < size && has_above; i++)
         sub += size_of((uint8_t)(row[i] - row[i - pixel]));
@@ -141,7 +141,7 @@ static bool write_head(struct text_writer *writer, struct error *error) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t stream_head[2] = {0x78, 0x5e}; /* deflate, a window of 32 kB, a fast level (RFC 1950) */
     static const uint8_t intent = 0;                    /* perceptual */
-    uint8_t header[13] = {[8] = writer->rows->words ? 16 : 8, [9] = 2 /* red, green, blue */};
+    uint8_t header[13] = {[8] = writer->rows->words ? 16 : 8, [9] = writer->rows->alpha ? 6 : 2 /* red, green, blue */};
     put_word(header, writer->rows->width);
     put_word(header + 4, writer->rows->height);
     return file_output_write(&writer->output, signature, sizeof signature, error) &&
@@ -222,16 +222,19 @@ static void end(struct text_writer *writer) {
     mem_free(writer->stripes);
 }
 
+static uint32_t rows_of_stripe(size_t row_bytes) {
+    return row_bytes + 1 < STRIPE ? (uint32_t)(STRIPE / (row_bytes + 1)) : 1;
+}
+
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits) {
-    size_t row = (size_t)width * 3 * (size_t)bits / 8 + 1;
-    uint32_t rows = row < STRIPE ? (uint32_t)(STRIPE / row) : 1;
-    return (height - 1) / rows + 1;
+    return (height - 1) / rows_of_stripe((size_t)width * 3 * (size_t)bits / 8) + 1;
 }
 
 static struct text_writer writer_for(const struct png_source *rows, const struct pool *pool) {
-    struct text_writer writer = {.rows = rows, .row_bytes = (size_t)rows->width * 3 * (rows->words ? 2 : 1)};
-    writer.stripe_count = png_write_stripes(rows->width, rows->height, rows->words ? 16 : 8);
-    writer.stripe_rows = writer.row_bytes + 1 < STRIPE ? (uint32_t)(STRIPE / (writer.row_bytes + 1)) : 1;
+    struct text_writer writer = {.rows = rows,
+                                 .row_bytes = (size_t)rows->width * (rows->alpha ? 4 : 3) * (rows->words ? 2 : 1)};
+    writer.stripe_rows = rows_of_stripe(writer.row_bytes);
+    writer.stripe_count = (rows->height - 1) / writer.stripe_rows + 1;
     writer.stripe_bytes = writer.stripe_rows * (writer.row_bytes + 1);
     writer.workers = pool ? pool_workers(pool) : 1;
     writer.in_flight = pool ? IN_FLIGHT * writer.workers : 1;

@@ -9,13 +9,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The source of the rows: bytes(context, y, line) fills 3 * width bytes for row y, words the same with 16 bits per
- * channel in native byte order; one of the two. */
+/* The source of the rows: bytes(context, y, line) fills 3 * width bytes, with alpha 4 * width, for row y, words the
+ * same with 16 bits per channel in native byte order; one of the two. */
 struct png_source {
     uint32_t width, height;
     void (*bytes)(void *context, uint32_t y, uint8_t *line);
     void (*words)(void *context, uint32_t y, uint16_t *line);
     void *context;
+    bool alpha;      /* the fourth number of a pixel; colours are not multiplied by it */
     bool srgb;       /* the numbers are encoded with the sRGB function: the file states it */
     bool unfinished; /* the file states that, too: png_is_unfinished */
 };

@@ -59,14 +59,17 @@ static void layer_row_linear(void *context, uint32_t y, float *line) {
     memcpy(line, rows->values + (size_t)y * rows->width, rows->width * sizeof *rows->values);
 }
 
-bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error) {
+bool layers_write_exr(const struct file_target *target, const struct film *film, const float *alpha,
+                      struct error *error) {
     static const char *const light[3] = {"R", "G", "B"};
-    struct exr_channel channels[3 + 3 * AOV_COUNT];
+    struct exr_channel channels[4 + 3 * AOV_COUNT];
     char names[AOV_COUNT][3][32]; /* "normal.X" */
     uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
     size_t pixels = (size_t)film->width * film->height;
     for (int c = 0; c < 3; c++)
         channels[count++] = (struct exr_channel){light[c], &film->pixels[0].rgb[c], floats};
+    if (alpha)
+        channels[count++] = (struct exr_channel){"A", alpha, 1};
     for (int i = 0; i < AOV_COUNT; i++) {
         if (!(film->layer_mask >> i & 1))
             continue;
@@ -102,6 +105,7 @@ bool layers_write(const struct file_target *picture, const struct film *film, co
                                         &rows,
                                         deep_picture || rows.aov == AOV_DEPTH,
                                         rows.aov == AOV_RAW && tone->srgb,
+                                        false,
                                         false};
         if (!picture_file_write(&target, &source, NULL, error))
             return false;

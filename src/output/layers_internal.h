@@ -12,8 +12,9 @@
 bool layers_write(const struct file_target *picture, const struct film *film, const struct tone *tone,
                   bool deep_picture, struct error *error);
 
-/* Light as R, G, B, and the layers as channels with their names: depth.Z, normal.X ... */
-bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error);
+/* Light as R, G, B, alpha as A (or NULL), and the layers as channels with their names: depth.Z, normal.X ... */
+bool layers_write_exr(const struct file_target *target, const struct film *film, const float *alpha,
+                      struct error *error);
 
 enum { LAYER_NAME_LIMIT = 4096 };
 /* dir/foo.png with the layer depth is dir/foo.depth.png. */

@@ -367,6 +367,11 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (picture_format(written) == PICTURE_EXR && !exr_can_write())
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, and this build was made without it",
                          written);
+    if (request->settings.transparent &&
+        (picture_format(written) == PICTURE_PFM || picture_format(written) == PICTURE_HDR ||
+         output->options->animation != ANIMATION_NONE))
+        return error_set(error, ERROR_SCENE, "%s: background 'transparent' needs a file with alpha: .png or .exr",
+                         written);
     if (!animation_begin(&output->animation, request, number_of(output, request), error))
         return false;
     /* Frames of an animation have 8 bits a channel. */

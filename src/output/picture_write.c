@@ -20,7 +20,32 @@ struct rows {
     const struct tone *tone;
     const float (*display)[3]; /* or NULL */
     enum dither dither;
+    const float *alpha; /* or NULL */
 };
+
+/* Pictures with alpha: the light of the film is multiplied by it, the numbers of PNG files are not. */
+static double number_of(const struct rows *rows, size_t at, uint32_t channel) {
+    double alpha = (double)rows->alpha[at];
+    if (channel == 3 || alpha <= 0)
+        return channel == 3 ? alpha : 0;
+    return rows->display ? (double)rows->display[at][channel] / alpha
+                         : tone_apply(rows->tone, (double)rows->film->pixels[at].rgb[channel] / alpha);
+}
+
+static void row_with_alpha(void *context, uint32_t y, uint8_t *line) {
+    const struct rows *rows = context;
+    const struct film *film = rows->film;
+    for (uint32_t i = 0; i < 4 * film->width; i++) {
+        double value = number_of(rows, (size_t)y * film->width + i / 4, i % 4);
+        line[i] = dither_byte(i % 4 == 3 ? DITHER_NONE : rows->dither, film->x0 + i / 4, film->y0 + y, value);
+    }
+}
+
+static void row_16_with_alpha(void *context, uint32_t y, uint16_t *line) {
+    const struct rows *rows = context;
+    for (uint32_t i = 0; i < 4 * rows->film->width; i++)
+        line[i] = tone_word(number_of(rows, (size_t)y * rows->film->width + i / 4, i % 4));
+}
 
 static void row(void *context, uint32_t y, uint8_t *line) {
     const struct rows *rows = context;
@@ -60,12 +85,14 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
                         struct pool *pool, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
-    struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither};
+    const float *alpha = view == FILM_FINAL ? picture->alpha : NULL;
+    struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither, alpha};
     struct picture_source source = {
-        request->width, request->height,    row, row_16, row_linear, &rows, request->settings.deep,
-        tone.srgb,      picture->unfinished};
-    if (view == FILM_FINAL && picture->film.layer_mask && picture_format(target->path) == PICTURE_EXR)
-        return layers_write_exr(target, &picture->film, error);
+        request->width,      request->height, alpha ? row_with_alpha : row, alpha ? row_16_with_alpha : row_16,
+        row_linear,          &rows,           request->settings.deep,       tone.srgb,
+        picture->unfinished, alpha != NULL};
+    if (view == FILM_FINAL && (picture->film.layer_mask || alpha) && picture_format(target->path) == PICTURE_EXR)
+        return layers_write_exr(target, &picture->film, alpha, error);
     return picture_file_write(target, &source, pool, error);
 }
 
@@ -170,8 +197,8 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
     if (shown) {
         struct tone tone = picture_tone(&shown->picture.request);
         const struct film *film = &shown->picture.film;
-        struct rows rows = {film, FILM_FINAL, &tone, shown->picture.display,
-                            shown->picture.request.settings.finish.dither};
+        struct rows rows = {
+            film, FILM_FINAL, &tone, shown->picture.display, shown->picture.request.settings.finish.dither, NULL};
         for (uint32_t y = 0; y < film->height; y++)
             row(&rows, y, rgb + (size_t)3 * film->width * y);
     }
@@ -247,6 +274,18 @@ static bool cut_film(struct picture_shown *out, const struct film *film, const s
                                       .layer_mask = film->layer_mask,
                                       .layers = count > 0 ? out->layers : NULL};
     return true;
+}
+
+/* The alpha of the part, if the film has it. */
+static bool add_alpha(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0, height = part->y1 - part->y0;
+    if (!film_has_alpha(film->record))
+        return true;
+    out->picture.alpha = out->alpha = mem_alloc(width * height * sizeof *out->alpha);
+    for (size_t i = 0; out->alpha && i < width * height; i++)
+        out->alpha[i] =
+            film_alpha(film, (part->y0 - film->y0 + i / width) * film->width + part->x0 - film->x0 + i % width);
+    return out->alpha != NULL;
 }
 
 static struct finish_area area_of(const struct film *film) {
@@ -332,6 +371,11 @@ struct picture_shown *picture_shown_make(const struct picture *picture, struct d
         return NULL;
     }
     out->picture = *picture;
+    if (!add_alpha(out, film, &part)) {
+        (void)error_no_memory(error, "a picture that is written");
+        picture_shown_destroy(out);
+        return NULL;
+    }
     /* A film that nothing changes is borrowed as it is. */
     bool changes = by.denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
     if (!changes && is_whole(film, &part))
@@ -354,6 +398,7 @@ void picture_shown_destroy(struct picture_shown *shown) {
     mem_free(shown->pixels);
     mem_free(shown->display);
     mem_free(shown->floats);
+    mem_free(shown->alpha);
     mem_free(shown->marked);
     mem_free(shown->layers);
     mem_free(shown);

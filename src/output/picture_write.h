@@ -23,6 +23,7 @@ struct picture {
     struct tile_picture tiles;                     /* the key of its tiles in a tile file */
     struct share memory;
     struct film film;
+    const float *alpha;        /* or NULL; of what is written (film_alpha); borrowed */
     const float (*display)[3]; /* or NULL; for a part: its finished numbers for PNG files; borrowed */
 };
 
@@ -46,7 +47,7 @@ struct picture_shown {
     struct picture picture;
     struct film_pixel *pixels;
     float (*display)[3];
-    float *floats;
+    float *floats, *alpha;
     uint8_t *marked;
     float (*layers)[3];
 };

@@ -22,7 +22,7 @@ static const char *const no_kind = "an integrator of no kind";
 struct film_record render_record(const struct settings *settings) {
     switch (settings->integrator) {
     case INTEGRATOR_WHITTED:
-        return whitted_record();
+        return whitted_record(settings);
     case INTEGRATOR_PATH:
         return path_tracer_record(settings);
     }

@@ -33,6 +33,8 @@ struct integrator_state {
     struct observer *observer;                   /* or NULL */
     struct path_parts *parts;                    /* or NULL; of the current camera ray, zero before */
     struct camera_hit *camera_hit;               /* or NULL; for a camera ray until its first hit is shaded */
+    /* With settings.transparent: the share of the current sample that sees the background; 0 before. */
+    double seen_through;
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set after a colour that was not finite or too large */
 };

@@ -17,6 +17,8 @@ struct film_record path_tracer_record(const struct settings *settings) {
         parts |= PATH_PART_LIGHT;
     if (settings_line_width(settings) > 0)
         parts |= PATH_PART_LINE;
+    if (settings->transparent)
+        parts |= PATH_PART_ALPHA;
     return path_film_record(parts);
 }
 
@@ -183,7 +185,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
             int64_t x = batch->positions[i].x;
             if (batch->parts)
                 path_pixel_add_parts(&pixel, &batch->parts[i], batch->positions[i].weight);
-            path_pixel_add(&pixel, batch->colours[i], batch->positions[i].weight);
+            path_pixel_add(&pixel, batch->colours[i], batch->seen_through[i], batch->positions[i].weight);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);

@@ -198,9 +198,12 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
     return end_path(path, PATH_SEES_LIGHT);
 }
 
-static void leave_scene(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path) {
+static void leave_scene(const struct path_tracer *tracer, struct integrator_state *state, struct path *path) {
     const struct world *world = state->job->world;
-    if (path->sight) {
+    if (state->job->settings.transparent && path->sight && path->depth == 0) {
+        state->seen_through += (path->weight.x + path->weight.y + path->weight.z) / 3;
+        set_features(path, vec3_all(0), vec3_all(0), -path->travelled);
+    } else if (path->sight) {
         struct vec3 sky = sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread);
         set_features(path, light_albedo(sky), vec3_all(0), -path->travelled);
         add_light(path, sky);

@@ -17,8 +17,9 @@
 struct batch {
     struct pixel_sample positions[PACKET_RAYS];
     struct vec3 colours[PACKET_RAYS];
-    struct path_parts *parts;       /* or NULL; PACKET_RAYS of them */
-    struct camera_hit *camera_hits; /* the same */
+    double seen_through[PACKET_RAYS]; /* of integrator_state */
+    struct path_parts *parts;         /* or NULL; PACKET_RAYS of them */
+    struct camera_hit *camera_hits;   /* the same */
     uint32_t count;
     struct ray_packet packet;
     struct packet_answer answers[PACKET_RAYS];

@@ -71,12 +71,14 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
     struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
     if (parts)
         *parts = parts_of_eyes(&left_parts, parts);
+    worker->state.seen_through /= 2;
     return vec3_make(colour.x, right.y, right.z);
 }
 
 /* The strata of sample i of a batch, and the hit of its camera ray. */
 static void begin_records(struct worker *worker, uint32_t i) {
     struct batch *batch = &worker->batch;
+    worker->state.seen_through = 0;
     worker->state.parts = batch->parts ? &batch->parts[i] : NULL;
     worker->state.camera_hit = batch->camera_hits ? &batch->camera_hits[i] : NULL;
     if (batch->parts)
@@ -145,6 +147,7 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         for (uint32_t i = 0; i < batch->count; i++) {
             begin_records(worker, i);
             batch->colours[i] = renderer_sample(renderer, worker, &batch->positions[i]);
+            batch->seen_through[i] = worker->state.seen_through;
         }
         end_records(worker);
         return;
@@ -178,6 +181,7 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         begin_records(worker, i);
         batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);
+        batch->seen_through[i] = worker->state.seen_through;
     }
     end_records(worker);
 }

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "film/path_film.h"
 #include "math/elementary.h"
 #include "photon/photon_trace.h"
 #include "render/sample_internal.h"
@@ -115,9 +116,10 @@ void whitted_add_statistics(const struct whitted *whitted, const struct renderer
         out->marked_pixels += whitted->workers[i].marked, out->late_pixels += whitted->workers[i].late;
 }
 
-/* The first pass is kept: a viewer may show it, and the resampled pixels. */
-struct film_record whitted_record(void) {
-    return (struct film_record){.floats = 3, .marks = 1};
+/* The first pass is kept: a viewer may show it, and the resampled pixels. Behind it, the alpha of the pixel
+ * (film_alpha). */
+struct film_record whitted_record(const struct settings *settings) {
+    return (struct film_record){.floats = settings->transparent ? 4 : 3, .marks = 1};
 }
 
 /* --- marks --- */
@@ -214,7 +216,9 @@ static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y
             if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
                 continue;
             double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
-            double distance = squared_distance(own, toned(tone, *first_at(part, nx, ny)));
+            double alpha =
+                part->own->seen_through[index_of(part, x, y)] - part->own->seen_through[index_of(part, nx, ny)];
+            double distance = squared_distance(own, toned(tone, *first_at(part, nx, ny))) + 3 * alpha * alpha;
             *mark = (struct observed_mark){MARK_COLOUR, dx, dy, distance, tolerance};
             if (distance > tolerance)
                 return true;
@@ -322,15 +326,16 @@ static struct pixel_sample sample_of_pattern(const struct pixel_pattern *pattern
 }
 
 /* Mean of the N x N samples, weighted by the filter; where one of them is the first sample again it is not traced
- * twice. */
-static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
+ * twice. *seen_through: of the first sample, then their mean. */
+static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first,
+                               double *seen_through) {
     struct renderer *renderer = part->renderer;
     int n = renderer->job->settings.samples;
     struct pixel_pattern pattern = pattern_of(part->whitted, renderer, x, y);
     bool reuse = pattern.first_counts;
     struct batch *batch = &part->worker->batch;
     struct vec3 sum = {0, 0, 0};
-    double weights = 0;
+    double weights = 0, through = 0;
     int centre = reuse ? n / 2 * n + n / 2 : -1;
     for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
         int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
@@ -348,10 +353,12 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
         for (int k = begin; k < end; k++) {
             bool is_first = k == centre && first;
             double weight = is_first ? 1 : batch->positions[next].weight;
+            through += weight * (is_first ? *seen_through : batch->seen_through[next]);
             sum = vec3_add(sum, vec3_scale(is_first ? *first : batch->colours[next++], weight));
             weights += weight;
         }
     }
+    *seen_through = clamp01(through / weights);
     return vec3_scale(sum, 1 / weights);
 }
 
@@ -381,12 +388,18 @@ static void store(float out[3], struct vec3 colour) {
     out[2] = (float)colour.z;
 }
 
+static void store_alpha(struct film *film, size_t at, double alpha) {
+    if (film_has_alpha(film->record))
+        film->floats[at * film->record.floats + 3] = (float)alpha;
+}
+
 static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     struct film *film = part->renderer->job->film;
     size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
     const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
     bool full = part->whitted->full, marked = full || is_marked(part, x, y);
-    struct vec3 colour = marked ? all_samples(part, x, y, first) : *first;
+    double through = first ? part->own->seen_through[index_of(part, x, y)] : 0;
+    struct vec3 colour = marked ? all_samples(part, x, y, first, &through) : *first;
     double line = contour_coverage(&part->own->contour, x, y);
     struct vec3 first_colour = first ? *first : colour;
     if (line > 0) {
@@ -395,6 +408,7 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     }
     store(film->pixels[at].rgb, colour);
     store(&film->floats[at * film->record.floats], first_colour);
+    store_alpha(film, at, 1 - through * (1 - line));
     film->marked[at] = marked;
     part->own->marked += marked;
     struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
@@ -422,6 +436,7 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
     for (uint32_t i = 0; i < batch->count; i++) {
         size_t at = index_of(part, batch->positions[i].x, batch->positions[i].y);
         part->own->first[at] = batch->colours[i];
+        part->own->seen_through[at] = batch->seen_through[i];
         if (part->whitted->fine)
             part->own->hits[at] = part->own->patch[i];
     }
@@ -453,6 +468,8 @@ static void finish_late(struct part *part, const struct film_rectangle *rows, bo
                 struct vec3 colour = has_first ? *first_at(part, x, y) : batch->colours[0];
                 store(film->pixels[at].rgb, colour);
                 store(&film->floats[at * film->record.floats], colour);
+                store_alpha(film, at,
+                            1 - (has_first ? part->own->seen_through[index_of(part, x, y)] : batch->seen_through[0]));
                 film->marked[at] = 0;
             }
             part->own->late += (uint64_t)((x1 - x0) * (y1 - y0));

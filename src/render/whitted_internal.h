@@ -16,6 +16,7 @@ struct whitted_worker {
     uint64_t marked, late; /* pixels; late: after the time limit, with fewer samples */
     /* The first samples of a tile and its rim. */
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+    double seen_through[(FILM_TILE + 2) * (FILM_TILE + 2)];
     struct camera_hit hits[(FILM_TILE + 2) * (FILM_TILE + 2)]; /* AA_ROTATED */
     struct camera_hit patch[PACKET_RAYS];
     struct contour contour;
@@ -36,7 +37,7 @@ struct whitted {
 };
 
 /* See render/integrator_internal.h. `whitted` is zero. */
-struct film_record whitted_record(void);
+struct film_record whitted_record(const struct settings *settings);
 bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
                     struct render_statistics *statistics, struct error *error);
 void whitted_destroy(struct whitted *whitted);

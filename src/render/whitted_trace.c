@@ -337,6 +337,8 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         colour = light_emitted(area_light, ray, &area_light_hit);
     else if (met)
         colour = shade_hit(state, ray, hit, path);
+    else if (state->job->settings.transparent && path->reflections == 0 && path->refractions == 0)
+        state->seen_through += path->weight;
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;

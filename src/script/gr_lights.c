@@ -276,6 +276,8 @@ static bool gr_sky_light(struct script_context *context, const struct script_val
     if (!sky)
         return error_no_memory(error, "a sky");
     *sky = (struct sky){.kind = SKY_GRADIENT};
+    if (args[SKYLIGHT_SKY].text && strcmp(args[SKYLIGHT_SKY].text, "transparent") == 0)
+        return error_set(error, ERROR_SCENE, "sky: what is transparent is no light");
     if (args[SKYLIGHT_SKY].program && !sky_from_function(args[SKYLIGHT_SKY].program, sky, error))
         return false;
     if (args[SKYLIGHT_SKY].sky)

@@ -86,10 +86,12 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0, 0, 0}", "Ambient light."},
     [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "The lights."},
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
-    [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
-                           "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
-                           "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
-                           "gr.render{...} without background, the default is light and neutral."},
+    [RENDER_BACKGROUND] =
+        {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
+         "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
+         "'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, "
+         "glass and light see sky or the default. If all pictures of the script have the form "
+         "gr.render{...} without background, the default is light and neutral."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     SETTINGS_WITH_FIELD(PARAMETER_OF_SETTING)[RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
@@ -124,6 +126,10 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
 };
 
+static bool is_transparent(const struct script_value *background) {
+    return background->text && strcmp(background->text, "transparent") == 0;
+}
+
 /* *shines: the sky of the field `sky` is also light. */
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky, bool *shines,
                        struct error *error) {
@@ -131,10 +137,11 @@ static bool choose_sky(struct script_context *context, const struct script_value
      * scenes is navy. */
     static const double neutral[][4] = {{-1, 0.62, 0.61, 0.6}, {0, 0.8, 0.81, 0.82}, {1, 0.9, 0.93, 0.96}};
     const struct script_value *background = &args[RENDER_BACKGROUND];
+    bool transparent = is_transparent(background);
     *sky = (struct sky){.kind = SKY_GRADIENT};
-    if (script_of(context)->only_named_pictures && !background->given)
+    if (script_of(context)->only_named_pictures && (!background->given || transparent))
         *sky = (struct sky){.kind = SKY_STOPS, .stops = neutral, .stop_count = 3};
-    if (args[RENDER_SKY].given && background->given)
+    if (args[RENDER_SKY].given && background->given && !transparent)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
     *shines = args[RENDER_SKY].sky != NULL;
     if (*shines) {
@@ -500,7 +507,8 @@ static bool light_dark_picture(struct script_context *context, const struct scri
     struct script *script = script_of(context);
     struct scene *scene = &context->scene;
     bool studio = script->only_named_pictures && !args[RENDER_LIGHTS].given && !args[RENDER_AMBIENT].given &&
-                  !args[RENDER_BACKGROUND].given && !args[RENDER_SKY].given;
+                  (!args[RENDER_BACKGROUND].given || is_transparent(&args[RENDER_BACKGROUND])) &&
+                  !args[RENDER_SKY].given;
     if (studio && !script->context.scene.is_model &&
         !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
         return false;
@@ -603,6 +611,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     if (!changes_begin(context, &request, &changed, error))
         return false;
     request.changed = script_of(context)->changes.count > 0;
+    request.settings.transparent = is_transparent(&args[RENDER_BACKGROUND]);
     limits_pause(&context->sandbox.limits);
     bool turns = context->sandbox.options->frames.turntable > 0;
     bool done = turns ? render_turntable(context, &request, error)

@@ -200,7 +200,7 @@ enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_NAMES AOVS(AOV_NAME_IN_LIST)
 
 /* Part of the keys of tile files: grows when a row is added, removed or moved, or its values change their meaning. */
-enum { SETTINGS_VERSION = 2 };
+enum { SETTINGS_VERSION = 3 };
 
 /* What a setting changes: the samples of a picture; the finished picture, which is made of the samples; or only how it
  * is made. */
@@ -374,7 +374,8 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
 /* Without an option and without a field. The crop is set by --crop. coarse: rough surfaces send one ray, and lights
  * area_samples of them, instead of their own numbers. passes: the picture is looked at while it is made, so its samples
  * come in passes. keep_first: the first pass is wanted even where -full makes it needless. show_refined: pixels that
- * are to be resampled are marked in the film before (FILM_MARK_WAITS). */
+ * are to be resampled are marked in the film before (FILM_MARK_WAITS). transparent: lines of sight see no background.
+ */
 #define SETTINGS_WITHIN(X)                                                                                             \
     X(WHOLE, int, crop_x, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
     X(WHOLE, int, crop_y, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
@@ -385,6 +386,7 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(CHOICE, enum light_choice, light_choice, SAMPLES, LIGHT_CHOICE_TREE, 0, 0, LIGHT_CHOICES, NULL, NULL, NULL,      \
       NULL, NULL, NONE, NULL)                                                                                          \
     X(FLAG, bool, coarse, SAMPLES, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                    \
+    X(FLAG, bool, transparent, SAMPLES, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)               \
     X(FLAG, bool, passes, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                        \
     X(FLAG, bool, keep_first, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                    \
     X(FLAG, bool, show_refined, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)

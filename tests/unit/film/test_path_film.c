@@ -27,10 +27,10 @@ TEST(the_sums_of_a_pixel_do_not_depend_on_how_its_samples_are_cut_into_passes) {
         struct film film = two_pixels();
         struct path_pixel straight = {0};
         for (uint64_t k = 0; k < 200; k++) {
-            path_pixel_add(&straight, sample_of(seed, k), 1);
+            path_pixel_add(&straight, sample_of(seed, k), 0, 1);
             struct path_pixel cut = path_film_load(&film, 1);
             CHECK_EQ_INT(cut.samples, k);
-            path_pixel_add(&cut, sample_of(seed, k), 1);
+            path_pixel_add(&cut, sample_of(seed, k), 0, 1);
             path_film_store(&film, 1, &cut);
         }
         path_film_store(&film, 0, &straight);
@@ -43,7 +43,7 @@ TEST(the_mean_of_a_pixel_is_that_of_its_samples_and_of_its_halves) {
     struct path_pixel pixel = {0};
     struct vec3 sums[2] = {{0, 0, 0}, {0, 0, 0}};
     for (uint64_t k = 0; k < 1000; k++) {
-        path_pixel_add(&pixel, sample_of(7, k), 1);
+        path_pixel_add(&pixel, sample_of(7, k), 0, 1);
         sums[k % 2] = vec3_add(sums[k % 2], sample_of(7, k));
     }
     struct vec3 mean = path_pixel_mean(&pixel);
@@ -57,7 +57,7 @@ TEST(the_mean_of_a_pixel_of_large_samples_stays_finite) {
     struct film film = two_pixels();
     struct path_pixel pixel = {0};
     for (int k = 0; k < 9; k++)
-        path_pixel_add(&pixel, vec3_make((double)FLT_MAX, -(double)FLT_MAX, 1), 1);
+        path_pixel_add(&pixel, vec3_make((double)FLT_MAX, -(double)FLT_MAX, 1), 0, 1);
     path_film_store(&film, 0, &pixel);
     for (uint32_t i = 0; i < film.record.floats; i++)
         CHECK(isfinite(floats[i]));
@@ -67,7 +67,7 @@ TEST(the_mean_of_a_pixel_of_large_samples_stays_finite) {
 TEST(negative_weights_of_a_filter_cancel_where_the_light_is_even) {
     struct path_pixel pixel = {0};
     for (int k = 0; k < 64; k++)
-        path_pixel_add(&pixel, vec3_make(0.7, 2, 0), k % 9 == 4 ? -1 : 1);
+        path_pixel_add(&pixel, vec3_make(0.7, 2, 0), 0, k % 9 == 4 ? -1 : 1);
     CHECK_NEAR(path_pixel_mean(&pixel).x, 0.7, 1e-12);
     CHECK_NEAR(path_pixel_half(&pixel, 1).y, 2, 1e-12);
 }
@@ -79,7 +79,7 @@ TEST(both_variances_of_a_pixel_are_those_of_its_mean_where_samples_are_independe
     for (uint64_t p = 0; p < PIXELS; p++) {
         struct path_pixel pixel = {0};
         for (uint64_t k = 0; k < COUNT; k++)
-            path_pixel_add(&pixel, vec3_all(random_unit(random_combine(p, k))), 1);
+            path_pixel_add(&pixel, vec3_all(random_unit(random_combine(p, k))), 0, 1);
         halves += path_pixel_variance_of_halves(&pixel).x / PIXELS;
         samples += path_pixel_variance_of_samples(&pixel).y / PIXELS;
     }
@@ -97,7 +97,7 @@ TEST(the_halves_of_a_pixel_are_scrambled_independently) {
         for (uint64_t k = 0; k < COUNT; k++) {
             struct sampler sampler = sampler_make_sobol(1, p, k);
             struct sample2 point = sampler_point(&sampler, SAMPLER_FIRST_VERTEX);
-            path_pixel_add(&pixel, vec3_all(point.x * point.x + point.y > 1 ? 1 : 0), 1);
+            path_pixel_add(&pixel, vec3_all(point.x * point.x + point.y > 1 ? 1 : 0), 0, 1);
         }
         double error = path_pixel_mean(&pixel).x - 1.0 / 3;
         truth += error * error / PIXELS;

@@ -139,7 +139,7 @@ TEST(an_exr_picture_has_its_layers_in_itself_with_every_value) {
     stage_point_light(&s, vec3_make(0, 5, 20), vec3_all(1));
     s.settings.aov = AOV_ALL;
     CHECK(stage_render(&s, 53, 37));
-    CHECK(layers_write_exr(FILE_AT(path), &s.film, &s.error));
+    CHECK(layers_write_exr(FILE_AT(path), &s.film, NULL, &s.error));
     for (size_t i = 0; i < sizeof channels / sizeof *channels; i++) {
         float *values = read_channel(path, channels[i].name, &width, &height);
         CHECK(values && width == 53 && height == 37);
