@@ -69,12 +69,12 @@ LUA_LIBS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --libs $(LUA_NAME)))
 PNG_CFLAGS := $(shell $(PKG_CONFIG) --cflags libpng 2>/dev/null)
 PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng zlib 2>/dev/null)
 # Optional: without them gray is whole, but reads no JPEG (libjpeg), no glTF (jansson), no fonts (FreeType) and no EXR
-# (OpenEXR, of which only the C library is used), and writes no WebP (libwebp).
+# (OpenEXR, of which only the C library is used), and reads and writes no WebP (libwebp).
 JPEG_LIBS := $(shell $(PKG_CONFIG) --libs libjpeg 2>/dev/null)
 JANSSON_LIBS := $(shell $(PKG_CONFIG) --libs jansson 2>/dev/null)
 EXR_LIBS := $(filter -lOpenEXRCore% -L%,$(shell $(PKG_CONFIG) --libs OpenEXR 2>/dev/null))
-WEBP_LIBS := $(shell $(PKG_CONFIG) --libs libwebpmux libwebp 2>/dev/null)
-WEBP_CFLAGS := $(if $(PLAIN),,$(if $(WEBP_LIBS),-DHAVE_WEBP $(shell $(PKG_CONFIG) --cflags libwebpmux libwebp)))
+WEBP_LIBS := $(shell $(PKG_CONFIG) --libs libwebpmux libwebpdemux libwebp 2>/dev/null)
+WEBP_CFLAGS := $(if $(PLAIN),,$(if $(WEBP_LIBS),-DHAVE_WEBP $(shell $(PKG_CONFIG) --cflags libwebpmux libwebpdemux libwebp)))
 MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
 MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
@@ -152,8 +152,7 @@ $(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECT)
 $(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
-$(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
-$(BUILD)/tests/run: override LDLIBS += $(if $(WEBP_LIBS),-lwebpdemux)
+$(BUILD)/src/image/webp_read.o $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o $(BUILD)/tests/unit/image/test_bitmaps.o: override CPPFLAGS += $(WEBP_CFLAGS)
 # The harness knows when a test starts a program.
 $(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)

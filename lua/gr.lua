@@ -156,7 +156,7 @@ function gr.nh_box(name, corner, size) end
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
@@ -187,7 +187,7 @@ function gr.mesh(material, verts, faces) end
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
@@ -216,7 +216,7 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
@@ -247,7 +247,7 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.

@@ -20,7 +20,7 @@
 #define START_COST 1.2 /* of a hierarchy in a voxel */
 /* Once per ray that traverses voxels over a mesh: it is moved to the frame and its error bounds are larger (2.5), and
  * it cannot be part of a packet (a third of the rays, at half the cost: 1.5). */
-#define FLY_COST 4.0
+#define TRAVERSAL_COST 4.0
 
 enum { BIG_ITEM = 64 /* voxels */, SAMPLE_LIMIT = 4 /* samples to an occupied voxel */ };
 
@@ -157,7 +157,7 @@ struct accel_mesh_cost accel_over_mesh(const struct cost_sample *cost_sample) {
     uint32_t last = cost_sample->level_count - 1;
     for (uint32_t l = 0; l <= last; l++) {
         const struct cost_level *at = &cost_sample->levels[l];
-        double traversal = l > 0 ? FLY_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
+        double traversal = l > 0 ? TRAVERSAL_COST + STEP_COST * at->visited : 0, starts = START_COST * at->occupied;
         double across = 0, depth = 0;
         for (uint32_t below = l + 1; below <= last; below++) {
             double nodes = growth(cost_sample, below, 8);

@@ -18,7 +18,7 @@
 #include "base/mem.h"
 #include "math/elementary.h"
 
-enum { FLY_UNBOUNDED, FLY_VOXELS, FLY_EVERYTHING, FLY_DONE };
+enum { TRAVERSAL_UNBOUNDED, TRAVERSAL_VOXELS, TRAVERSAL_EVERYTHING, TRAVERSAL_DONE };
 enum { POLL_ITEMS = 4096 }; /* how often building checks for cancellation */
 
 #define SLACK 0x1p-12   /* of a voxel */
@@ -241,7 +241,7 @@ static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid
     double t_enter, t_exit;
     if (!grid->cell_start || !box_clip(&grid->bounds, ray, &t_enter, &t_exit))
         return false;
-    traversal->state = FLY_VOXELS;
+    traversal->state = TRAVERSAL_VOXELS;
     traversal->t_end = t_exit;
     traversal->cell = 0;
     int64_t stride = 1;
@@ -256,7 +256,7 @@ static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid
         if (cells > 1) {
             /* From too far away the position is too coarse for voxels. */
             if (!(fabs(o) < cell * FAR_AWAY))
-                traversal->state = FLY_EVERYTHING;
+                traversal->state = TRAVERSAL_EVERYTHING;
             uint32_t index = voxel_index(grid, i, d != 0 ? o + t_enter * d : o);
             traversal->cell += stride * (int64_t)index;
             if (d != 0) {
@@ -288,7 +288,7 @@ static int next_axis(const struct grid_traversal *traversal) {
 }
 
 /* Steps until a voxel has items. */
-static bool fly_camera_on(struct grid_traversal *traversal, bool step_first) {
+static bool advance(struct grid_traversal *traversal, bool step_first) {
     for (;;) {
         int axis = next_axis(traversal);
         if (step_first) {
@@ -306,13 +306,13 @@ static bool fly_camera_on(struct grid_traversal *traversal, bool step_first) {
             return true;
         }
     }
-    traversal->state = FLY_DONE;
+    traversal->state = TRAVERSAL_DONE;
     return false;
 }
 
 static bool offer_everything(struct grid_traversal *traversal) {
     const struct grid *grid = traversal->grid;
-    traversal->state = FLY_DONE;
+    traversal->state = TRAVERSAL_DONE;
     traversal->items = grid->cell_items;
     traversal->count = grid->cell_start[(size_t)grid->cells[0] * grid->cells[1] * grid->cells[2]];
     traversal->t_exit = -INFINITY;
@@ -323,7 +323,7 @@ static bool offer_everything(struct grid_traversal *traversal) {
 bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray) {
     traversal->grid = grid;
     traversal->voxels = 0;
-    traversal->state = FLY_DONE;
+    traversal->state = TRAVERSAL_DONE;
     bool inside = enter_grid(traversal, grid, ray);
     if (grid->unbounded_count > 0) {
         traversal->items = grid->unbounded;
@@ -333,13 +333,13 @@ bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *g
     }
     if (!inside)
         return false;
-    return traversal->state == FLY_EVERYTHING ? offer_everything(traversal) : fly_camera_on(traversal, false);
+    return traversal->state == TRAVERSAL_EVERYTHING ? offer_everything(traversal) : advance(traversal, false);
 }
 
 bool grid_traversal_next(struct grid_traversal *traversal) {
-    if (traversal->state == FLY_DONE)
+    if (traversal->state == TRAVERSAL_DONE)
         return false;
-    if (traversal->state == FLY_EVERYTHING)
+    if (traversal->state == TRAVERSAL_EVERYTHING)
         return offer_everything(traversal);
-    return fly_camera_on(traversal, traversal->voxels > 0);
+    return advance(traversal, traversal->voxels > 0);
 }

@@ -14,7 +14,7 @@
 
 enum { CORNERS = 9 /* three, and one more for each of six planes */, MAILBOX = 64 };
 
-#define FLY_SLACK 0x1p-46
+#define TRAVERSAL_SLACK 0x1p-46
 #define CLIP_SLACK 0x1p-44
 
 struct kd_triangles {
@@ -123,7 +123,7 @@ static bool search_begin(struct search *s, const struct kd_triangles *index, con
     s->set = set;
     s->tests = 0;
     memset(s->seen, 0xff, sizeof s->seen);
-    kd_traversal_begin(&s->traversal, &index->tree, ray, FLY_SLACK * (index->extent + vec3_max_abs(ray->origin)));
+    kd_traversal_begin(&s->traversal, &index->tree, ray, TRAVERSAL_SLACK * (index->extent + vec3_max_abs(ray->origin)));
     return true;
 }
 

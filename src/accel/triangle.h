@@ -64,11 +64,13 @@ static inline double triangle_edge(double ax, double ay, double bx, double by) {
 /* Whether the whole line meets the triangle, and where. hit->triangle does not change. */
 static inline bool triangle_cross(const struct triangle_ray *ray, const double a[3], const double b[3],
                                   const double c[3], struct triangle_hit *hit) {
+    /* The corners in the sheared space of the ray. */
     int x = ray->x, y = ray->y, z = ray->z;
     double az = a[z] - ray->origin[z], bz = b[z] - ray->origin[z], cz = c[z] - ray->origin[z];
     double ax = (a[x] - ray->origin[x]) - ray->shear[0] * az, ay = (a[y] - ray->origin[y]) - ray->shear[1] * az;
     double bx = (b[x] - ray->origin[x]) - ray->shear[0] * bz, by = (b[y] - ray->origin[y]) - ray->shear[1] * bz;
     double cx = (c[x] - ray->origin[x]) - ray->shear[0] * cz, cy = (c[y] - ray->origin[y]) - ray->shear[1] * cz;
+    /* The edge functions; the ray passes if their signs differ. */
     double u = triangle_edge(cx, cy, bx, by);
     double v = triangle_edge(ax, ay, cx, cy);
     double w = triangle_edge(bx, by, ax, ay);
@@ -78,6 +80,7 @@ static inline bool triangle_cross(const struct triangle_ray *ray, const double a
     double sum = u + v + w;
     if (!(fabs(sum) > 0))
         return false;
+    /* A ray through an edge belongs to one of the two triangles. */
     positive = sum > 0;
     if (u == 0 && (triangle_edge_tie(cx, cy, bx, by) > 0) != positive)
         return false;
@@ -85,6 +88,7 @@ static inline bool triangle_cross(const struct triangle_ray *ray, const double a
         return false;
     if (w == 0 && (triangle_edge_tie(bx, by, ax, ay) > 0) != positive)
         return false;
+    /* Where it is. */
     hit->t = (u * az + v * bz + w * cz) / sum * ray->shear[2];
     hit->u = v / sum;
     hit->v = w / sum;

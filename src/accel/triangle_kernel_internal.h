@@ -526,23 +526,27 @@ done:
     return found;
 }
 
-static inline __attribute__((always_inline)) bool fly_camera_voxels(struct search *s, const enum triangle_search kind,
-                                                                    const bool many, const bool leaves_out) {
+static inline __attribute__((always_inline)) bool traverse_voxels(struct search *s, const enum triangle_search kind,
+                                                                  const bool many, const bool leaves_out) {
     const struct triangle_index *index = s->index;
     if (!index->voxels)
         return false;
+    /* Big triangles belong to no voxel. */
     if (index->big && descend(s, index->big, kind, true, many, leaves_out))
         return true;
+    /* The first voxel. */
     simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
           position = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
     int32_t at[4];
     simd4 start = simd4_max(simd4_all(0), simd4_min(position, simd4_load(index->last_cell)));
     simd4_store_int(at, start);
     start = simd4_whole(start);
+    /* The parameter of the next voxel along each axis, and between two of them. */
     simd4 across = simd4_mul(cell, reciprocal);
     simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), position), across);
     simd4 step_t = simd4_size(across);
     next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
+    /* Voxel after voxel, until something is met or the ray leaves. */
     const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
     const uint32_t *voxel = index->voxels + 1 + index->stride[0] + index->stride[1] + (uint32_t)at[0] +
                             (uint32_t)at[1] * index->stride[0] + (uint32_t)at[2] * index->stride[1];
@@ -565,22 +569,22 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
 }
 
 /* Rays that have been moved to the frame. */
-static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind,
-                                                            const bool leaves_out) {
+static inline __attribute__((always_inline)) bool traverse(struct search *s, const enum triangle_search kind,
+                                                           const bool leaves_out) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
-        return fly_camera_voxels(s, kind, many, leaves_out);
+        return traverse_voxels(s, kind, many, leaves_out);
     return s->far_away ? descend(s, s->index->only, kind, true, many, leaves_out)
                        : descend(s, s->index->only, kind, false, many, leaves_out);
 }
 
 /* Separate from the kernel of the others, which needs its registers. */
-static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
-    return traversal(s, TRIANGLE_NEAREST, false);
+static __attribute__((noinline)) bool traverse_nearest_apart(struct search *s) {
+    return traverse(s, TRIANGLE_NEAREST, false);
 }
 
-static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
-    return traversal(s, TRIANGLE_ANY, false);
+static __attribute__((noinline)) bool traverse_any_apart(struct search *s) {
+    return traverse(s, TRIANGLE_ANY, false);
 }
 
 static inline double power_of_two(uint64_t exponent_bits) {
@@ -691,7 +695,7 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
-        fly_camera_nearest_apart(&s);
+        traverse_nearest_apart(&s);
     else if (set->count > MANY_TRIANGLES)
         descend(&s, index->only, TRIANGLE_NEAREST, false, true, false);
     else
@@ -710,16 +714,16 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     enum ray_start start_case = search_begin(&s);
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
-    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, false);
+    return s.moved ? traverse_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, false);
 }
 
 /* The same without a run of triangles. */
-static __attribute__((noinline)) bool fly_camera_nearest_but_apart(struct search *s) {
-    return traversal(s, TRIANGLE_NEAREST, true);
+static __attribute__((noinline)) bool traverse_nearest_but_apart(struct search *s) {
+    return traverse(s, TRIANGLE_NEAREST, true);
 }
 
-static __attribute__((noinline)) bool fly_camera_any_but_apart(struct search *s) {
-    return traversal(s, TRIANGLE_ANY, true);
+static __attribute__((noinline)) bool traverse_any_but_apart(struct search *s) {
+    return traverse(s, TRIANGLE_ANY, true);
 }
 
 /* An empty run begins after the last triangle. */
@@ -741,7 +745,7 @@ bool KERNEL(nearest_but)(const struct triangle_index *index, const struct triang
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
-        fly_camera_nearest_but_apart(&s);
+        traverse_nearest_but_apart(&s);
     else if (set->count > MANY_TRIANGLES)
         descend(&s, index->only, TRIANGLE_NEAREST, false, true, true);
     else
@@ -767,7 +771,7 @@ bool KERNEL(any_but)(const struct triangle_index *index, const struct triangle_s
     }
     if (start_case == RAY_MISSES)
         return false;
-    if (!(s.moved ? fly_camera_any_but_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, true)))
+    if (!(s.moved ? traverse_any_but_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, true)))
         return false;
     *triangle = s.occluder;
     return true;
@@ -791,5 +795,5 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
         triangle_brute_all(set, &line, visit, context, cost);
     if (start_case != RAY_INSIDE)
         return;
-    traversal(&s, TRIANGLE_ALL, false);
+    traverse(&s, TRIANGLE_ALL, false);
 }

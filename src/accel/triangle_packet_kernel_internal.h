@@ -177,6 +177,7 @@ static void decide_candidates(struct packet *p) {
         unsigned pending = (unsigned)(p->pending >> first & 255);
         if (!pending)
             continue;
+        /* One permutation of the axes for all rays has code of its own; otherwise each ray has its own. */
         switch (p->axes) {
         case 0:
             decide_batch(p, first, pending, 1, 2, 0);
@@ -252,6 +253,7 @@ static inline __attribute__((always_inline)) void split_block(const struct packe
 /* One ray, eight triangles. */
 static inline __attribute__((always_inline)) void try_ray(struct packet *p, const struct parts *b, unsigned i,
                                                           const bool any) {
+    /* The determinant and the scaled barycentric coordinates. */
     simd8 dx = simd8_all(p->dx[i]), dy = simd8_all(p->dy[i]), dz = simd8_all(p->dz[i]);
     simd8 det = simd8_multiply_add(dx, simd8_load(b->n[0]),
                                    simd8_multiply_add(dy, simd8_load(b->n[1]), simd8_mul(dz, simd8_load(b->n[2]))));
@@ -259,10 +261,12 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
                                  simd8_multiply_add(dy, simd8_load(b->a[1]), simd8_mul(dz, simd8_load(b->a[2]))));
     simd8 v = simd8_multiply_add(dx, simd8_load(b->q[0]),
                                  simd8_multiply_add(dy, simd8_load(b->q[1]), simd8_mul(dz, simd8_load(b->q[2]))));
+    /* All of them with a positive determinant. */
     simd8 sign = simd8_sign(det), t = simd8_flip(simd8_load(b->t), sign);
     det = simd8_flip(det, sign);
     u = simd8_flip(u, sign);
     v = simd8_flip(v, sign);
+    /* Triangles that the ray may meet, in bounds widened by the errors of rounding. */
     simd8 e = simd8_load(b->e), e3 = simd8_mul(e, simd8_all(3)), slack = simd8_load(b->slack);
     simd8 min = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
     simd8 before = simd8_sub(simd8_multiply_add(det, simd8_all(p->limit[i]), slack), t);
@@ -270,10 +274,12 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
     unsigned met = b->used & simd8_not_negative(simd8_min(inside, simd8_min(simd8_add(t, slack), before)));
     if (!met)
         return;
+    /* Those that it meets for certain, in bounds narrowed by them. */
     inside = simd8_min(simd8_sub(min, e), simd8_sub(rest, e3));
     simd8 ends = simd8_sub(simd8_multiply_sub(det, simd8_all(p->certain[i]), slack), t);
     simd8 begins = simd8_sub(simd8_sub(t, slack), simd8_mul(det, simd8_all(p->begun)));
     unsigned certain = met & simd8_not_negative(simd8_min(inside, simd8_min(begins, ends)));
+    /* A shadow ray ends at one for certain; others are decided in double precision. */
     if (any) {
         if (certain) {
             p->found |= UINT64_C(1) << i;
@@ -284,6 +290,7 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
             decide(p, i, b->ids[__builtin_ctz(met)], true);
         return;
     }
+    /* The nearest: a certain one keeps bounds of its t, others are decided. */
     _Alignas(32) float from[WIDTH], to[WIDTH];
     if (certain) {
         simd8_store(from, simd8_div(simd8_sub(t, slack), det));
@@ -301,6 +308,7 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
 /* One triangle, a vector of rays. */
 static inline __attribute__((always_inline)) void try_group(struct packet *p, const struct parts *b, unsigned k,
                                                             unsigned first, unsigned active, const bool any) {
+    /* The steps are those of try_ray. */
     lanes dx = lanes_load(p->dx + first), dy = lanes_load(p->dy + first), dz = lanes_load(p->dz + first);
     lanes det = lanes_multiply_add(dx, lanes_all(b->n[0][k]),
                                    lanes_multiply_add(dy, lanes_all(b->n[1][k]), lanes_mul(dz, lanes_all(b->n[2][k]))));
@@ -368,6 +376,7 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
 static inline __attribute__((always_inline)) uint64_t meet_box(const struct packet *p, const float box[6],
                                                                uint64_t rays, const bool mixed) {
     uint64_t met = 0;
+    /* If all rays have the same signs, the sides that they meet first are known. */
     lanes low_x = lanes_all(box[p->negative[0]]), high_x = lanes_all(box[!p->negative[0]]);
     lanes low_y = lanes_all(box[2 + p->negative[1]]), high_y = lanes_all(box[2 + !p->negative[1]]);
     lanes low_z = lanes_all(box[4 + p->negative[2]]), high_z = lanes_all(box[4 + !p->negative[2]]);
@@ -376,6 +385,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
         uint64_t active = rays & ALL_LANES << first;
         if (!active)
             continue;
+        /* The parameters of the six planes for a vector of rays. */
         lanes rx = lanes_load(p->rx + first), ry = lanes_load(p->ry + first), rz = lanes_load(p->rz + first);
         lanes ax = lanes_mul(low_x, rx), ay = lanes_mul(low_y, ry), az = lanes_mul(low_z, rz);
         lanes bx = lanes_mul(high_x, rx), by = lanes_mul(high_y, ry), bz = lanes_mul(high_z, rz);
@@ -397,6 +407,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
 /* Pushes the children of a node that the beam hits, the farthest first. */
 static inline __attribute__((always_inline)) uint32_t push_children(struct packet *p, uint32_t number, uint64_t rays,
                                                                     struct pending_box *stack, uint32_t top) {
+    /* The eight boxes, relative to the origin of the beam. */
     const struct wide_node *n = p->index->nodes + number;
     _Alignas(32) float box[6][WIDTH], t[WIDTH];
     simd8 rows[6];
@@ -404,12 +415,14 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
         rows[i] = simd8_sub(simd8_load(n->bounds[i]), simd8_all(p->shifted[i]));
         simd8_store(box[i], rows[i]);
     }
+    /* Along the axis of the beam, near comes before far. */
     simd8 zero = simd8_all(0), near = rows[2 * p->forward], far = rows[2 * p->forward + 1];
     if (p->backwards) {
         simd8 swap = simd8_sub(zero, near);
         near = simd8_sub(zero, far);
         far = swap;
     }
+    /* A box is outside if it lies behind, or beyond a side of the beam. */
     simd8 outside = simd8_sub(zero, far);
     for (int i = 0; i < 2; i++) {
         simd8 low = rows[2 * p->side[i]], high = rows[2 * p->side[i] + 1];
@@ -421,6 +434,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     p->nodes++;
     if (!met)
         return top;
+    /* The boxes that are met, sorted by insertion; t > 0 has the order of its bits. */
     simd8_store(t, simd8_max(near, zero));
     uint64_t order[WIDTH];
     unsigned count = 0;
@@ -433,6 +447,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
             order[slot] = order[slot - 1];
         order[slot] = entry;
     }
+    /* The farthest one is pushed first. */
     for (unsigned k = 0; k < count; k++) {
         unsigned i = (unsigned)order[k] & (WIDTH - 1);
         struct pending_box *w = &stack[top++];
@@ -444,8 +459,8 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     return top;
 }
 
-static inline __attribute__((always_inline)) void fly_camera_all(struct packet *p, uint32_t root, const bool any,
-                                                                 const bool mixed) {
+static inline __attribute__((always_inline)) void traverse_all(struct packet *p, uint32_t root, const bool any,
+                                                               const bool mixed) {
     struct pending_box stack[STACK_ENTRIES];
     uint32_t top = 0;
     if (root & REF_LEAF) {
@@ -466,15 +481,15 @@ static inline __attribute__((always_inline)) void fly_camera_all(struct packet *
     }
 }
 
-static void traversal(struct packet *p, uint32_t root, const bool any) {
+static void traverse(struct packet *p, uint32_t root, const bool any) {
     if (any && p->mixed)
-        fly_camera_all(p, root, true, true);
+        traverse_all(p, root, true, true);
     else if (any)
-        fly_camera_all(p, root, true, false);
+        traverse_all(p, root, true, false);
     else if (p->mixed)
-        fly_camera_all(p, root, false, true);
+        traverse_all(p, root, false, true);
     else
-        fly_camera_all(p, root, false, false);
+        traverse_all(p, root, false, false);
 }
 
 /* ---- beginning ---- */
@@ -620,9 +635,9 @@ static bool begin(struct packet *p, uint64_t active) {
 static void search(struct packet *p, struct triangle_cost *cost, const bool any) {
     const struct triangle_index *index = p->index;
     if (index->big)
-        traversal(p, index->big, any);
+        traverse(p, index->big, any);
     if (index->only != REF_EMPTY)
-        traversal(p, index->only, any);
+        traverse(p, index->only, any);
     cost->triangle_tests += p->tests;
     cost->hierarchy_steps += p->nodes;
 }

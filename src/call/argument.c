@@ -597,7 +597,9 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->number = read_whole(c, index, &argument_path);
         return true;
     case KIND_BOOLEAN:
-        if (!lua_isboolean(L, index))
+        if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
+            value->number = read_number(c, index, &argument_path);
+        else if (!lua_isboolean(L, index))
             wrong_type(c, &argument_path, kind_words(p->kind), index);
         value->boolean = lua_toboolean(L, index);
         return true;

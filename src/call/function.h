@@ -21,41 +21,18 @@
 struct script_context;
 
 /* The kinds of arguments: name, what the script must pass, the type in annotations (NULL: the choices), and the Lua
- * types (argument.c). The plain C form is in struct script_value:
- *   KIND_NUMBER: number; a word of parameter.choices: the number of a setting for it (setting.h)
- *   KIND_WHOLE: number: a float with a whole value is fine
- *   KIND_BOOLEAN: boolean
- *   KIND_TEXT: text
- *   KIND_FILE: text: a file to be read, looked for beside the scene
- *   KIND_OUTPUT: text: a file to be written
- *   KIND_CHOICE: choice: index into the words of parameter.choices
- *   KIND_AXIS: choice: 0, 1, 2
- *   KIND_POINT: vector
- *   KIND_DIRECTION: vector
- *   KIND_COLOUR: vector
- *   KIND_TRIPLE: vector: three numbers that are not a position
- *   KIND_SIZE: vector: one number counts for all three
- *   KIND_INTERVAL: vector: x and y, two numbers, the second not below the first
- *   KIND_QUATERNION: vector = x, y, z, number = w: four numbers, w first
- *   KIND_PAIR: vector, z = 0: two numbers, or one for both
- *   KIND_NODE: node
- *   KIND_MATERIAL: material
- *   KIND_MATERIALS: materials, count; names as well, in byte order, or a list: names is NULL
+ * types (argument.c). The plain C form is in the member of struct script_value that has the name of the kind; lists
+ * also set `count`. The other kinds: number: KIND_WHOLE (a float with a whole value is fine); a word of
+ * parameter.choices is the number of a setting vector: KIND_POINT, KIND_DIRECTION, KIND_COLOUR, KIND_TRIPLE (not a
+ * position), KIND_SIZE (one number counts for all three), KIND_INTERVAL (x and y), KIND_PAIR (z = 0; one number counts
+ * for both), KIND_QUATERNION (and number = w) choice: KIND_CHOICE (index into the words of parameter.choices),
+ * KIND_AXIS (0, 1, 2) text: KIND_FILE (to be read, looked for beside the scene), KIND_OUTPUT (to be written)
+ *   KIND_MATERIALS: names in byte order, too, or a list: names is NULL
  *   KIND_IMAGE: image, or text: the name of its file
  *   KIND_BACKGROUND: vector, or text = "gradient", or sky, or program
- *   KIND_FOG: fog
  *   KIND_CAUSTICS: number: photons, vector.x: radius; a number alone is the photons
- *   KIND_NODES: nodes, count
- *   KIND_LIGHTS: lights, count
- *   KIND_POINTS: points, count
- *   KIND_PAIRS: pairs, count
- *   KIND_STOPS: stops, count: tables of 4 numbers
- *   KIND_FACES: starts, indices, count
- *   KIND_NUMBERS: numbers, count; a number alone: single
- *   KIND_ROWS: starts, numbers, count: lists of numbers of any length
- *   KIND_CURVES: starts, pairs, count: lists of pairs
- *   KIND_FUNCTION: program: a function of Lua, recorded
- *   KIND_CALLBACK: a function of Lua that is called; it stays on the stack */
+ *   KIND_FACES: starts, indices; KIND_ROWS: starts, numbers; KIND_CURVES: starts, pairs
+ *   KIND_FUNCTION: program; KIND_CALLBACK: stays on the stack of Lua, and is called */
 #define KIND_LIST(X)                                                                                                   \
     X(KIND_NUMBER, "number", "a number", "number", LIKE_NUMBER)                                                        \
     X(KIND_WHOLE, "whole", "a whole number", "integer", LIKE_NUMBER)                                                   \
@@ -142,7 +119,8 @@ enum {
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
-    OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
+    /* Of KIND_CHOICE and KIND_BOOLEAN: a number is accepted, in the range of the parameter; `boolean` is true then. */
+    OR_NUMBER = 256,
     OR_CURVE = 2048, /* of KIND_CHOICE: also accepts a function of the light, which sets `curve` */
     /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and vector is 1. Of
      * KIND_FUNCTION: it is a function of the direction. */

@@ -249,10 +249,12 @@ static void push_description(lua_State *L, const struct script_function *functio
     static const char *const results[] = {RESULT_KINDS(LIST_WORD)};
     bool optional;
     int index;
+    /* A table that was made before is used again. */
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, function) == LUA_TTABLE)
         return;
     lua_newtable(L);
     lua_replace(L, -2);
+    /* What the function is. */
     set_text(L, "name", function->name);
     set_text(L, "owner", function->owner == OWNER_NODE ? "node" : "gr");
     set_text(L, "result", results[function->result]);
@@ -264,10 +266,12 @@ static void push_description(lua_State *L, const struct script_function *functio
     lua_setfield(L, -2, "first");
     lua_pushlightuserdata(L, (void *)(uintptr_t)function);
     lua_setfield(L, -2, "row");
+    /* Its parameters. */
     for (int k = 0; k < function->parameter_count; k++) {
         push_parameter(L, &function->parameters[k]);
         lua_rawseti(L, -2, k + 1);
     }
+    /* Its forms. */
     lua_newtable(L);
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
         const char *form = function->forms[k];

@@ -45,11 +45,10 @@ struct image *lenient_checks(struct script_context *c, struct error *error) {
 enum { DEPTH = 200 };
 
 static bool is_unfit(const struct node *node, int depth, int *budget) {
-    struct vec3 a, b;
     if (depth > DEPTH || --*budget < 0 || node_moves(node))
         return true;
-    if (node->kind == NODE_GEOMETRY && (node->shape.kind == SHAPE_MESH ? mesh_open_edge(node->shape.mesh, &a, &b)
-                                                                       : shape_why_open(&node->shape) != NULL))
+    if (node->kind == NODE_GEOMETRY &&
+        (node->shape.kind == SHAPE_MESH ? mesh_is_open(node->shape.mesh) : shape_why_open(&node->shape) != NULL))
         return true;
     for (const struct node_child *child = node->first_child; child; child = child->next)
         if (is_unfit(child->node, depth + 1, budget))

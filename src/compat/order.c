@@ -155,10 +155,12 @@ static void judge(const struct token *w, struct evidence *evidence, struct mater
                   struct mesh_call *call) {
     const struct token *t = &w[WINDOW - 1];
     bool after_dot = token_is_symbol(&w[WINDOW - 2], '.') || token_is_symbol(&w[WINDOW - 2], ':');
+    /* Blocks, pictures and calls of gr.mesh extend over many tokens. */
     follow_blocks(t, evidence);
     judge_picture(w, evidence);
     if (call->depth > 0)
         follow_mesh_call(call, t, materials, evidence);
+    /* Names of the old and of the new Lua. */
     if (token_is(t, TOKEN_NAME, "gr") && !after_dot)
         evidence->mentions_gr = true;
     if (token_is(t, TOKEN_NAME, "readobj") && !after_dot)
@@ -168,6 +170,7 @@ static void judge(const struct token *w, struct evidence *evidence, struct mater
     if (token_is(t, TOKEN_NAME, "unpack") && after_dot && token_is(&w[WINDOW - 3], TOKEN_NAME, "table"))
         say_new(evidence, "it uses table.unpack", t->line);
 
+    /* Names of gr. */
     bool gr_dot = token_is_symbol(&w[WINDOW - 2], '.') && token_is(&w[WINDOW - 3], TOKEN_NAME, "gr");
     if (gr_dot && is_project_name(t))
         say_new(evidence, "it uses names of the project dialect", t->line);
@@ -177,6 +180,7 @@ static void judge(const struct token *w, struct evidence *evidence, struct mater
     if (assigned && token_is(t, TOKEN_NAME, "material") && materials->count < 64)
         materials->names[materials->count++] = w[WINDOW - 5];
 
+    /* Calls of gr, and how their arguments look. */
     bool call_begins = token_is_symbol(&w[WINDOW - 3], '.') && token_is(&w[WINDOW - 4], TOKEN_NAME, "gr");
     if (call_begins && token_is_symbol(t, '{'))
         say_new(evidence, "it uses tables with named fields", t->line);
@@ -226,6 +230,7 @@ static bool try_path(const struct search *search, char out[PATHS], const char *f
 }
 
 static void follow(struct search *search, const struct token *token, bool is_module, int depth) {
+    /* The name of a module with slashes. */
     char name[512], path[PATHS];
     if (token->length >= sizeof name || token->length == 0)
         return;
@@ -234,6 +239,7 @@ static void follow(struct search *search, const struct token *token, bool is_mod
     for (char *c = name; is_module && *c; c++)
         if (*c == '.' && strcmp(c, ".lua") != 0)
             *c = '/';
+    /* Where Lua looks for it. */
     size_t length = strlen(name);
     bool has_end = length > 4 && strcmp(name + length - 4, ".lua") == 0;
     const char *end = is_module && !has_end ? ".lua" : "", *folder = name[0] == '/' ? "" : search->folder;
@@ -242,6 +248,7 @@ static void follow(struct search *search, const struct token *token, bool is_mod
         scan_file(search, path, depth + 1);
         return;
     }
+    /* A library module is none of the scene; otherwise the file is searched as files of scenes are. */
     const char *found;
     if (search->library[0] && try_path(search, path, search->library, "/", name, end))
         return;
@@ -371,6 +378,7 @@ static bool ask_sibling(void *context, const char *name) {
 bool order_detect(const char *path, const char *library_folder, const struct path_policy *path_policy,
                   struct order_finding *finding, struct error *error) {
     struct search search = {.path_policy = path_policy};
+    /* The folders of the scene and of the library. */
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
     *finding = (struct order_finding){.order = TRANSFORM_ORDER_NEW};
@@ -380,8 +388,10 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
     if (library_folder && !file_canonical(library_folder, search.library, sizeof search.library))
         search.library[0] = '\0';
 
+    /* What the scene itself says. */
     scan_file(&search, path, 0);
     conclude(&search.evidence, finding);
+    /* Otherwise the scenes beside it decide. */
     if (!search.evidence.is_new && !search.evidence.is_old) {
         struct siblings siblings = {.search = &search, .self = slash ? slash + 1 : path};
         const char *start = folder > 0 ? search.folder : ".";

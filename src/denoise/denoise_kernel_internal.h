@@ -542,6 +542,7 @@ static void compare_candidates(struct denoise_scratch *s) {
     for (int y = 0; y < SIDE; y++) {
         int from = local_of(0, y);
         float scale[SIDE];
+        /* The unit of errors: the variance of both halves. */
         for (int x = 0; x < SIDE; x++)
             scale[x] = FLT_MIN;
         for (int c = 0; c < 3; c++)
@@ -550,6 +551,7 @@ static void compare_candidates(struct denoise_scratch *s) {
                     float other = s->colour[1 - h][c][from + x];
                     scale[x] += s->variance[c][from + x] + colour_noise * other * other;
                 }
+        /* The error of each candidate beyond that of the first one, and its variance. */
         for (int b = 0; b < DENOISE_CANDIDATES; b++) {
             float *errors = s->errors[b][y], *doubts = s->doubts[b][y];
             memset(errors, 0, SIDE * sizeof *errors);
@@ -592,6 +594,7 @@ static void score_candidates(const struct denoise_scratch *s, int y, float score
     enum { SIDE = 2 * DENOISE_CHOICE + 1 };
     static const float kernel[SIDE] = {1, 4, 6, 4, 1};
     float sums[DENOISE_BLOCK] = {0}, squares[DENOISE_CANDIDATES][DENOISE_BLOCK] = {0}, largest[DENOISE_BLOCK] = {0};
+    /* Weighted sums over the window. */
     memset(scores, 0, DENOISE_CANDIDATES * sizeof *scores);
     for (int i = 0; i < SIDE * SIDE; i++) {
         int dx = i % SIDE, dy = i / SIDE;
@@ -611,6 +614,7 @@ static void score_candidates(const struct denoise_scratch *s, int y, float score
             }
         }
     }
+    /* The mean error, its standard error and the margin. */
     for (int b = 1; b < DENOISE_CANDIDATES; b++) {
         float margin = b == DENOISE_WIDE ? 0 : detail_margin, always = b == DENOISE_REGRESSIONS ? colour_margin : 0;
         for (int x = 0; x < DENOISE_BLOCK; x++) {

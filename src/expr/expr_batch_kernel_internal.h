@@ -270,23 +270,27 @@ static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows)
     int64_t alive[EXPR_BATCH];
     row_integer *steps = (row_integer *)(void *)(rows + (size_t)loop->argument_count * EXPR_BATCH);
     struct packing p = {.kept = rows + (size_t)(expr_loop_rows(loop) / 2) * EXPR_BATCH, .width = width};
+    /* All points begin. */
     for (uint32_t i = 0; i < width; i++) {
         p.points[i] = i;
         alive[i] = -1;
     }
     for (uint32_t step = loop->first; step <= loop->last; step++) {
+        /* Points that have ended are left out; if half have, the others move together. */
         const bool is_checked = loop->ends && step > 1;
         const uint32_t count = is_checked ? keep_alive(loop, p.width, rows, alive) : p.width;
         if (count == 0)
             break;
         if (((count + 15) & ~15U) <= p.width / 2)
             pack(loop, count, &p, rows, alive);
+        /* One step of all. */
         for (uint32_t i = 0; i < p.width; i++)
             steps[i] = step;
         KERNEL(run)(&loop->body, p.width, rows, &none);
         for (uint32_t k = 0; k < loop->state_count; k++)
             write_state(loop, k, p.width, rows, alive);
     }
+    /* The states return to their points. */
     if (!p.is_packed)
         return;
     keep_states(loop, &p, rows);

@@ -47,12 +47,14 @@ bool expr_field_evaluate(const struct expr_program *program, const struct expr_p
     for (size_t first = 0; ok && first < points->count; first += EXPR_BATCH) {
         size_t left = points->count - first;
         uint32_t count = left < EXPR_BATCH ? (uint32_t)left : EXPR_BATCH;
+        /* The inputs of a batch of points. */
         for (uint32_t i = 0; i < count; i++) {
             memset(point[i], 0, sizeof point[i]);
             points->inputs(points->context, first + i, point[i]);
             for (int k = 0; k < EXPR_INPUT_COUNT; k++)
                 inputs[k][i] = point[i][k];
         }
+        /* Their values, in order, which must be finite. */
         expr_evaluate_batch(program, count, from, to, rows);
         for (uint32_t i = 0; ok && i < count; i++)
             for (int k = 0; ok && k < program->output_count; k++) {

@@ -111,6 +111,7 @@ static struct expr_flags run_loop_access(const struct machine *m, const struct e
     const uint32_t slot = at->loop->offset + at->slot;
     double *rows = m->rows + (size_t)slot * 2 * EXPR_BOXES;
     struct expr_flags out = {0, 0};
+    /* Takes: the row of the state is the result. */
     if (!at->puts) {
         memcpy(low, rows, 2 * EXPR_BOXES * sizeof *low);
         out.first = operation == EXPR_TAKE_TRUTH ? 0 : m->flags[slot].first;
@@ -120,6 +121,7 @@ static struct expr_flags run_loop_access(const struct machine *m, const struct e
         }
         return out;
     }
+    /* Puts: the operand becomes the row. */
     m->flags[slot] = (struct expr_flags){0, 0};
     for (uint32_t box = 0; box < m->width; box++) {
         struct expr_interval x = single(m, expr_operand_type(operation, 1), in->b, box);

@@ -278,6 +278,7 @@ static inline struct span wave(struct span a, vector at_low, vector at_high, dou
 static void run_wave(struct machine *run, const struct expr_lanes *from, struct expr_lanes *of_sine,
                      struct expr_lanes *of_cosine) {
     double __attribute__((aligned(64))) sines[2][EXPR_LANES], cosines[2][EXPR_LANES];
+    /* At both ends of each interval. */
     sincos_of(from->low, sines[0], cosines[0]);
     sincos_of(from->high, sines[1], cosines[1]);
     uint32_t may_be_nan = from->may_be_nan, is_nan = from->is_nan;
@@ -285,7 +286,9 @@ static void run_wave(struct machine *run, const struct expr_lanes *from, struct 
         const struct span a = value_of(from, i);
         const struct span sine = wave(a, LOAD(sines[0] + i), LOAD(sines[1] + i), PI / 2);
         const struct span cosine = wave(a, LOAD(cosines[0] + i), LOAD(cosines[1] + i), 0);
+        /* The waves of infinity are not numbers. */
         may_be_nan |= (uint32_t)(IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-a.low, a.high)) << i);
+        /* The slope of one is that of its argument times the other. */
         for (int k = 0; k < run->directions; k++) {
             const struct span slope = slope_of(from, k, i);
             if (of_sine)
@@ -334,6 +337,7 @@ static inline void run_product(struct machine *run, const struct expr_lanes *a, 
     out->may_be_nan = a->may_be_nan | b->may_be_nan;
     EACH_VECTOR {
         const struct span x = value_of(a, i), y = value_of(b, i);
+        /* The value: of a square from its size, otherwise from the four corners. */
         vector check = ALL(0);
         struct span value;
         if (is_square) {
@@ -342,6 +346,7 @@ static inline void run_product(struct machine *run, const struct expr_lanes *a, 
         } else {
             value = corners(x, y, &check);
         }
+        /* The slopes: a' b + a b'. */
         for (int k = 0; k < run->directions; k++) {
             struct span slope, s = slope_of(a, k, i), t = slope_of(b, k, i);
             if (is_square) {
@@ -458,10 +463,12 @@ static inline void run_extreme(struct machine *run, const struct expr_lanes *a, 
     const uint32_t a_nan = a->may_be_nan, b_nan = b->may_be_nan, is_nan = a->is_nan;
     EACH_VECTOR {
         const struct span x = value_of(a, i), y = value_of(b, i);
+        /* Lanes that an operand decides. */
         lanes_mask first = is_max ? LESS_EQUAL(y.high, x.low) : LESS_EQUAL(x.high, y.low);
         lanes_mask second = is_max ? LESS(x.high, y.low) : LESS(y.high, x.low);
         struct span value = is_max ? (struct span){MAX_OF(x.low, y.low), MAX_OF(x.high, y.high)}
                                    : (struct span){MIN_OF(x.low, y.low), MIN_OF(x.high, y.high)};
+        /* The slopes of that operand, or of both. */
         for (int k = 0; k < run->directions; k++) {
             struct span s = slope_of(a, k, i), t = slope_of(b, k, i);
             struct span slope = pick(first, s, pick(second, t, enclosure(s, t)));
@@ -472,6 +479,7 @@ static inline void run_extreme(struct machine *run, const struct expr_lanes *a, 
         }
         decided->first |= BITS(first) << i;
         decided->second |= BITS(second) << i;
+        /* Where b is not a number, the result is a. */
         if (b_nan && is_max)
             value.low = CHOOSE(b_nan >> i, x.low, value.low);
         else if (b_nan)
@@ -527,10 +535,12 @@ static void divide_case(struct machine *run, const struct expr_instruction *in, 
     bool is_divided = false;
     struct expr_lanes result = *out;
     for (int lane = 0; lane < EXPR_LANES && run->cases < (int)(sizeof second_sides / sizeof second_sides[0]); lane++) {
+        /* Each lane gets one of the two sides of a jump. */
         const bool second = second_sides[run->cases] >> lane & 1;
         double low = out->low[lane], high = out->high[lane], slope = 0;
         if ((out->may_be_nan | from[0]->may_be_nan | from[1]->may_be_nan) >> lane & 1)
             continue;
+        /* A modulo that wraps once. */
         if (in->operation == EXPR_MODULO) {
             double period = from[1]->low[lane], a = from[0]->low[lane], b = from[0]->high[lane];
             double before = expr_modulo(a, period), after = expr_modulo(b, period);

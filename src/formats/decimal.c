@@ -19,6 +19,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 __extension__ typedef unsigned __int128 wide;
 
@@ -119,5 +120,25 @@ const char *decimal_read(const char *at, const char *end, double *out) {
         return p;
     }
     *out = negative ? -value : value;
+    return p;
+}
+
+static bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+const char *decimal_skip_not_finite(const char *at, const char *end) {
+    const char *p = at;
+    double ignored;
+    if (p < end && (*p == '-' || *p == '+'))
+        p++;
+    if (end - p < 3)
+        return NULL;
+    bool named = strncasecmp(p, "nan", 3) == 0 || strncasecmp(p, "inf", 3) == 0 || memcmp(p, "1.#", 3) == 0;
+    bool beyond = (is_digit(*p) || (*p == '.' && is_digit(p[1]))) && !decimal_read(at, end, &ignored);
+    if (!named && !beyond)
+        return NULL;
+    while (p < end && (unsigned char)*p > ' ')
+        p++;
     return p;
 }

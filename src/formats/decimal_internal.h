@@ -7,4 +7,8 @@
  * large for a double. Never reads at or after `end`; needs no final NUL. */
 const char *decimal_read(const char *at, const char *end, double *out);
 
+/* The end of a word that means a number, but no finite one, as printf and other programs write it: nan, -inf, 1.#IND,
+ * 1e999. NULL: it is another word. */
+const char *decimal_skip_not_finite(const char *at, const char *end);
+
 #endif

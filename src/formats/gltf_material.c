@@ -26,15 +26,48 @@ static double unit(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* Adds the picture images[index] to the map: decoded if it is inside the file, otherwise its path. */
+/* A picture inside the file; NULL and an error if it cannot be read. */
+static struct image *decode_image(struct gltf *g, const json_t *image, const char *uri, const char *where) {
+    uint8_t *decoded = NULL;
+    const uint8_t *data;
+    size_t size, stride;
+    uint32_t view;
+    char *title = arena_format(&g->model->arena, "%s: %s", g->path, where);
+    if (!title) {
+        error_no_memory(g->error, g->path);
+        return NULL;
+    }
+    if (uri) {
+        if (!gltf_decode_data(g, uri, &decoded, &size, where))
+            return NULL;
+        data = decoded;
+    } else if (!gltf_index(g, image, "bufferView", "bufferViews", &view, where) ||
+               (view == MODEL_NONE && !gltf_fail(g, where, "it has neither uri nor bufferView")) ||
+               !gltf_view(g, view, &data, &size, &stride)) {
+        return NULL;
+    }
+    struct image *out = image_parse(title, data, size, g->error);
+    mem_free(decoded);
+    return out;
+}
+
+/* A picture without a name takes the place of one that cannot be read, so that it is tried and reported once. */
+static bool replace_image(struct gltf *g, uint32_t index) {
+    if (g->error->kind != ERROR_SCENE || g->error->limit)
+        return false;
+    model_warn(g->model, "%s (the picture has no effect)", g->error->text);
+    *g->error = (struct error){0};
+    g->images[index] = image_create("", 1, 1, 8, (const uint8_t[4]){0}, g->error);
+    return g->images[index] != NULL;
+}
+
+/* Adds the picture images[index] to the map: decoded if it is inside the file, otherwise its path; neither if it cannot
+ * be used. */
 static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map) {
     char where[64];
     (void)snprintf(where, sizeof where, "images[%u]", index);
     const json_t *image = json_array_get(gltf_array(g, "images"), index);
     const char *uri = json_string_value(json_object_get(image, "uri"));
-    uint8_t *decoded = NULL;
-    const uint8_t *data;
-    size_t size, stride;
     map->name = arena_format(&g->model->arena, "%s", where);
     if (!map->name)
         return error_no_memory(g->error, g->path);
@@ -45,34 +78,17 @@ static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map
         map->name = name;
         if (!model_find(g->model, name, strlen(name), &map->path, g->error))
             return false;
-        if (!map->path && !g->model->options.single_file)
-            model_warn(g->model, "%s: the picture '%.200s' %s", g->path, name, model_why_missing(g->model));
+        if (!map->path)
+            model_warn_missing(g->model, g->path, name);
         return true;
     }
     /* An embedded picture is decoded once, for all materials that use it. */
-    if (!g->images[index]) {
-        if (uri) {
-            if (!gltf_decode_data(g, uri, &decoded, &size, where))
-                return false;
-            data = decoded;
-        } else {
-            uint32_t view;
-            if (!gltf_index(g, image, "bufferView", "bufferViews", &view, where))
-                return false;
-            if (view == MODEL_NONE)
-                return gltf_fail(g, where, "it has neither uri nor bufferView");
-            if (!gltf_view(g, view, &data, &size, &stride))
-                return false;
-        }
-        char *title = arena_format(&g->model->arena, "%s: %s", g->path, where);
-        g->images[index] = title ? image_parse(title, data, size, g->error) : NULL;
-        mem_free(decoded);
-        if (!title)
-            return error_no_memory(g->error, g->path);
-        if (!g->images[index])
-            return false;
-    }
-    map->image = image_share(g->images[index]);
+    if (!g->images[index])
+        g->images[index] = decode_image(g, image, uri, where);
+    if (!g->images[index] && !replace_image(g, index))
+        return false;
+    if (image_name(g->images[index])[0] != '\0')
+        map->image = image_share(g->images[index]);
     return true;
 }
 
@@ -89,6 +105,7 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
     uint64_t set;
     if (!info)
         return true;
+    map->name = key; /* there is one, even if it cannot be used */
     if (!gltf_index(g, info, "index", "textures", &texture, where) ||
         !gltf_whole(g, info, "texCoord", 0, &set, where) || !gltf_whole(g, transform, "texCoord", set, &set, where))
         return false;

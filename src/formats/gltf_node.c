@@ -528,7 +528,7 @@ static bool push_roots(struct tree *tree) {
         }
         return true;
     }
-    /* Without scenes the roots are those nodes that are nobody's child. */
+    /* In a file without scenes, the nodes without a parent are the roots. */
     uint8_t *is_child = mem_alloc_zero(count ? count : 1, 1);
     bool ok = is_child || error_no_memory(g->error, g->path);
     for (size_t i = 0; ok && i < count; i++) {

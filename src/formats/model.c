@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/unreachable.h"
+#include "formats/scan_internal.h"
 #include "image/zlib_memory.h"
 #include "math/range.h"
 #include "mesh/mesh_smooth.h"
@@ -158,12 +159,91 @@ void model_warn(struct model *model, const char *format, ...) {
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    if (model->warning_count == MODEL_WARNINGS - 1)
+        (void)snprintf(text, sizeof text, "%s: more warnings are left out", model->path);
     for (char *c = text; *c; c++) /* names from the file may contain any bytes */
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
+    for (int i = 0; i < model->warning_count; i++)
+        if (strcmp(model->warnings[i], text) == 0)
+            return;
     char *copy = arena_copy_text(&model->arena, text, strlen(text));
     if (copy)
         model->warnings[model->warning_count++] = copy;
+}
+
+/* --- what is left out --- */
+
+void left_out_add(struct left_out *out, size_t at) {
+    if (out->count++ == 0)
+        out->at = at;
+}
+
+void model_warn_left_out(struct model *model, const char *path, const struct left_out *out, bool binary,
+                         const char *what) {
+    if (out->count == 1)
+        model_warn(model, "%s:%s%zu: %s", path, binary ? " byte " : "", out->at, what);
+    else if (out->count > 1)
+        model_warn(model, "%s:%s%zu: %s (%zu times, the first here)", path, binary ? " byte " : "", out->at, what,
+                   out->count);
+}
+
+void unread_add(struct unread *unread, const char *word, size_t length, size_t line) {
+    left_out_add(&unread->lines, line);
+    for (int i = 0; i < unread->word_count; i++)
+        if (unread->words[i].length == length && memcmp(unread->words[i].text, word, length) == 0) {
+            unread->words[i].count++;
+            return;
+        }
+    if (unread->word_count == UNREAD_WORDS)
+        return;
+    unread->words[unread->word_count].text = word;
+    unread->words[unread->word_count].length = length;
+    unread->words[unread->word_count++].count = 1;
+}
+
+void model_warn_unread(struct model *model, const char *path, const struct unread *unread) {
+    char list[UNREAD_WORDS * 128] = "";
+    size_t used = 0, named = 0;
+    if (unread->lines.count == 0)
+        return;
+    for (int i = 0; i < unread->word_count; i++) {
+        char word[64] = "";
+        size_t length = 0;
+        /* Other bytes than those of ASCII by their numbers: a no-break space would not be seen. */
+        for (size_t k = 0; k < unread->words[i].length && length < 40; k++) {
+            unsigned char c = (unsigned char)unread->words[i].text[k];
+            length += (size_t)snprintf(word + length, sizeof word - length, c > ' ' && c < 0x7f ? "%c" : "\\x%02x", c);
+        }
+        named += unread->words[i].count;
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%s' (%zu)", i ? ", " : "", word,
+                                 unread->words[i].count);
+    }
+    if (named < unread->lines.count)
+        (void)snprintf(list + used, sizeof list - used, " and others");
+    model_warn(model, "%s:%zu: %zu line%s with a keyword that gray does not read, the first here: %s", path,
+               unread->lines.at, unread->lines.count, unread->lines.count == 1 ? "" : "s", list);
+}
+
+bool model_show_colours(struct model *model, struct model_mesh *mesh, struct error *error) {
+    uint32_t white = MODEL_NONE;
+    for (size_t i = 0; i < model->materials.count; i++)
+        model_materials(model)[i].by_vertex = true;
+    if (mesh->slots.count == 0 && !list_add_index(&mesh->slots, MODEL_NONE))
+        return error_no_memory(error, model->path);
+    for (size_t i = 0; i < mesh->slots.count; i++) {
+        uint32_t *slot = (uint32_t *)mesh->slots.items + i;
+        if (*slot == MODEL_NONE && white == MODEL_NONE) {
+            struct model_material *material = model_add_material(model, error);
+            if (!material)
+                return false;
+            material->kd = vec3_all(1);
+            material->by_vertex = true;
+            white = (uint32_t)model->materials.count - 1;
+        }
+        *slot = *slot == MODEL_NONE ? white : *slot;
+    }
+    return true;
 }
 
 /* --- files beside the model --- */
@@ -213,6 +293,17 @@ const char *model_why_missing(const struct model *model) {
                           : "is not there";
 }
 
+void model_warn_missing(struct model *model, const char *where, const char *name) {
+    char text[512];
+    if (model->options.single_file)
+        return;
+    (void)snprintf(text, sizeof text, "the picture '%.200s' %s", name, model_why_missing(model));
+    for (int i = 0; i < model->warning_count; i++)
+        if (strstr(model->warnings[i], text))
+            return;
+    model_warn(model, "%s: %s", where, text);
+}
+
 /* --- from tables to meshes --- */
 
 static void tables_destroy(struct model_mesh *m) {
@@ -245,9 +336,10 @@ static struct mesh_input tables_input(const struct model_mesh *m) {
     }
     if (m->face_slot.count && m->slots.count > 1)
         input.face_material = m->face_slot.items;
-    assert(m->colours.count == 0 || m->colours.count == m->vertices.count);
+    assert(m->colours.count == 0 || m->colours.count == (m->colours_by_face ? m->starts : m->vertices).count);
     if (m->colours.count)
         input.colours = m->colours.items;
+    input.colours_by_face = m->colours_by_face;
     return input;
 }
 
@@ -264,7 +356,7 @@ static bool finish_mesh(struct model *model, struct model_mesh *m, struct error 
     struct mesh_tables own = {0};
     bool ok = true;
     if (model->options.weld)
-        ok = mesh_input_weld(&input, &own, error);
+        ok = mesh_input_weld(&input, &own, model->options.weld_distance, error);
     if (ok && model->options.flip)
         ok = mesh_input_flip(&input, &own, error);
     if (ok && model->options.smooth)
@@ -377,6 +469,9 @@ static bool model_finish(struct model *model, struct error *error) {
         bool is_known = length == 0;
         for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
             is_known = is_known || is_word(extension, length, extensions[i]);
+        /* What was left out is the reason. */
+        if (is_known && model->warning_count > 0)
+            return error_set(error, ERROR_SCENE, "%s: no faces in this file (%s)", model->path, model->warnings[0]);
         return error_set(error, ERROR_SCENE, "%s: no faces in this file%s", model->path,
                          is_known ? "" : "; gray reads OBJ, PLY, STL and glTF files");
     }
@@ -407,27 +502,39 @@ static bool holds(const uint8_t *data, size_t size, const char *word) {
     return false;
 }
 
+static bool has_mark(const uint8_t *data, size_t size) {
+    return size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0;
+}
+
+static bool begins_as_ply(const uint8_t *data, size_t size) {
+    size_t at = has_mark(data, size) ? 3 : 0;
+    return size - at >= 4 && memcmp(data + at, "ply", 3) == 0 && (data[at + 3] == '\n' || data[at + 3] == '\r');
+}
+
+/* A binary STL file says how long it is; no other file does by accident. */
+static bool is_whole_stl(const uint8_t *data, size_t size) {
+    uint64_t count = size >= 84 ? scan_u32(data + 80, false) : 0;
+    return count > 0 && 84 + 50 * count == size;
+}
+
 static enum model_kind kind_of(const char *path, const uint8_t *data, size_t size) {
     size_t length, at = 0;
     const char *extension = extension_of(path, &length);
     if (size >= 4 && memcmp(data, "glTF", 4) == 0)
         return MODEL_GLTF;
-    if (size >= 4 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r'))
+    if (begins_as_ply(data, size))
         return MODEL_PLY;
-    /* A binary STL file says how long it is; no other file does by accident. */
-    uint64_t claimed =
-        size >= 84 ? (uint64_t)data[80] | (uint64_t)data[81] << 8 | (uint64_t)data[82] << 16 | (uint64_t)data[83] << 24
-                   : 0;
-    if (claimed > 0 && 84 + 50 * claimed == size)
+    if (is_whole_stl(data, size))
         return MODEL_STL_BINARY;
-    while (at < size && (data[at] <= ' ' || (at < 3 && size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)))
+    while (at < size && (data[at] <= ' ' || (at < 3 && has_mark(data, size))))
         at++;
     bool solid = size - at >= 6 && strncasecmp((const char *)data + at, "solid", 5) == 0 && data[at + 5] <= ' ';
-    /* Binary STL files may begin with "solid", too: what follows decides. */
+    /* Binary STL files may begin with "solid", too, and text may lack it: what follows decides. */
     size_t head = size - at < 4096 ? size - at : 4096;
-    if (is_word(extension, length, "stl"))
-        return solid && (holds(data + at, head, "facet") || holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT
-                                                                                                : MODEL_STL_BINARY;
+    if (is_word(extension, length, "stl")) {
+        bool facets = holds(data + at, head, "facet") && (solid || holds(data + at, head, "vertex"));
+        return facets || (solid && holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT : MODEL_STL_BINARY;
+    }
     if (solid && holds(data + at, head, "facet normal"))
         return MODEL_STL_TEXT;
     if (is_word(extension, length, "ply"))
@@ -449,10 +556,28 @@ static const char *web_page_words(const uint8_t *data, size_t size) {
     return NULL;
 }
 
+/* Two bytes a letter, in either order, with a mark or without one. */
+static bool is_utf16(const uint8_t *data, size_t size) {
+    if (size >= 2 && (memcmp(data, "\xff\xfe", 2) == 0 || memcmp(data, "\xfe\xff", 2) == 0))
+        return true;
+    if (size < 4)
+        return false;
+    uint8_t first = data[0] | data[1], second = data[2] | data[3];
+    bool is_low = !data[1] && !data[3], is_high = !data[0] && !data[2];
+    return (is_low || is_high) && first >= ' ' && first < 0x7f && second >= ' ' && second < 0x7f;
+}
+
+bool text_is_readable(const char *path, const void *data, size_t size, struct error *error) {
+    return !is_utf16(data, size) ||
+           error_set(error, ERROR_SCENE, "%s:1: this is UTF-16 text; gray reads plain ASCII and UTF-8", path);
+}
+
 static bool load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
     const char *page = web_page_words(data, size);
     if (page)
         return error_set(error, ERROR_SCENE, "%s: %s", model->path, page);
+    if (!is_whole_stl(data, size) && !text_is_readable(model->path, data, size, error))
+        return false;
     enum model_kind kind = kind_of(model->path, data, size);
     if (kind != MODEL_GLTF && (model->options.animated || model->options.variant))
         model_warn(model, "%s: only glTF files have animations and variants of materials", model->path);

@@ -43,7 +43,8 @@ struct model_material {
     double roughness, transmission;
     struct vec3 absorption;
     bool has_shininess, has_ior, two_sided, unlit;
-    bool by_vertex; /* the colours of the vertices multiply kd */
+    bool by_vertex;      /* the colours of the mesh multiply kd */
+    bool dissolve_of_tr; /* of Tr, not of d */
     int illum;
     struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
     /* Of layered materials: the colour is the reflectance head on (times gloss_colour), alpha times 1 - roughness the
@@ -51,6 +52,9 @@ struct model_material {
     struct model_texture map_gloss;
     struct vec3 gloss_colour;
 };
+#define MODEL_MAPS(m)                                                                                                  \
+    &(m)->map_kd, &(m)->map_ks, &(m)->map_ke, &(m)->map_d, &(m)->map_bump, &(m)->map_normal, &(m)->map_metal,          \
+        &(m)->map_gloss
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
@@ -61,8 +65,9 @@ struct model_mesh {
     struct list vertex_index, normal_index, uv_index; /* uint32_t per corner; MODEL_NONE: this corner has none */
     struct list face_slot;                            /* uint32_t per face, or empty */
     bool normals_by_vertex, uvs_by_vertex;            /* their index lists are vertex_index */
-    struct list slots;                                /* uint32_t: the material of a slot, or MODEL_NONE */
-    struct list slot_names;                           /* const char *, the same number, or none */
+    bool colours_by_face;
+    struct list slots;      /* uint32_t: the material of a slot, or MODEL_NONE */
+    struct list slot_names; /* const char *, the same number, or none */
     struct mesh *mesh;
 };
 
@@ -110,6 +115,7 @@ struct model_options {
     bool smooth;           /* computed normals instead of the file's */
     double smooth_angle;   /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
     bool weld, flip;       /* one vertex for each position; faces reversed */
+    double weld_distance;  /* with weld: vertices closer than this become one; 0: only those at equal positions */
     bool forgive;          /* faces with indices of nothing are left out */
     bool animated;         /* the nodes are as the animation moves them at the time; else at rest */
     double time;           /* seconds */
@@ -173,12 +179,42 @@ static inline struct model_animation *model_animations(const struct model *model
 struct model_mesh *model_add_mesh(struct model *model, struct error *error);
 struct model_material *model_add_material(struct model *model, struct error *error); /* plain gray, nothing else */
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
-/* Warnings beyond the limit are dropped; the first ones are kept. */
+/* Equal warnings are kept once. The last one that is kept says that there are more. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A file that the model names. gray tries its folder with any spelling of the path, then the bare name, then the search
  * of the options. If *path is NULL, model_why_missing() returns the reason. */
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 const char *model_why_missing(const struct model *model);
+/* An error that says so if the text has two bytes a letter. */
+bool text_is_readable(const char *path, const void *data, size_t size, struct error *error);
+
+/* What a reader leaves out, of one kind: how many, and the line of the first (or its byte, in binary files). */
+struct left_out {
+    size_t count, at;
+};
+void left_out_add(struct left_out *out, size_t at);
+/* One warning, unless nothing of the kind was left out. `what` is a sentence without its full stop. */
+void model_warn_left_out(struct model *model, const char *path, const struct left_out *out, bool binary,
+                         const char *what);
+
+/* Lines whose first words a reader of text does not know, or cannot show. The words point into the file. */
+enum { UNREAD_WORDS = 6 };
+struct unread {
+    struct left_out lines;
+    struct {
+        const char *text;
+        size_t length, count;
+    } words[UNREAD_WORDS];
+    int word_count;
+};
+void unread_add(struct unread *unread, const char *word, size_t length, size_t line);
+/* `path` is that of the file with these lines. */
+void model_warn_unread(struct model *model, const char *path, const struct unread *unread);
+
+/* The colours of the mesh multiply its materials; faces without a material get a white one. */
+bool model_show_colours(struct model *model, struct model_mesh *mesh, struct error *error);
+/* A warning, once for each name, of a picture that model_find just did not find. `where`: "FILE" or "FILE:LINE". */
+void model_warn_missing(struct model *model, const char *where, const char *name);
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);

@@ -21,13 +21,14 @@ static void destroy_model(void *object) {
     mem_free(object);
 }
 
-const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
-                                const struct model_options *options, bool *fresh, struct error *error) {
+struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
+                          const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 400];
     int length =
-        snprintf(key, sizeof key, "%s|%d %.17g %d %d %d|%d %.17g %s|%s", canonical, options->smooth,
-                 options->smooth_angle, options->weld, options->flip, options->forgive, options->animated,
-                 options->time, options->animation ? options->animation : "", options->variant ? options->variant : "");
+        snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d|%d %.17g %s|%s", canonical, options->smooth,
+                 options->smooth_angle, options->weld, options->weld_distance, options->flip, options->forgive,
+                 options->animated, options->time, options->animation ? options->animation : "",
+                 options->variant ? options->variant : "");
     *fresh = false;
     if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: %s is too long", path,
@@ -58,11 +59,40 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
 
 /* --- materials --- */
 
+static bool is_usable(const struct model_texture *map) {
+    return map->image || map->path;
+}
+
+/* A picture that cannot be read has no effect, as if it were missing; only a lack of memory is an error. */
+static bool check_picture(struct scene *scene, struct model *model, struct model_texture *map, struct error *error) {
+    struct error reason = {0};
+    if (!map->path || assets_image(scene->assets, map->path, &reason))
+        return true;
+    if (reason.kind != ERROR_SCENE || reason.limit) {
+        *error = reason;
+        return false;
+    }
+    model_warn(model, "%s (the picture has no effect)", reason.text);
+    map->path = NULL;
+    return true;
+}
+
+static bool check_pictures(struct scene *scene, struct model *model, struct model_material *m, struct error *error) {
+    struct model_texture *maps[] = {MODEL_MAPS(m)};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        if (!check_picture(scene, model, maps[i], error))
+            return false;
+    /* A cut by the colour's alpha alone, without its picture. */
+    if (m->map_d.name && !is_usable(&m->map_d) && m->map_d.cutoff > 1)
+        m->dissolve = 0;
+    return true;
+}
+
 /* The image of a map; *there is false if there is none. */
 static bool find_map(struct scene *scene, const struct model_texture *map, struct texture_image *out, bool *there,
                      struct error *error) {
     struct image *image = map->image;
-    *there = image || map->path;
+    *there = is_usable(map);
     if (!*there)
         return true;
     if (!image)
@@ -259,7 +289,7 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.ior = m->phong.has_ior ? openpbr_ior(layers->specular_ior, layers->specular_weight) : 1;
     m->phong.absorption = from->absorption;
     m->phong.two_sided = from->two_sided || from->transmission > 0;
-    m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
+    m->phong.emission = from->map_ke.name ? vec3_all(0) : from->ke;
     bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_gloss(scene, from, layers, m, error) &&
               multiply_by_metal(scene, from, m, error) && multiply_by_opacity(scene, from, m, error);
     return ok ? with_maps(scene, from, m, error) : NULL;
@@ -283,7 +313,7 @@ static const struct material *make_material(struct scene *scene, const struct mo
     m->phong.reflect = from->illum >= 3 && from->illum <= 9 ? 1 : from->reflect;
     m->phong.ior = bends && from->ior >= 1 ? from->ior : 1;
     m->phong.two_sided = from->two_sided;
-    m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
+    m->phong.emission = from->map_ke.name ? vec3_all(0) : from->ke;
     m->phong.unlit = from->unlit;
     if (clear) {
         bool dark = vec3_max_abs(m->phong.ks) == 0;
@@ -298,11 +328,16 @@ static const struct material *make_material(struct scene *scene, const struct mo
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
         tint =
             vec3_all(from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
-    if (from->by_vertex && !by_vertex(scene, m, error))
-        return NULL;
     const struct material *top = m;
     if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
         return NULL;
+    /* The colours of the mesh multiply the picture, too. */
+    if (from->by_vertex) {
+        struct material *coloured = top == m ? m : scene_material(scene, MATERIAL_IMAGE, top, error);
+        if (!coloured || !by_vertex(scene, coloured, error))
+            return NULL;
+        top = coloured;
+    }
     top = with_maps(scene, from, top, error);
     if (!top || !clear || from->illum != 7)
         return top;
@@ -340,16 +375,29 @@ static const struct material *part_material(const struct model_placing *placing,
 
 struct placer {
     struct scene *scene;
-    const struct model *model;
+    struct model *model;
     const struct model_placing *placing;
     struct error *error;
     const struct material **materials; /* of the model; NULL until its first use */
 };
 
 static const struct material *material_of(struct placer *p, uint32_t index) {
-    if (!p->materials[index])
-        p->materials[index] = make_material(p->scene, &model_materials(p->model)[index], p->error);
+    struct model_material *from = &model_materials(p->model)[index];
+    if (!p->materials[index] && check_pictures(p->scene, p->model, from, p->error))
+        p->materials[index] = make_material(p->scene, from, p->error);
     return p->materials[index];
+}
+
+/* The inputs of such materials are as if no picture were named. */
+static void warn_without_coordinates(const struct placer *p, const struct model_mesh *mesh, uint32_t index) {
+    struct model_material *m = &model_materials(p->model)[index];
+    const struct model_texture *maps[] = {MODEL_MAPS(m)};
+    bool any = false;
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        any = any || is_usable(maps[i]);
+    if (any && !mesh_has_uv(mesh->mesh))
+        model_warn(p->model, "%s: the pictures of the material '%.200s' have no effect on meshes without coordinates",
+                   p->model->path, m->name);
 }
 
 static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
@@ -382,6 +430,7 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
         list[i] = material_of(p, slots[i]);
         if (!list[i])
             return false;
+        warn_without_coordinates(p, mesh, slots[i]);
     }
     node->slots = list;
     node->slot_names = names;
@@ -420,7 +469,7 @@ static struct node *add_node_tree(struct placer *p) {
     return ok ? root : NULL;
 }
 
-struct node *model_add_nodes(struct scene *scene, const struct model *model, const struct model_placing *placing,
+struct node *model_add_nodes(struct scene *scene, struct model *model, const struct model_placing *placing,
                              struct error *error) {
     struct placer p = {.scene = scene, .model = model, .placing = placing, .error = error};
     p.materials = arena_alloc_array(&scene->arena, model->materials.count, sizeof *p.materials);

@@ -7,8 +7,8 @@
 
 /* The model of a file, from the store or read into it. `path` is for messages, `canonical` identifies the file.
  * *fresh: it was read now, so its warnings have not been reported yet. Owned by the store. */
-const struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
-                                const struct model_options *options, bool *fresh, struct error *error);
+struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
+                          const struct model_options *options, bool *fresh, struct error *error);
 
 struct model_placing {
     const char *name;                /* of the node */
@@ -26,8 +26,8 @@ const char *model_part(const struct model *model, size_t index);
 
 /* A model with one mesh becomes one geometry node. Other models become a group with the nodes of the file; if the
  * file positions a mesh several times, all nodes share it. Everything is allocated in the scene's arena; pictures
- * come from its store. */
-struct node *model_add_nodes(struct scene *scene, const struct model *model, const struct model_placing *placing,
+ * come from its store. Those that cannot be used have no effect: the model gets warnings, each once. */
+struct node *model_add_nodes(struct scene *scene, struct model *model, const struct model_placing *placing,
                              struct error *error);
 
 #endif

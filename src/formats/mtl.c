@@ -1,11 +1,13 @@
 /* Wavefront MTL: each line is a keyword and its values, which belong to the last newmtl. Source: D. Ramey, L. Rose,
  * L. Tyerman, "MTL material format (Lightwave, OBJ)", 1995, and the keywords of current exporters (map_bump, norm,
- * Ke, Pr). Unknown keywords are skipped. A name extends to the end of its line, including blanks; the name of a
- * picture follows its options. */
+ * Ke, Pr). One warning names the keywords that are not read; a statement whose value is wrong is left out, with a
+ * warning. A name extends to the end of its line, including blanks; the name of a picture follows its options. */
 #include "formats/model.h"
 
 #include "formats/decimal_internal.h"
+#include "math/range.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MATERIAL_LIMIT = 65536 };
@@ -17,14 +19,14 @@ struct library {
     size_t line;
     struct error *error;
     struct model_material *material;
+    size_t first_material; /* of the library, in the model */
+    bool has_dissolve;     /* the material has a d, which wins over Tr */
+    struct unread unread;
+    struct left_out wrong, nameless, transparencies;
 };
 
 static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f'; /* \r ends a line */
-}
-
-static bool fail(const struct library *l, const char *what) {
-    return error_set(l->error, ERROR_SCENE, "%s:%zu: %s", l->path, l->line, what);
 }
 
 /* The next word of the line; its length is 0 at the end. */
@@ -52,35 +54,34 @@ static bool word_is_number(const struct library *l, size_t length, double *out) 
     return length > 0 && decimal_read(l->at, l->at + length, out) == l->at + length;
 }
 
-static bool read_number(struct library *l, double *out) {
-    size_t length = next_word(l);
-    if (!word_is_number(l, length, out)) {
-        int shown = length < 40 ? (int)length : 40;
-        char word[41];
-        for (int i = 0; i < shown; i++)
-            word[i] = l->at[i] >= 0x20 && l->at[i] < 0x7f ? l->at[i] : '?';
-        word[shown] = '\0';
-        return error_set(l->error, ERROR_SCENE, "%s:%zu: '%s' is not a finite number", l->path, l->line, word);
+/* Up to `max` numbers; false, and nothing changes, if one is wrong or fewer than `min` are there. */
+static bool read_numbers(struct library *l, double *out, int min, int max) {
+    double values[3];
+    int count = 0;
+    for (size_t length; count < max && (length = next_word(l)) > 0 && *l->at != '#'; count++) {
+        if (!word_is_number(l, length, &values[count]) || !number_in_range(values[count])) {
+            count = 0;
+            break;
+        }
+        l->at += length;
     }
-    l->at += length;
-    return true;
+    if (count < min)
+        left_out_add(&l->wrong, l->line);
+    else
+        memcpy(out, values, (size_t)count * sizeof *out);
+    return count >= min;
 }
 
-/* Reads one number for all three, or three numbers; false for other forms (spectral, xyz). */
-static bool read_colour(struct library *l, struct vec3 *out) {
+/* One number for all three, or three numbers; other forms (spectral, xyz) are not read. */
+static void read_colour(struct library *l, const struct library *keyword, size_t keyword_length, struct vec3 *out) {
     size_t length = next_word(l);
-    if (is_word(l, length, "spectral") || is_word(l, length, "xyz"))
-        return true;
-    double x, y, z;
-    if (!read_number(l, &x))
-        return false;
-    y = z = x;
-    if (next_word(l) && !read_number(l, &y))
-        return false;
-    if (next_word(l) && !read_number(l, &z))
-        return false;
-    *out = vec3_make(x, y, z);
-    return true;
+    double rgb[3] = {0, NAN, NAN};
+    if (is_word(l, length, "spectral") || is_word(l, length, "xyz")) {
+        unread_add(&l->unread, keyword->at, keyword_length, l->line);
+        return;
+    }
+    if (read_numbers(l, rgb, 1, 3))
+        *out = vec3_make(rgb[0], isnan(rgb[1]) ? rgb[0] : rgb[1], isnan(rgb[2]) ? rgb[0] : rgb[2]);
 }
 
 /* The rest of the line without blanks at its ends. */
@@ -144,8 +145,10 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     size_t length;
     const char *name = rest(l, &length);
-    if (length == 0)
-        return fail(l, "the name of a picture is missing");
+    if (length == 0) {
+        left_out_add(&l->nameless, l->line);
+        return true;
+    }
     map->scale[0] = scale[0], map->scale[1] = scale[1];
     map->offset[0] = offset[0], map->offset[1] = offset[1];
     map->strength = strength[0];
@@ -169,36 +172,72 @@ static bool read_map(struct library *l, struct model_texture *map) {
     }
     if (!model_find(l->model, name, length, &map->path, l->error))
         return false;
-    if (!map->path && !l->model->options.single_file)
-        model_warn(l->model, "%s:%zu: the picture '%.200s' %s", l->path, l->line, map->name,
-                   model_why_missing(l->model));
+    const char *where = map->path ? "" : arena_format(&l->model->arena, "%s:%zu", l->path, l->line);
+    if (!where)
+        return error_no_memory(l->error, l->path);
+    if (!map->path)
+        model_warn_missing(l->model, where, map->name);
     return true;
 }
 
 static bool new_material(struct library *l) {
     size_t length;
     const char *name = rest(l, &length);
-    if (length == 0)
-        return fail(l, "newmtl needs a name");
     if (l->model->materials.count == MATERIAL_LIMIT)
         return error_set(l->error, ERROR_SCENE, "%s:%zu: more than %d materials", l->path, l->line, MATERIAL_LIMIT);
     l->material = model_add_material(l->model, l->error);
     if (!l->material)
         return false;
+    l->has_dissolve = false;
     l->material->name = arena_copy_text(&l->model->arena, name, length);
     return l->material->name || error_no_memory(l->error, l->path);
 }
 
-static bool read_dissolve(struct library *l, double sign) {
+static void read_dissolve(struct library *l, bool is_transparency) {
     double value;
     size_t length = next_word(l);
     if (is_word(l, length, "-halo"))
         l->at += length;
-    if (!read_number(l, &value))
-        return false;
-    value = sign > 0 ? value : 1 - value;
+    if (!read_numbers(l, &value, 1, 1) || (is_transparency && l->has_dissolve))
+        return;
+    value = is_transparency ? 1 - value : value;
+    l->has_dissolve = !is_transparency;
     l->material->dissolve = value < 0 ? 0 : value > 1 ? 1 : value;
-    return true;
+    l->material->dissolve_of_tr = is_transparency;
+    if (is_transparency)
+        left_out_add(&l->transparencies, l->line);
+}
+
+/* Nothing of it is seen: neither refraction nor a coloured filter. */
+static bool is_invisible(const struct model_material *m) {
+    bool bends = m->has_ior && m->ior != 1 && (m->illum < 0 || m->illum == 6 || m->illum == 7);
+    return m->dissolve == 0 && !bends && vec3_max_abs(vec3_sub(m->filter, vec3_all(1))) == 0;
+}
+
+/* MeshLab wrote Tr 1 for opaque materials until 2023. */
+static void show_invisible(struct library *l) {
+    struct model_material *materials = model_materials(l->model);
+    size_t count = l->model->materials.count;
+    struct left_out opaque = {0};
+    for (size_t i = l->first_material; i < count; i++)
+        if (!is_invisible(&materials[i]))
+            return;
+    for (size_t i = l->first_material; i < count; i++)
+        if (materials[i].dissolve_of_tr) {
+            materials[i].dissolve = 1;
+            left_out_add(&opaque, l->transparencies.at);
+        }
+    model_warn_left_out(l->model, l->path, &opaque, false,
+                        "Tr makes every material of this file invisible: it is opaque instead");
+}
+
+/* What changes nothing visible, or nothing that Kd and its picture do not show. */
+static bool is_silent(const struct library *word, size_t length) {
+    static const char *const words[] = {"map_Ka", "Km", "sharpness", "map_aat"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (is_word(word, length, words[i]))
+            return true;
+    return false;
 }
 
 static bool read_statement(struct library *l) {
@@ -229,33 +268,37 @@ static bool read_statement(struct library *l) {
                 {"bump", offsetof(struct model_material, map_bump)},
                 {"norm", offsetof(struct model_material, map_normal)},
                 {"map_Kn", offsetof(struct model_material, map_normal)}};
-    /* Unknown statements are passed over: there are many dialects. */
     for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
-        if (is_word(&word, length, colours[i].word))
-            return read_colour(l, (struct vec3 *)(void *)((char *)m + colours[i].offset));
+        if (is_word(&word, length, colours[i].word)) {
+            read_colour(l, &word, length, (struct vec3 *)(void *)((char *)m + colours[i].offset));
+            return true;
+        }
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++)
         if (is_word(&word, length, maps[i].word))
             return read_map(l, (struct model_texture *)(void *)((char *)m + maps[i].offset));
-    if (is_word(&word, length, "Ns"))
-        return read_number(l, &m->shininess) && (m->has_shininess = true);
-    if (is_word(&word, length, "Ni"))
-        return read_number(l, &m->ior) && (m->has_ior = true);
-    if (is_word(&word, length, "d"))
-        return read_dissolve(l, 1);
-    if (is_word(&word, length, "Tr"))
-        return read_dissolve(l, -1);
-    if (is_word(&word, length, "illum")) {
+    if (is_word(&word, length, "Ns")) {
+        m->has_shininess |= read_numbers(l, &m->shininess, 1, 1);
+    } else if (is_word(&word, length, "Ni")) {
+        m->has_ior |= read_numbers(l, &m->ior, 1, 1);
+    } else if (is_word(&word, length, "d")) {
+        read_dissolve(l, false);
+    } else if (is_word(&word, length, "Tr")) {
+        read_dissolve(l, true);
+    } else if (is_word(&word, length, "illum")) {
         double value;
-        if (!read_number(l, &value))
-            return false;
-        m->illum = value >= 0 && value <= 10 ? (int)value : -1;
+        if (read_numbers(l, &value, 1, 1))
+            m->illum = value >= 0 && value <= 10 ? (int)value : -1;
+    } else if (!is_silent(&word, length)) {
+        unread_add(&l->unread, word.at, length, l->line);
     }
     return true;
 }
 
 bool mtl_load(struct model *model, const char *path, const char *text, size_t size, struct error *error) {
-    struct library library = {.model = model, .path = path, .error = error};
+    struct library library = {.model = model, .path = path, .error = error, .first_material = model->materials.count};
     const char *end = text + size;
+    if (!text_is_readable(path, text, size, error))
+        return false;
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
         text += 3;
     while (text < end) {
@@ -271,5 +314,9 @@ bool mtl_load(struct model *model, const char *path, const char *text, size_t si
         if (line_end + 1 < end && line_end[0] == '\r' && line_end[1] == '\n')
             text++;
     }
+    show_invisible(&library);
+    model_warn_unread(model, path, &library.unread);
+    model_warn_left_out(model, path, &library.wrong, false, "a value is not a finite number: it is left out");
+    model_warn_left_out(model, path, &library.nameless, false, "the name of a picture is missing");
     return true;
 }

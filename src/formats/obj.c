@@ -2,11 +2,14 @@
  *
  * A line is a keyword and blank-separated words; `#` starts a comment, a backslash at the end of a line continues it.
  * Only v, vt, vn, f, usemtl, mtllib, g and o are read; other keywords must at least look like words, so that a binary
- * file is refused on its first line. The faces behind a usemtl have its material; in a file without any usemtl those of
+ * file is refused on its first line; one warning names those that would show something. What is wrong with normals,
+ * texture coordinates and faces of two corners leaves out these; what is wrong with positions is an error, unless no
+ * face uses them. The faces behind a usemtl have its material; in a file without any usemtl those of
  * a group (g, o) have a material slot of its name, so that a script can distinguish them. Source of the format:
  * Wavefront, "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual. Indices count from 1; negative ones
  * count back from the last element read so far. A positive index may point at an element that comes later in the file,
- * so these are checked at the end: for each of the three lists only the largest index and its line need to be kept.
+ * so these are checked at the end: for each of the three lists only indices above all before them need to be kept, with
+ * their lines.
  * Invariant: the index lists of uvs and normals are either absent or as long as that of vertices; they appear with the
  * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way
  * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is
@@ -14,12 +17,13 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "base/list.h"
 #include "formats/decimal_internal.h"
 #include "formats/list.h"
 #include "formats/model.h"
+#include "math/range.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -98,19 +102,23 @@ static void names_destroy(struct names *names) {
 /* --- elements and faces --- */
 
 #define MISSING UINT32_MAX
-#define STRAY (UINT32_MAX - 1)   /* no such element; only where such faces are forgiven */
+#define STRAY (UINT32_MAX - 1)   /* no such vertex; only where such faces are forgiven */
 #define UNNAMED (UINT32_MAX - 1) /* faces before the first usemtl or g */
 #define FILE_LIMIT ((size_t)1 << 36)
 
-#define ELEMENT_KINDS(X) X(VERTEX, "vertex") X(UV, "vt") X(NORMAL, "vn")
-enum { ELEMENT_KINDS(LIST_MEMBER) };
-enum { KINDS = LIST_COUNT(ELEMENT_KINDS) };
+enum { VERTEX, UV, NORMAL, KINDS }; /* of elements: v, vt, vn */
 
 /* The material slots of the faces for one kind of name. The list is absent while all faces have the same slot. */
 struct slotting {
     struct names names;
     struct list faces; /* uint32_t per face */
     uint32_t current, first;
+};
+
+/* A vertex with a coordinate that is not finite, and the word; or an index of an element that may come later. */
+struct doubt {
+    size_t number, line;
+    const char *word;
 };
 
 struct reader {
@@ -121,12 +129,18 @@ struct reader {
     struct list elements[KINDS]; /* double[3], double[2], double[3] */
     struct list indices[KINDS];  /* uint32_t per corner */
     struct list starts;          /* uint32_t per face: its first corner */
-    size_t largest[KINDS], largest_line[KINDS];
+    struct list ahead[KINDS];    /* struct doubt: indices that come before their elements, rising */
+    struct list odd_vertices;    /* struct doubt: those that are not finite */
+    const char *odd_word;        /* of the last line of numbers; NULL: all are finite */
+    struct list colours;         /* float[3] per vertex, as written; NaN: none */
+    float brightest;             /* number of a colour */
+    struct left_out odd[KINDS];  /* vn and vt without finite numbers */
+    struct left_out lost[KINDS]; /* indices of vn and vt that do not exist */
+    struct left_out short_faces, odd_colours;
+    struct unread unread;
     struct model *model;
     struct slotting materials, groups;
 };
-
-static const char *const kind_names[] = {ELEMENT_KINDS(LIST_WORD)};
 
 static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
@@ -216,36 +230,126 @@ static void skip_line(struct reader *reader) {
         skip_line_end(reader);
 }
 
-static bool read_number(struct reader *reader, double *out) {
-    const char *after = decimal_read(reader->at, reader->end, out);
-    if (!after || !word_ends(reader, after))
-        return fail_word(reader, reader->at, "is not a finite number");
-    reader->at = after;
+/* The numbers of this line: the first of them into values, NaN for those that are not finite. Returns a word that is no
+ * number, or NULL. */
+static const char *read_numbers(struct reader *reader, double *values, int kept, int *count) {
+    reader->odd_word = NULL;
+    for (*count = 0; next_word(reader); ++*count) {
+        double value;
+        const char *word = reader->at, *after = decimal_read(word, reader->end, &value);
+        bool whole = after && word_ends(reader, after);
+        /* 1.#IND is not 1 and a comment. */
+        if (!whole || (after < reader->end && *after == '#')) {
+            const char *odd = decimal_skip_not_finite(word, reader->end);
+            if (!odd && !whole)
+                return word;
+            value = odd ? NAN : value;
+            after = odd ? odd : after;
+            reader->odd_word = odd && !reader->odd_word ? word : reader->odd_word;
+        }
+        if (*count < kept)
+            values[*count] = value;
+        reader->at = after;
+    }
+    return NULL;
+}
+
+/* Colours begin with the first vertex that has one. */
+static bool add_colour(struct reader *reader, const double *values, int count) {
+    size_t vertices = reader->elements[VERTEX].count;
+    const double *colour = values + (count == 6 ? 3 : 4);
+    if (count < 6 && reader->colours.count == 0)
+        return true;
+    float *out = room(reader, &reader->colours, vertices - reader->colours.count, 3 * sizeof *out);
+    if (!out)
+        return false;
+    bool fine = count >= 6;
+    for (int k = 0; k < 3 && fine; k++)
+        fine = number_in_range(colour[k]);
+    if (count >= 6 && !fine)
+        left_out_add(&reader->odd_colours, reader->line);
+    for (; reader->colours.count < vertices; reader->colours.count++, out += 3)
+        for (int k = 0; k < 3; k++) {
+            bool given = fine && reader->colours.count + 1 == vertices;
+            out[k] = given ? (float)colour[k] : NAN;
+            reader->brightest = given && out[k] > reader->brightest ? out[k] : reader->brightest;
+        }
     return true;
 }
 
-/* Reads the numbers of a v, vt or vn, at least `min`. The first `kept` of them become a new element (0 where
- * missing); the others (weights, vertex colours, a third texture coordinate) must be numbers too. */
-static bool read_element(struct reader *reader, int kind, int min, int kept) {
-    double *element = room(reader, &reader->elements[kind], 1, (size_t)kept * sizeof *element);
+/* v: x y z, with w, r g b, or both; w is not used. */
+static bool read_vertex(struct reader *reader) {
+    double values[7];
+    int count;
+    const char *wrong = read_numbers(reader, values, 7, &count);
+    double *vertex = room(reader, &reader->elements[VERTEX], 1, 3 * sizeof *vertex);
+    if (!vertex)
+        return false;
+    if (wrong)
+        return fail_word(reader, wrong, "is not a finite number");
+    if (count < 3)
+        return error_set(reader->error, ERROR_SCENE, "%s:%zu: v needs 3 numbers, not %d", reader->path, reader->line,
+                         count);
+    for (int k = 0; k < 3; k++)
+        vertex[k] = values[k];
+    if (reader->odd_word && isnan(values[0] + values[1] + values[2])) {
+        struct doubt *odd = room(reader, &reader->odd_vertices, 1, sizeof *odd);
+        if (!odd)
+            return false;
+        *odd = (struct doubt){reader->elements[VERTEX].count, reader->line, reader->odd_word};
+        reader->odd_vertices.count++;
+        vertex[0] = NAN;
+    }
+    if (++reader->elements[VERTEX].count > model_max(reader->model))
+        return fail(reader, "more elements than an index can name");
+    return add_colour(reader, values, count);
+}
+
+/* vt (a third number is not used) or vn. One that is wrong becomes NaN. */
+static bool read_attribute(struct reader *reader, int kind) {
+    double values[3] = {0};
+    int count, width = kind == UV ? 2 : 3;
+    const char *wrong = read_numbers(reader, values, width, &count);
+    bool fine = !wrong && count >= (kind == UV ? 1 : 3);
+    double *element = room(reader, &reader->elements[kind], 1, (size_t)width * sizeof *element);
     if (!element)
         return false;
-    for (int i = 0; i < kept; i++)
-        element[i] = 0;
-    int count = 0;
-    for (; next_word(reader); count++) {
-        double value;
-        if (!read_number(reader, &value))
-            return false;
-        if (count < kept)
-            element[count] = value;
+    for (int k = 0; k < width; k++) {
+        element[k] = values[k];
+        fine = fine && number_in_range(values[k]);
     }
-    if (count < min)
-        return error_set(reader->error, ERROR_SCENE, "%s:%zu: %s needs %d number%s, not %d", reader->path, reader->line,
-                         kind == VERTEX ? "v" : kind_names[kind], min, min == 1 ? "" : "s", count);
-    if (++reader->elements[kind].count > model_max(reader->model))
-        return fail(reader, "more elements than an index can name");
+    if (!fine) {
+        element[0] = NAN;
+        left_out_add(&reader->odd[kind], reader->line);
+    }
+    return ++reader->elements[kind].count <= model_max(reader->model) ||
+           fail(reader, "more elements than an index can name");
+}
+
+static size_t largest_ahead(const struct reader *reader, int kind) {
+    const struct doubt *ahead = reader->ahead[kind].items;
+    return reader->ahead[kind].count ? ahead[reader->ahead[kind].count - 1].number : 0;
+}
+
+/* The first index that stays without an element is one of those above all before it. */
+static bool add_ahead(struct reader *reader, int kind, size_t value) {
+    if (value <= largest_ahead(reader, kind))
+        return true;
+    struct doubt *ahead = room(reader, &reader->ahead[kind], 1, sizeof *ahead);
+    if (!ahead)
+        return false;
+    *ahead = (struct doubt){.number = value, .line = reader->line};
+    reader->ahead[kind].count++;
     return true;
+}
+
+/* The first index that has no element, at the end; NULL: there is none. */
+static const struct doubt *first_beyond(const struct reader *reader, int kind) {
+    const struct doubt *ahead = reader->ahead[kind].items;
+    for (size_t i = 0; i < reader->ahead[kind].count; i++)
+        if (ahead[i].number > reader->elements[kind].count)
+            return &ahead[i];
+    return NULL;
 }
 
 /* Reads one index of a corner, 0-based, into *out. */
@@ -264,7 +368,17 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
         return fail_word(reader, word, "is not a corner of a face (7, 7/1, 7//3 or 7/1/3)");
     reader->at = p;
     size_t count = reader->elements[kind].count;
-    if (reader->model->options.forgive && (value == 0 || value >= STRAY || (negative && value > count))) {
+    if (value - 1 < count && !negative) { /* the usual case */
+        *out = (uint32_t)(value - 1);
+        return true;
+    }
+    bool exists = value != 0 && value < STRAY && (!negative || value <= count);
+    if (!exists && kind != VERTEX) {
+        left_out_add(&reader->lost[kind], reader->line);
+        *out = MISSING;
+        return true;
+    }
+    if (!exists && reader->model->options.forgive) {
         *out = STRAY;
         return true;
     }
@@ -272,19 +386,15 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
         return fail_word(reader, word, "has the index 0, but indices count from 1");
     if (negative) {
         if (value > count)
-            return error_set(reader->error, ERROR_SCENE, "%s:%zu: %s index -%llu, but only %zu were read so far",
-                             reader->path, reader->line, kind_names[kind], (unsigned long long)value, count);
+            return error_set(reader->error, ERROR_SCENE, "%s:%zu: vertex index -%llu, but only %zu were read so far",
+                             reader->path, reader->line, (unsigned long long)value, count);
         *out = (uint32_t)(count - value);
         return true;
     }
-    if (value >= MISSING)
+    if (value >= STRAY)
         return fail_word(reader, word, "has an index that is too large");
-    if (value > count && value > reader->largest[kind]) {
-        reader->largest[kind] = value;
-        reader->largest_line[kind] = reader->line;
-    }
     *out = (uint32_t)(value - 1);
-    return true;
+    return add_ahead(reader, kind, (size_t)value);
 }
 
 /* 7, 7/1, 7//3, 7/1/3. Some files have slashes with nothing after them, which mean nothing. */
@@ -419,6 +529,17 @@ static bool read_libraries(struct reader *reader) {
     return true;
 }
 
+/* The lists as they were before the first corner of the face of this line. */
+static void forget_face(struct reader *reader, size_t corners, size_t line) {
+    for (int kind = VERTEX; kind < KINDS; kind++) {
+        const struct doubt *ahead = reader->ahead[kind].items;
+        while (reader->ahead[kind].count && ahead[reader->ahead[kind].count - 1].line >= line)
+            reader->ahead[kind].count--;
+        if (reader->indices[kind].count > corners)
+            reader->indices[kind].count = corners;
+    }
+}
+
 static bool read_face(struct reader *reader) {
     size_t line = reader->line, first = reader->indices[VERTEX].count;
     uint32_t *start = room(reader, &reader->starts, 2, sizeof *start); /* the final end included */
@@ -429,20 +550,37 @@ static bool read_face(struct reader *reader) {
         if (!read_corner(reader, corner) || !add_corner(reader, corner))
             return false;
     }
-    if (reader->indices[VERTEX].count - first < 3)
-        return fail_at(reader, line, "f needs at least 3 corners");
+    if (reader->indices[VERTEX].count - first < 3) {
+        forget_face(reader, first, line);
+        left_out_add(&reader->short_faces, line);
+        return true;
+    }
     *start = (uint32_t)first;
     return add_slot(reader, &reader->materials, reader->starts.count) &&
            add_slot(reader, &reader->groups, reader->starts.count++);
 }
 
+/* What nothing visible depends on alone: smoothing groups, parameters of curves and surfaces, switches. */
+static bool is_silent(const char *word, size_t length) {
+    static const char *const words[] = {
+        "s",  "mg",  "vp",  "cstype", "deg",      "bmat",     "step", "parm",  "trim",  "hole",       "scrv",
+        "sp", "end", "con", "bevel",  "c_interp", "d_interp", "lod",  "ctech", "stech", "shadow_obj", "trace_obj"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (strlen(words[i]) == length && memcmp(words[i], word, length) == 0)
+            return true;
+    return false;
+}
+
 /* Skips the rest of a line with an unknown keyword. */
 static bool skip_unknown(struct reader *reader, const char *word) {
+    size_t line = reader->line;
     for (; !word_ends(reader, reader->at); reader->at++) {
         unsigned char c = (unsigned char)*reader->at;
         if (c < 0x20 || c == 0x7f)
             return fail_word(reader, word, "is not an OBJ keyword: is this a text file?");
     }
+    if (!is_silent(word, (size_t)(reader->at - word)))
+        unread_add(&reader->unread, word, (size_t)(reader->at - word), line);
     skip_line(reader);
     return true;
 }
@@ -469,16 +607,16 @@ static bool read_line(struct reader *reader) {
     bool ok;
     if (short_word && *word == 'v') {
         reader->at += 1;
-        ok = read_element(reader, VERTEX, 3, 3);
+        ok = read_vertex(reader);
     } else if (short_word && *word == 'f') {
         reader->at += 1;
         ok = read_face(reader);
     } else if (long_word && *word == 'v' && second == 't') {
         reader->at += 2;
-        ok = read_element(reader, UV, 1, 2);
+        ok = read_attribute(reader, UV);
     } else if (long_word && *word == 'v' && second == 'n') {
         reader->at += 2;
-        ok = read_element(reader, NORMAL, 3, 3);
+        ok = read_attribute(reader, NORMAL);
     } else if (long_word && *word == 'f' && second == 'o') { /* a face in files older than version 3.0 */
         reader->at += 2;
         ok = read_face(reader);
@@ -497,17 +635,13 @@ static bool read_line(struct reader *reader) {
 }
 
 static bool is_stray(const struct reader *reader, size_t corner) {
-    for (int kind = VERTEX; kind < KINDS; kind++) {
-        const uint32_t *indices = reader->indices[kind].items;
-        bool has = corner < reader->indices[kind].count && indices[corner] != MISSING;
-        if (has && indices[corner] >= reader->elements[kind].count)
-            return true;
-    }
-    return false;
+    const double(*vertices)[3] = reader->elements[VERTEX].items;
+    uint32_t vertex = ((const uint32_t *)reader->indices[VERTEX].items)[corner];
+    return vertex >= reader->elements[VERTEX].count || isnan(vertices[vertex][0]);
 }
 
-/* A face with an index of nothing becomes one of no extent, in vertex 0. */
-static void forgive_indices(struct reader *reader) {
+/* A face with a vertex that does not exist or is not finite becomes one of no extent, in vertex 0. */
+static void forgive_vertices(struct reader *reader) {
     const uint32_t *starts = reader->starts.items;
     size_t lost = 0, corners = reader->indices[VERTEX].count;
     for (size_t f = 0; f < reader->starts.count && reader->elements[VERTEX].count > 0; f++) {
@@ -520,28 +654,107 @@ static void forgive_indices(struct reader *reader) {
             for (size_t i = begin; i < end && i < reader->indices[kind].count; i++)
                 ((uint32_t *)reader->indices[kind].items)[i] = kind == VERTEX ? 0 : MISSING;
     }
-    if (lost > 0)
-        model_warn(reader->model, "%s: %zu faces have indices that do not exist, and are left out", reader->path, lost);
-    for (int kind = VERTEX; reader->elements[VERTEX].count > 0 && kind < KINDS; kind++)
-        reader->largest[kind] = 0;
+    if (lost == 0)
+        return;
+    model_warn(reader->model, "%s: %zu faces have vertices that do not exist or are not finite, and are left out",
+               reader->path, lost);
+    double *first = reader->elements[VERTEX].items;
+    first[0] = isnan(first[0]) ? 0 : first[0];
+    reader->ahead[VERTEX].count = 0;
 }
 
-static bool check_indices(const struct reader *reader) {
-    for (int kind = VERTEX; kind < KINDS; kind++)
-        if (reader->largest[kind] > reader->elements[kind].count)
-            return error_set(reader->error, ERROR_SCENE, "%s:%zu: %s index %zu, but the file has only %zu",
-                             reader->path, reader->largest_line[kind], kind_names[kind], reader->largest[kind],
-                             reader->elements[kind].count);
+static bool check_vertices(struct reader *reader) {
+    const struct doubt *beyond = first_beyond(reader, VERTEX), *odd = reader->odd_vertices.items;
+    const uint32_t *index = reader->indices[VERTEX].items;
+    double(*vertices)[3] = reader->elements[VERTEX].items;
+    if (beyond)
+        return error_set(reader->error, ERROR_SCENE, "%s:%zu: vertex index %zu, but the file has only %zu",
+                         reader->path, beyond->line, beyond->number, reader->elements[VERTEX].count);
+    if (reader->elements[VERTEX].count == 0 && reader->starts.count > 0)
+        return error_set(reader->error, ERROR_SCENE, "%s: the file has no vertices", reader->path);
+    if (reader->odd_vertices.count == 0)
+        return true;
+    /* The first one that a face uses, or the first one of a file without faces. */
+    bool used = reader->starts.count == 0;
+    for (size_t i = 0; i < reader->indices[VERTEX].count && !used; i++)
+        if (isnan(vertices[index[i]][0])) {
+            used = true;
+            while (odd->number != index[i])
+                odd++;
+        }
+    reader->line = odd->line;
+    if (used)
+        return fail_word(reader, odd->word, "is not a finite number");
+    struct left_out out = {reader->odd_vertices.count, odd->line};
+    for (size_t i = 0; i < reader->odd_vertices.count; i++)
+        memset(vertices[odd[i].number], 0, sizeof *vertices);
+    model_warn_left_out(reader->model, reader->path, &out, false, "a vertex is not finite, and no face uses it");
     return true;
+}
+
+/* Corners lose the indices of uvs or normals that do not exist, or are not finite. */
+static void leave_out_attributes(struct reader *reader, int kind) {
+    const struct doubt *beyond = first_beyond(reader, kind);
+    struct left_out *odd = &reader->odd[kind], *lost = &reader->lost[kind];
+    size_t width = kind == UV ? 2 : 3, count = reader->elements[kind].count;
+    double *elements = reader->elements[kind].items;
+    uint32_t *index = reader->indices[kind].items;
+    if (beyond && (lost->count == 0 || beyond->line < lost->at))
+        lost->at = beyond->line;
+    for (size_t i = 0; i < reader->indices[kind].count && (beyond || odd->count); i++) {
+        bool stray = index[i] != MISSING && index[i] >= count;
+        lost->count += stray;
+        if (stray || (index[i] != MISSING && isnan(elements[width * index[i]])))
+            index[i] = MISSING;
+    }
+    for (size_t i = 0; i < count && odd->count; i++)
+        if (isnan(elements[width * i]))
+            memset(elements + width * i, 0, width * sizeof *elements);
+    model_warn_left_out(reader->model, reader->path, odd, false,
+                        kind == UV ? "vt needs finite numbers: faces that use it have no texture coordinates"
+                                   : "vn needs 3 finite numbers: faces that use it are flat");
+    model_warn_left_out(reader->model, reader->path, lost, false,
+                        kind == UV ? "an index of vt that does not exist: its face has no texture coordinates"
+                                   : "an index of vn that does not exist: its face is flat");
+}
+
+/* Everything that could only be decided at the end of the file, and its warnings. */
+static bool check_elements(struct reader *reader) {
+    if (reader->model->options.forgive)
+        forgive_vertices(reader);
+    model_warn_unread(reader->model, reader->path, &reader->unread);
+    model_warn_left_out(reader->model, reader->path, &reader->short_faces, false,
+                        "f needs at least 3 corners: the face is left out");
+    model_warn_left_out(reader->model, reader->path, &reader->odd_colours, false,
+                        "a colour is not finite: it is white");
+    leave_out_attributes(reader, UV);
+    leave_out_attributes(reader, NORMAL);
+    return check_vertices(reader);
+}
+
+/* From the range of the file, 0 to 1 or 0 to 255, to 0 to 1; white where there is none. */
+static bool take_colours(struct reader *reader, struct model_mesh *mesh) {
+    float *colours = reader->colours.items;
+    for (size_t i = 0; i < 3 * reader->colours.count; i++) {
+        float x = reader->brightest >= 2 ? colours[i] / 255 : colours[i];
+        colours[i] = isnan(x) || x > 1 ? 1 : x < 0 ? 0 : x;
+    }
+    mesh->colours = reader->colours;
+    reader->colours = (struct list){0};
+    return mesh->colours.count == 0 || model_show_colours(reader->model, mesh, reader->error);
 }
 
 /* The slots of the faces and their materials: the last ones of their names in the libraries. */
 static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
+    bool ok = true;
+    /* A newmtl without a name has the faces of a usemtl without one. */
     bool by_material = reader->materials.names.entries.count > 0;
+    for (size_t i = 0; i < reader->model->materials.count; i++)
+        by_material = by_material || model_materials(reader->model)[i].name[0] == '\0';
     struct slotting *used = by_material ? &reader->materials : &reader->groups;
     struct names known = {.max = model_max(reader->model)};
     struct list last = {0}; /* uint32_t: the material of a known name */
-    bool ok = true;
+    size_t unknown = 0;
     for (uint32_t i = 0; ok && i < reader->model->materials.count; i++) {
         const char *name = model_materials(reader->model)[i].name;
         uint32_t number;
@@ -551,8 +764,10 @@ static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     }
     uint32_t count = (uint32_t)used->names.entries.count;
     const struct name *names = used->names.entries.items;
+    struct name first_unknown = {0};
     for (uint32_t i = 0; ok && i <= count; i++) {
-        uint32_t number = by_material && i < count ? names_find(&known, names[i].text, names[i].length) : MISSING;
+        struct name name = i < count ? names[i] : (struct name){"", 0};
+        uint32_t number = by_material ? names_find(&known, name.text, name.length) : MISSING;
         const char **slot_name = list_room(&mesh->slot_names, 1, sizeof *slot_name);
         ok = slot_name &&
              list_add_index(&mesh->slots, number == MISSING ? MODEL_NONE : ((uint32_t *)last.items)[number]);
@@ -561,10 +776,12 @@ static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
         *slot_name = i < count ? arena_copy_text(&reader->model->arena, names[i].text, names[i].length) : "";
         ok = *slot_name != NULL;
         mesh->slot_names.count++;
-        if (by_material && i < count && number == MISSING && reader->model->materials.count)
-            model_warn(reader->model, "%s: the material '%.*s' is in no library", reader->path,
-                       names[i].length < 200 ? (int)names[i].length : 200, names[i].text);
+        if (by_material && i < count && number == MISSING && reader->model->materials.count && unknown++ == 0)
+            first_unknown = name;
     }
+    if (unknown)
+        model_warn(reader->model, "%s: the material '%.*s' is in no library (%zu such materials)", reader->path,
+                   first_unknown.length < 200 ? (int)first_unknown.length : 200, first_unknown.text, unknown);
     names_destroy(&known);
     list_destroy(&last);
     if (!ok)
@@ -601,8 +818,6 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
                             .groups.current = UNNAMED,
                             .materials.names.max = model_max(model),
                             .groups.names.max = model_max(model)};
-    if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-        return fail(&reader, "this is UTF-16 text; an OBJ file is plain ASCII or UTF-8");
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
         reader.at += 3;
 
@@ -610,9 +825,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
     bool ok = true;
     while (ok && reader.at < reader.end)
         ok = read_line(&reader);
-    if (ok && model->options.forgive)
-        forgive_indices(&reader);
-    ok = ok && check_indices(&reader);
+    ok = ok && check_elements(&reader);
     struct model_mesh *mesh = ok ? model_add_mesh(model, error) : NULL;
     /* The mesh takes over what was read. */
     if (mesh) {
@@ -620,7 +833,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
         mesh->uvs = reader.elements[UV], mesh->uv_index = reader.indices[UV];
         mesh->normals = reader.elements[NORMAL], mesh->normal_index = reader.indices[NORMAL];
         mesh->starts = reader.starts;
-        ok = make_slots(&reader, mesh);
+        ok = make_slots(&reader, mesh) && take_colours(&reader, mesh);
     } else {
         for (int kind = VERTEX; kind < KINDS; kind++) {
             list_destroy(&reader.elements[kind]);
@@ -628,6 +841,10 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
         }
         list_destroy(&reader.starts);
     }
+    for (int kind = VERTEX; kind < KINDS; kind++)
+        list_destroy(&reader.ahead[kind]);
+    list_destroy(&reader.odd_vertices);
+    list_destroy(&reader.colours);
     names_destroy(&reader.materials.names);
     names_destroy(&reader.groups.names);
     list_destroy(&reader.materials.faces);

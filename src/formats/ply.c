@@ -4,18 +4,22 @@
  *
  * The header becomes a list of properties per element, each with its meaning for the mesh. One loop over elements,
  * rows and properties then reads everything, and skips data without meaning by its size. A row of text is one line.
+ * Numbers that are not finite are allowed while they are read: normals, texture coordinates and colours without finite
+ * numbers are left out, and a vertex without is an error if a face uses it, which is known at the end.
  * Counts are checked before memory is allocated: each count needs a minimum number of bytes, and the file is refused
  * if it has fewer. So memory is a small multiple of the file's size. */
 #include "formats/decimal_internal.h"
 #include "formats/model.h"
 #include "formats/scan_internal.h"
+#include "math/range.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 
 enum { ELEMENTS = 64, PROPERTIES = 512 };
 
-/* The meaning of a property. Up to BLUE: a number of a vertex. */
+/* The meaning of a property. Up to BLUE: a number of a vertex; faces have colours, too. */
 enum ply_property {
     NOTHING,
     X,
@@ -49,6 +53,13 @@ struct element {
     uint64_t count;
     int first, property_count; /* in ply.properties */
     uint64_t min;              /* bytes of the smallest row */
+    bool has[SCALARS];
+    double colour_scale; /* from the range of the type to 0 .. 1 */
+};
+
+/* A vertex that is not finite: its line, or its byte. */
+struct odd_vertex {
+    size_t number, at;
 };
 
 enum format { ASCII, LITTLE, BIG };
@@ -65,11 +76,18 @@ struct ply {
     struct property properties[PROPERTIES];
     int property_count;
     struct model_mesh *mesh;
-    bool has[SCALARS];     /* of the vertices */
-    double colour_scale;   /* from the range of the type to 0 .. 1 */
-    struct list values;    /* uint32_t: the last list read */
-    struct list pending;   /* double: the texture coordinates of one face */
-    uint64_t vertex_total; /* what the header says */
+    bool has[SCALARS]; /* of the vertices */
+    bool is_mac;       /* a lone CR ends the lines of the header */
+    struct {
+        const char *text;
+        size_t length;
+    } picture;                /* of a comment TextureFile, or NULL */
+    struct list odd_vertices; /* struct odd_vertex */
+    struct left_out odd_normals, odd_uvs, odd_colours, short_faces, unseen_colours;
+    double numbers[SCALARS]; /* of one face */
+    struct list values;      /* uint32_t: the last list read */
+    struct list pending;     /* double: the texture coordinates of one face */
+    uint64_t vertex_total;   /* what the header says */
 };
 
 static bool fail(const struct ply *ply, const char *what) {
@@ -113,8 +131,11 @@ static bool header_line(struct ply *ply, struct words *words) {
             words->length[words->count++] = (size_t)(p - first);
         }
     }
-    if (p < ply->end && *p == '\r' && p + 1 < ply->end && p[1] == '\n')
-        p++;
+    /* Binary data may begin with the byte of LF. */
+    bool is_pair = p < ply->end && *p == '\r' && p + 1 < ply->end && p[1] == '\n' && !ply->is_mac;
+    if (ply->line == 1)
+        ply->is_mac = p < ply->end && *p == '\r' && !is_pair;
+    p += is_pair;
     ply->at = p < ply->end ? p + 1 : p;
     return true;
 }
@@ -176,9 +197,10 @@ static enum ply_property property_of(const struct words *words, int i, const cha
         return indices ? CORNERS : word_is(words, i, "texcoord") ? CORNER_UVS : NOTHING;
     if (is_list)
         return indices && strcmp(element, "tristrips") == 0 ? STRIPS : NOTHING;
-    for (size_t k = 0; strcmp(element, "vertex") == 0 && k < sizeof scalars / sizeof scalars[0]; k++)
+    bool of_vertex = strcmp(element, "vertex") == 0, of_face = strcmp(element, "face") == 0;
+    for (size_t k = 0; (of_vertex || of_face) && k < sizeof scalars / sizeof scalars[0]; k++)
         if (word_is(words, i, scalars[k].name))
-            return scalars[k].meaning;
+            return of_vertex || scalars[k].meaning >= RED ? scalars[k].meaning : NOTHING;
     return NOTHING;
 }
 
@@ -206,9 +228,9 @@ static bool read_property(struct ply *ply, const struct words *words) {
         if (ply->properties[k].meaning == p.meaning)
             return header_fail(ply, words, name, "repeats an earlier property");
     if (p.meaning > NOTHING && p.meaning < SCALARS)
-        ply->has[p.meaning] = true;
-    if (p.meaning == RED && whole)
-        ply->colour_scale = p.type == NUMBER_U8 ? 1 / 255.0 : p.type == NUMBER_U16 ? 1 / 65535.0 : 1 / 255.0;
+        element->has[p.meaning] = true;
+    if (p.meaning == RED)
+        element->colour_scale = !whole ? 1 : p.type == NUMBER_U16 ? 1 / 65535.0 : 1 / 255.0;
     ply->properties[ply->property_count++] = p;
     element->property_count++;
     /* In text every number needs at least a digit and a blank or line end. */
@@ -244,6 +266,11 @@ static bool read_header(struct ply *ply) {
     if (!word_is(&words, 0, "ply"))
         return error_set(ply->error, ERROR_SCENE, "%s:1: a PLY file begins with the line 'ply'", ply->path);
     while (header_line(ply, &words)) {
+        if (word_is(&words, 0, "comment") && word_is(&words, 1, "TextureFile") && words.count > 2 &&
+            !ply->picture.text) {
+            ply->picture.text = words.text[2];
+            ply->picture.length = (size_t)(words.text[words.count - 1] + words.length[words.count - 1] - words.text[2]);
+        }
         if (words.count == 0 || word_is(&words, 0, "comment") || word_is(&words, 0, "obj_info"))
             continue;
         if (word_is(&words, 0, "end_header")) {
@@ -306,8 +333,12 @@ static bool read_text_number(struct ply *ply, double *out) {
     if (!on_word(ply))
         return fail(ply, ply->at < ply->end ? "the line ends too early" : "the file ends too early");
     const char *first = (const char *)ply->at, *after = decimal_read(first, (const char *)ply->end, out);
-    if (!after || (after < (const char *)ply->end && (uint8_t)*after > ' '))
-        return fail(ply, "not a finite number");
+    if (!after || (after < (const char *)ply->end && (uint8_t)*after > ' ')) {
+        after = decimal_skip_not_finite(first, (const char *)ply->end);
+        if (!after)
+            return fail(ply, "not a finite number");
+        *out = NAN;
+    }
     ply->at = (const uint8_t *)after;
     return true;
 }
@@ -386,7 +417,18 @@ static bool skip_list(struct ply *ply, const struct property *p) {
 
 /* --- elements --- */
 
+static bool note_odd_vertex(struct ply *ply, const uint8_t *number) {
+    struct odd_vertex *odd = list_room(&ply->odd_vertices, 1, sizeof *odd);
+    if (!odd)
+        return no_memory(ply);
+    odd->number = ply->mesh->vertices.count;
+    odd->at = ply->format == ASCII ? ply->line : (size_t)(number - ply->data);
+    ply->odd_vertices.count++;
+    return true;
+}
+
 static bool read_vertex(struct ply *ply, const struct element *element, double value[SCALARS]) {
+    const uint8_t *odd = NULL;
     for (int k = 0; k < element->property_count; k++) {
         const struct property *p = &ply->properties[element->first + k];
         if (p->is_list) {
@@ -397,47 +439,61 @@ static bool read_vertex(struct ply *ply, const struct element *element, double v
         const uint8_t *before = ply->at;
         if (!read_number(ply, p->type, &value[p->meaning]))
             return false;
-        if (p->meaning != NOTHING && !isfinite(value[p->meaning])) {
-            ply->at = before;
-            return fail(ply, "not a finite number");
-        }
+        if (!isfinite(value[p->meaning]) && p->meaning >= X && p->meaning <= Z && !odd)
+            odd = before;
+    }
+    return !odd || note_odd_vertex(ply, odd);
+}
+
+/* The line of the row that is read, or the byte after it. */
+static size_t place(const struct ply *ply) {
+    return ply->format == ASCII ? ply->line : (size_t)(ply->at - ply->data);
+}
+
+/* A row of numbers that the mesh can use, or NaN. */
+static bool add_numbers(struct ply *ply, struct list *list, const double *values, int width, struct left_out *odd) {
+    double *out = list_room(list, 1, (size_t)width * sizeof *out);
+    if (!out)
+        return no_memory(ply);
+    bool fine = true;
+    for (int k = 0; k < width; k++) {
+        out[k] = values[k];
+        fine = fine && number_in_range(values[k]);
+    }
+    list->count++;
+    if (!fine) {
+        out[0] = NAN;
+        left_out_add(odd, place(ply));
     }
     return true;
 }
 
-static float colour_of(const struct ply *ply, double value) {
-    value *= ply->colour_scale;
-    return (float)(value < 0 ? 0 : value > 1 ? 1 : value);
+static bool add_colour(struct ply *ply, const double value[SCALARS], double scale) {
+    float *c = list_room(&ply->mesh->colours, 1, 3 * sizeof *c);
+    if (!c)
+        return no_memory(ply);
+    bool fine = isfinite(value[RED]) && isfinite(value[GREEN]) && isfinite(value[BLUE]);
+    for (int k = 0; k < 3; k++)
+        c[k] = fine ? (float)number_clamped(fmax(value[RED + k] * scale, 0), 1) : 1;
+    ply->mesh->colours.count++;
+    if (!fine)
+        left_out_add(&ply->odd_colours, place(ply));
+    return true;
 }
 
-static bool add_vertex(struct ply *ply, const double value[SCALARS]) {
+static bool has_colour(const struct element *element) {
+    return element->has[RED] && element->has[GREEN] && element->has[BLUE];
+}
+
+static bool add_vertex(struct ply *ply, const struct element *element, const double value[SCALARS]) {
     struct model_mesh *mesh = ply->mesh;
     double *v = list_room(&mesh->vertices, 1, 3 * sizeof *v);
     assert(v); /* of the capacity that reserve() allocated */
     v[0] = value[X], v[1] = value[Y], v[2] = value[Z];
     mesh->vertices.count++;
-    if (mesh->normals_by_vertex) {
-        double *n = list_room(&mesh->normals, 1, 3 * sizeof *n);
-        if (!n)
-            return no_memory(ply);
-        n[0] = value[NX], n[1] = value[NY], n[2] = value[NZ];
-        mesh->normals.count++;
-    }
-    if (mesh->uvs_by_vertex) {
-        double *uv = list_room(&mesh->uvs, 1, 2 * sizeof *uv);
-        if (!uv)
-            return no_memory(ply);
-        uv[0] = value[U], uv[1] = value[V];
-        mesh->uvs.count++;
-    }
-    if (ply->has[RED] && ply->has[GREEN] && ply->has[BLUE]) {
-        float *c = list_room(&mesh->colours, 1, 3 * sizeof *c);
-        if (!c)
-            return no_memory(ply);
-        c[0] = colour_of(ply, value[RED]), c[1] = colour_of(ply, value[GREEN]), c[2] = colour_of(ply, value[BLUE]);
-        mesh->colours.count++;
-    }
-    return true;
+    return (!mesh->normals_by_vertex || add_numbers(ply, &mesh->normals, value + NX, 3, &ply->odd_normals)) &&
+           (!mesh->uvs_by_vertex || add_numbers(ply, &mesh->uvs, value + U, 2, &ply->odd_uvs)) &&
+           (!has_colour(element) || add_colour(ply, value, element->colour_scale));
 }
 
 static bool add_face(struct ply *ply, const uint32_t *corners, uint32_t count) {
@@ -508,13 +564,15 @@ static bool read_corner_uvs(struct ply *ply, const struct property *p) {
     double *out = list_room(&ply->pending, count ? count : 1, sizeof *out);
     if (!out)
         return no_memory(ply);
+    bool fine = true;
     for (uint32_t i = 0; i < count; i++) {
         if (!read_number(ply, p->type, &out[i]))
             return false;
-        if (!isfinite(out[i]))
-            return fail(ply, "not a finite number");
+        fine = fine && number_in_range(out[i]);
     }
-    ply->pending.count = count;
+    ply->pending.count = fine ? count : 0;
+    if (!fine)
+        left_out_add(&ply->odd_uvs, place(ply));
     return true;
 }
 
@@ -546,26 +604,39 @@ static bool add_corner_uvs(struct ply *ply, uint32_t corners) {
     return true;
 }
 
+/* White, for the faces of strips. */
+static bool pad_colours(struct ply *ply, size_t count) {
+    static const double white[SCALARS] = {[RED] = 1, [GREEN] = 1, [BLUE] = 1};
+    while (ply->mesh->colours.count < count)
+        if (!add_colour(ply, white, 1))
+            return false;
+    return true;
+}
+
 static bool read_face(struct ply *ply, const struct element *element, bool corner_uvs) {
     bool any = false;
-    double ignored;
+    double *value = ply->numbers;
     ply->pending.count = 0;
     for (int k = 0; k < element->property_count; k++) {
         const struct property *p = &ply->properties[element->first + k];
         bool ok = p->meaning == CORNERS      ? read_indices(ply, p, false)
                   : p->meaning == CORNER_UVS ? read_corner_uvs(ply, p)
                   : p->is_list               ? skip_list(ply, p)
-                                             : read_number(ply, p->type, &ignored);
+                                             : read_number(ply, p->type, &value[p->meaning]);
         if (!ok)
             return false;
         any |= p->meaning == CORNERS;
     }
     if (!any)
         return true;
-    if (ply->values.count < 3)
-        return fail(ply, "a face needs at least 3 corners");
+    if (ply->values.count < 3) {
+        left_out_add(&ply->short_faces, place(ply));
+        return true;
+    }
     uint32_t count = (uint32_t)ply->values.count;
-    return add_face(ply, ply->values.items, count) && (!corner_uvs || add_corner_uvs(ply, count));
+    return add_face(ply, ply->values.items, count) && (!corner_uvs || add_corner_uvs(ply, count)) &&
+           (!ply->mesh->colours_by_face || !has_colour(element) ||
+            (pad_colours(ply, ply->mesh->starts.count - 1) && add_colour(ply, value, element->colour_scale)));
 }
 
 /* Each vertex from the third on makes a triangle; every second triangle is reversed. */
@@ -592,7 +663,7 @@ static bool add_strips(struct ply *ply) {
 static bool read_row(struct ply *ply, const struct element *element, bool corner_uvs) {
     if (element->kind == VERTICES) {
         double value[SCALARS] = {0};
-        return read_vertex(ply, element, value) && add_vertex(ply, value);
+        return read_vertex(ply, element, value) && add_vertex(ply, element, value);
     }
     if (element->kind == FACES)
         return read_face(ply, element, corner_uvs);
@@ -665,14 +736,121 @@ static bool read_rows(struct ply *ply, const struct element *element) {
     return true;
 }
 
+/* Corners whose normal or texture coordinates were odd have none: the index list of the vertices becomes one of them.
+ */
+static bool leave_out_odd(struct ply *ply, struct list *rows, size_t width, bool *by_vertex, struct list *index) {
+    double *numbers = rows->items;
+    size_t corners = ply->mesh->vertex_index.count;
+    const uint32_t *vertex = ply->mesh->vertex_index.items;
+    uint32_t *out = list_room(index, corners, sizeof *out);
+    if (!out)
+        return no_memory(ply);
+    for (size_t i = 0; i < corners; i++)
+        out[i] = isnan(numbers[width * vertex[i]]) ? MODEL_NONE : vertex[i];
+    index->count = corners;
+    *by_vertex = false;
+    for (size_t i = 0; i < rows->count; i++)
+        if (isnan(numbers[width * i]))
+            memset(numbers + width * i, 0, width * sizeof *numbers);
+    return true;
+}
+
+/* A vertex that is not finite is an error if a face uses it. */
+static bool check_vertices(struct ply *ply) {
+    double(*vertices)[3] = ply->mesh->vertices.items;
+    const uint32_t *index = ply->mesh->vertex_index.items;
+    const struct odd_vertex *odd = ply->odd_vertices.items;
+    for (size_t i = 0; i < ply->odd_vertices.count; i++)
+        vertices[odd[i].number][0] = NAN;
+    for (size_t i = 0; i < ply->mesh->vertex_index.count && ply->odd_vertices.count; i++) {
+        if (!isnan(vertices[index[i]][0]))
+            continue;
+        while (odd->number != index[i])
+            odd++;
+        ply->line = odd->at;
+        ply->at = ply->data + (ply->format == ASCII ? 0 : odd->at);
+        return fail(ply, "not a finite number");
+    }
+    for (size_t i = 0; i < ply->odd_vertices.count; i++)
+        memset(vertices[odd[i].number], 0, sizeof *vertices);
+    return true;
+}
+
+static void warn_of(struct ply *ply, const struct left_out *out, const char *what) {
+    model_warn_left_out(ply->model, ply->path, out, ply->format != ASCII, what);
+}
+
+/* Elements that have no meaning for the mesh: edges, cameras and others. */
+static void warn_of_elements(struct ply *ply) {
+    char names[400] = "";
+    size_t used = 0;
+    for (int i = 0; i < ply->element_count && used < 300; i++) {
+        const struct element *e = &ply->elements[i];
+        if (e->kind == OTHER && e->count > 0 && strcmp(e->name, "tristrips") != 0)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s'%s' (%llu)", used ? ", " : "", e->name,
+                                     (unsigned long long)e->count);
+    }
+    if (used)
+        model_warn(ply->model, "%s: elements that gray does not show: %s", ply->path, names);
+}
+
+/* Everything that is decided at the end of the file, and its warnings. */
+static bool finish(struct ply *ply) {
+    struct model_mesh *mesh = ply->mesh;
+    struct left_out unused = {ply->odd_vertices.count, 0};
+    if (unused.count)
+        unused.at = ((const struct odd_vertex *)ply->odd_vertices.items)->at;
+    if (!check_vertices(ply) ||
+        (ply->odd_normals.count &&
+         !leave_out_odd(ply, &mesh->normals, 3, &mesh->normals_by_vertex, &mesh->normal_index)) ||
+        (ply->odd_uvs.count && mesh->uvs_by_vertex &&
+         !leave_out_odd(ply, &mesh->uvs, 2, &mesh->uvs_by_vertex, &mesh->uv_index)) ||
+        (mesh->uv_index.count && !pad_corner_uvs(ply, mesh->vertex_index.count)) ||
+        (mesh->colours_by_face && !pad_colours(ply, mesh->starts.count)))
+        return false;
+    warn_of(ply, &unused, "a vertex is not finite, and no face uses it");
+    warn_of(ply, &ply->odd_normals, "a normal is not finite: faces that use it are flat");
+    warn_of(ply, &ply->odd_uvs, "texture coordinates are not finite: faces that use them have none");
+    warn_of(ply, &ply->odd_colours, "a colour is not finite: it is white");
+    warn_of(ply, &ply->short_faces, "a face needs at least 3 corners: it is left out");
+    warn_of(ply, &ply->unseen_colours, "the faces have colours, which are not shown: the vertices have colours");
+    warn_of_elements(ply);
+    return true;
+}
+
+/* The picture of a comment: TextureFile NAME, as MeshLab writes it. */
+static bool add_picture(struct ply *ply) {
+    struct model_material *material = model_add_material(ply->model, ply->error);
+    if (!material || !list_add_index(&ply->mesh->slots, 0))
+        return no_memory(ply);
+    struct model_texture *map = &material->map_kd;
+    material->kd = vec3_all(1);
+    map->name = arena_copy_text(&ply->model->arena, ply->picture.text, ply->picture.length);
+    if (!map->name)
+        return no_memory(ply);
+    if (!model_find(ply->model, map->name, ply->picture.length, &map->path, ply->error))
+        return false;
+    if (!map->path && !ply->model->options.single_file)
+        model_warn(ply->model, "%s: the picture '%.200s' %s", ply->path, map->name, model_why_missing(ply->model));
+    return true;
+}
+
 static bool load(struct ply *ply) {
     if (!read_header(ply))
         return false;
     ply->line++;
     struct model_mesh *mesh = ply->mesh;
     for (int i = 0; i < ply->element_count; i++)
-        if (ply->elements[i].kind == VERTICES)
+        if (ply->elements[i].kind == VERTICES) {
             ply->vertex_total = ply->elements[i].count;
+            memcpy(ply->has, ply->elements[i].has, sizeof ply->has);
+        }
+    for (int i = 0; i < ply->element_count; i++)
+        if (ply->elements[i].kind == FACES && has_colour(&ply->elements[i])) {
+            mesh->colours_by_face = !(ply->has[RED] && ply->has[GREEN] && ply->has[BLUE]);
+            if (!mesh->colours_by_face)
+                left_out_add(&ply->unseen_colours, place(ply));
+        }
     if (ply->vertex_total >= UINT32_MAX - 1)
         return error_set(ply->error, ERROR_SCENE, "%s: %llu vertices are too many", ply->path,
                          (unsigned long long)ply->vertex_total);
@@ -683,29 +861,21 @@ static bool load(struct ply *ply) {
     for (int i = 0; i < ply->element_count; i++)
         if (!read_rows(ply, &ply->elements[i]))
             return false;
-    return mesh->uv_index.count == 0 || pad_corner_uvs(ply, mesh->vertex_index.count);
+    return finish(ply);
 }
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
-    struct ply ply = {.model = model,
-                      .path = model->path,
-                      .data = data,
-                      .at = data,
-                      .end = data + size,
-                      .error = error,
-                      .colour_scale = 1};
+    struct ply ply = {
+        .model = model, .path = model->path, .data = data, .at = data, .end = data + size, .error = error};
+    if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)
+        ply.at += 3;
     ply.mesh = model_add_mesh(model, error);
     if (!ply.mesh)
         return false;
     bool ok = load(&ply);
     list_destroy(&ply.values);
     list_destroy(&ply.pending);
-    if (!ok || ply.mesh->colours.count == 0)
-        return ok;
-    struct model_material *material = model_add_material(model, error);
-    if (!material || !list_add_index(&ply.mesh->slots, 0))
-        return error_no_memory(error, model->path);
-    material->kd = vec3_all(1);
-    material->by_vertex = true;
-    return true;
+    list_destroy(&ply.odd_vertices);
+    return ok && (!ply.picture.text || ply.mesh->uvs.count == 0 || add_picture(&ply)) &&
+           (ply.mesh->colours.count == 0 || model_show_colours(model, ply.mesh, error));
 }

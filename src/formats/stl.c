@@ -2,10 +2,15 @@
  * any 80 bytes, a count, then per triangle twelve little-endian floats and two bytes of attributes). The file
  * repeats every corner. Corners at exactly the same position become one vertex, so that closed solids are closed.
  * The normals in the file are not used: they contain no more than the order of the corners, and are often zero or
- * wrong. */
+ * wrong.
+ *
+ * The attributes may be colours, 5 bits each: by VisCAM and SolidView with bit 15 set and blue lowest, or by
+ * Materialise Magics, whose header has "COLOR=" and four bytes, the colour of triangles with bit 15 set; the others
+ * have their own, red lowest. */
 #include "formats/decimal_internal.h"
 #include "formats/model.h"
 #include "formats/scan_internal.h"
+#include "math/range.h"
 
 #include "mesh/mesh_topology.h"
 
@@ -43,15 +48,78 @@ static bool weld(struct model *model, struct model_mesh *mesh, struct error *err
     return true;
 }
 
+/* --- binary --- */
+
+/* Behind "COLOR=" in the header; NULL: there is none. */
+static const uint8_t *header_colour(const uint8_t *data) {
+    for (size_t at = 0; at + 10 <= 80; at++)
+        if (memcmp(data + at, "COLOR=", 6) == 0)
+            return data + at + 6;
+    return NULL;
+}
+
+static bool read_colours(struct model *model, struct model_mesh *mesh, const uint8_t *facets, struct error *error) {
+    size_t count = mesh->vertices.count / 3;
+    const uint8_t *all = header_colour(facets - HEADER);
+    bool given = false, own = false;
+    for (size_t i = 0; i < count; i++) {
+        uint16_t bits = scan_u16(facets + FACET * (i + 1) - 2, false);
+        given |= bits >> 15;
+        own |= bits != 0;
+    }
+    /* Without any attribute, the header's colour is that of all triangles. */
+    if (!given && !all)
+        return true;
+    float(*colours)[3] = list_room(&mesh->colours, count, sizeof *colours);
+    if (!colours)
+        return error_no_memory(error, model->path);
+    for (size_t i = 0; i < count; i++) {
+        unsigned bits = scan_u16(facets + FACET * (i + 1) - 2, false);
+        for (unsigned k = 0; k < 3; k++) {
+            float mine = (float)(bits >> 5 * (all ? k : 2 - k) & 31) / 31;
+            bool is_common = all ? bits >> 15 || !own : !(bits >> 15);
+            colours[i][k] = !is_common ? mine : all ? (float)all[k] / 255 : 0.8F;
+        }
+    }
+    mesh->colours.count = count;
+    mesh->colours_by_face = true;
+    return model_show_colours(model, mesh, error);
+}
+
+/* The number of triangles that are read. Some writers state fewer than there are, or are cut off in the last one. */
+static bool count_facets(struct model *model, const uint8_t *data, size_t size, uint32_t *out, struct error *error) {
+    uint32_t count = scan_u32(data + 80, false);
+    size_t there = (size - HEADER) / FACET, rest = (size - HEADER) % FACET;
+    *out = count;
+    if (count > there + 1 || (count > there && rest == 0))
+        return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles need %llu bytes, but the file has only %zu",
+                         model->path, count, (unsigned long long)count * FACET + HEADER, size);
+    if (count > there) {
+        model_warn(model, "%s: byte %zu: the file ends in the last triangle, which is left out", model->path, size);
+        *out = (uint32_t)there;
+    } else if (there > count && rest == 0) {
+        bool fine = true;
+        for (size_t i = count; i < there; i++)
+            for (unsigned k = 0; k < 12; k++)
+                fine = fine && number_in_range(scan_f32(data + HEADER + FACET * i + 4 * k, false));
+        model_warn(model, "%s: byte 80: the file states %u triangles, but has bytes for %zu: %s", model->path, count,
+                   there, fine ? "all are shown" : "the others are left out");
+        *out = fine && there <= UINT32_MAX ? (uint32_t)there : count;
+    } else if (size - HEADER > (size_t)count * FACET) {
+        model_warn(model, "%s: byte %zu: %zu bytes follow the %u triangles and are left out", model->path,
+                   HEADER + (size_t)count * FACET, size - HEADER - (size_t)count * FACET, count);
+    }
+    return true;
+}
+
 static bool load_binary(struct model *model, struct model_mesh *mesh, const uint8_t *data, size_t size,
                         struct error *error) {
+    uint32_t count;
     if (size < HEADER)
         return error_set(error, ERROR_SCENE, "%s: byte %zu: a binary STL file has at least %d bytes", model->path, size,
                          HEADER);
-    uint32_t count = scan_u32(data + 80, false);
-    if (count > (size - HEADER) / FACET)
-        return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles need %llu bytes, but the file has only %zu",
-                         model->path, count, (unsigned long long)count * FACET + HEADER, size);
+    if (!count_facets(model, data, size, &count, error))
+        return false;
     if (3 * (size_t)count > model_max(model))
         return error_set(error, ERROR_SCENE, "%s: byte 80: %u triangles are too many", model->path, count);
     double(*vertices)[3] = list_room(&mesh->vertices, 3 * (size_t)count, sizeof *vertices);
@@ -68,8 +136,10 @@ static bool load_binary(struct model *model, struct model_mesh *mesh, const uint
             vertices[3 * (size_t)i + k / 3][k % 3] = x;
         }
     mesh->vertices.count = 3 * (size_t)count;
-    return true;
+    return read_colours(model, mesh, data + HEADER, error);
 }
+
+/* --- text --- */
 
 struct text {
     const char *path, *at, *end;
@@ -83,8 +153,8 @@ static bool is_space(char c) {
 
 /* The next word of the file; its length is 0 at the end. */
 static size_t next_word(struct text *t) {
-    while (t->at < t->end && is_space(*t->at))
-        t->line += *t->at++ == '\n';
+    for (; t->at < t->end && is_space(*t->at); t->at++)
+        t->line += *t->at == '\n' || (*t->at == '\r' && (t->at + 1 == t->end || t->at[1] != '\n'));
     const char *p = t->at;
     while (p < t->end && !is_space(*p))
         p++;
@@ -135,6 +205,15 @@ static bool skip_normal(struct text *t) {
     return true;
 }
 
+/* endloop, or end loop. */
+static bool expect_end(struct text *t, const char *whole) {
+    if (is_word(t, next_word(t), "end")) {
+        t->at += 3;
+        return expect(t, whole + 3);
+    }
+    return expect(t, whole);
+}
+
 static bool read_facet(struct text *t, struct list *vertices) {
     double(*corner)[3] = list_room(vertices, 3, sizeof *corner);
     if (!corner)
@@ -144,41 +223,59 @@ static bool read_facet(struct text *t, struct list *vertices) {
     for (int i = 0; i < 3; i++)
         if (!expect(t, "vertex") || !read_point(t, corner[i]))
             return false;
+    if (!expect_end(t, "endloop") || !expect_end(t, "endfacet"))
+        return false;
     vertices->count += 3;
-    return expect(t, "endloop") && expect(t, "endfacet");
+    return true;
 }
 
 static void skip_line(struct text *t) {
-    while (t->at < t->end && *t->at != '\n')
+    while (t->at < t->end && *t->at != '\n' && *t->at != '\r')
         t->at++;
+}
+
+/* What writers of tapes and of CP/M left behind: zeros and ^Z. */
+static bool is_padding(const struct text *t, size_t length) {
+    for (size_t i = 0; i < length; i++)
+        if (t->at[i] != '\0' && t->at[i] != 0x1a)
+            return false;
+    return true;
+}
+
+/* Whether the last triangle failed at the last word of the file: then it is left out. */
+static bool is_cut_off(struct model *model, struct text *t) {
+    size_t length = next_word(t);
+    if (t->at + length < t->end || t->error->kind != ERROR_SCENE)
+        return false;
+    *t->error = (struct error){0};
+    t->at = t->end;
+    model_warn(model, "%s:%zu: the file ends in a triangle, which is left out", t->path, t->line);
+    return true;
 }
 
 static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size,
                       struct error *error) {
     struct text t = {.path = model->path, .at = data, .end = data + size, .line = 1, .error = error};
-    assert(size >= 3); /* a text begins with "solid"; other texts are errors */
+    assert(size >= 3); /* a text has a facet or an endsolid */
     if (memcmp(data, "\xef\xbb\xbf", 3) == 0)
         t.at += 3;
-    bool inside = false;
+    struct unread unread = {0};
     for (size_t length; (length = next_word(&t)) > 0;) {
-        if (!inside && is_word(&t, length, "solid")) {
-            skip_line(&t); /* its name */
-            inside = true;
-        } else if (inside && is_word(&t, length, "facet")) {
+        if (is_word(&t, length, "facet")) {
             t.at += length;
-            if (!read_facet(&t, &mesh->vertices))
+            if (!read_facet(&t, &mesh->vertices) && !is_cut_off(model, &t))
                 return false;
-        } else if (inside && is_word(&t, length, "endsolid")) {
-            skip_line(&t);
-            inside = false;
         } else {
-            return fail(&t, length, inside ? "facet or endsolid" : "solid");
+            /* Names may follow; solids need neither a beginning nor an end. */
+            bool known = (length >= 3 && strncasecmp(t.at, "end", 3) == 0) || is_word(&t, length, "solid");
+            if (!known && !is_padding(&t, length))
+                unread_add(&unread, t.at, length, t.line);
+            skip_line(&t);
         }
         if (mesh->vertices.count > model_max(model))
             return error_set(error, ERROR_SCENE, "%s:%zu: too many triangles", model->path, t.line);
     }
-    if (inside)
-        return fail(&t, 0, "facet or endsolid");
+    model_warn_unread(model, model->path, &unread);
     return true;
 }
 

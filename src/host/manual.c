@@ -78,24 +78,29 @@ static void describe_module(struct document *document, const char *library, cons
     char path[4096], text[DOCUMENT_LINE] = "";
     struct file_bytes file;
     struct error error;
+    /* module or module.function. */
     int length = (int)strspn(topic, "abcdefghijklmnopqrstuvwxyz_0123456789");
     const char *function = topic[length] == '.' ? topic + length + 1 : NULL;
     (void)snprintf(path, sizeof path, "%s/%.*s.lua", library ? library : "", length, topic);
     if (!library || (topic[length] && !function) || !file_map(path, MODULE_LIMIT, &file, &error))
         return;
+    /* The lines of the file. */
     bool is_head = !function;
     for (const char *line = (const char *)file.data, *end = line + file.size, *next; line < end; line = next) {
         const char *stop = memchr(line, '\n', (size_t)(end - line));
         int size = (int)((stop ? stop : end) - line);
         next = stop ? stop + 1 : end;
+        /* The first comment is printed. */
         is_head = is_head && size >= 2 && memcmp(line, "--", 2) == 0 && !(size > 2 && line[2] == '-');
         if (is_head) {
             document_add(document, "%.*s\n", size > 3 ? size - 3 : 0, line + 3);
         } else if (size > 4 && memcmp(line, "---", 3) == 0) {
+            /* A comment of a function is collected. */
             size_t used = strlen(text);
             if (line[3] != '@')
                 (void)snprintf(text + used, sizeof text - used, "%s%.*s", used ? " " : "", size - 4, line + 4);
         } else {
+            /* It belongs to the function of the next line. */
             const char *name = line + strlen("function M."), *bracket = memchr(line, ')', (size_t)size);
             bool is_function = bracket && strncmp(line, "function M.", strlen("function M.")) == 0;
             size_t name_size = is_function ? strcspn(name, "(") : 0;

@@ -148,14 +148,16 @@ static bool add_channels(exr_context_t context, int part) {
     return true;
 }
 
-/* The index of a channel: red, green, blue; 3: another. Y counts as red. */
+enum { CHANNEL_RY = 3, CHANNEL_OTHER = 5 };
+
+/* The index of a channel: red, green, blue, the chroma RY and BY, another. Y counts as red. */
 static int channel_number(const char *name) {
-    static const char *const names[] = {"R", "G", "B"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const names[] = {"R", "G", "B", "RY", "BY"};
+    for (int i = 0; i < CHANNEL_OTHER; i++) {
         if (strcmp(name, names[i]) == 0)
             return i;
     }
-    return strcmp(name, "Y") == 0 ? 0 : 3;
+    return strcmp(name, "Y") == 0 ? 0 : CHANNEL_OTHER;
 }
 
 /* The source of the values: rows on demand, stored in `lines`, which has room for one chunk; or channels in memory. */
@@ -281,46 +283,177 @@ static float bounded(float light) {
     return light > 0 ? fminf(light, FLT_MAX) : 0; /* NaN too */
 }
 
-/* The three channels of the picture are decoded in place; the others are skipped. Returns which were found. */
-static unsigned set_channels(exr_decode_pipeline_t *decoder, float *out, uint32_t width) {
-    unsigned met = 0;
-    for (int16_t i = 0; i < decoder->channel_count; i++) {
-        exr_coding_channel_info_t *channel = &decoder->channels[i];
-        int number = channel_number(channel->channel_name);
-        channel->decode_to_ptr = NULL;
-        if (number > 2 || channel->x_samples != 1 || channel->y_samples != 1)
-            continue;
-        met |= strcmp(channel->channel_name, "Y") == 0 ? 8u : 1u << number;
-        channel->user_bytes_per_element = 4;
-        channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_pixel_stride = 16;
-        channel->user_line_stride = (int32_t)width * 16;
-        channel->decode_to_ptr = (uint8_t *)(out + number);
-    }
-    return met;
+/* Bits of the channels that were met. */
+enum { MET_RGB = 7, MET_CHROMA = 3 << CHANNEL_RY, MET_Y = 1 << CHANNEL_OTHER };
+
+/* A picture while it is read. Positions x, y count from the corner of the data window. */
+struct picture {
+    exr_context_t context;
+    const char *path;
+    exr_attr_box2i_t data, display;
+    int32_t width, height; /* of the data window */
+    struct image *image;   /* of the display window */
+    float *chunk;          /* R or Y, G, B */
+    int32_t chunk_width, chunk_height;
+    float *chroma[2]; /* RY and BY, with one sample for some columns and rows */
+    int32_t columns[2], rows[2], chroma_width[2], chroma_height[2];
+    exr_decode_pipeline_t decoder;
+    bool begun, no_memory;
+    unsigned met;
+};
+
+static void set_target(exr_coding_channel_info_t *channel, float *target, int32_t floats, int32_t width) {
+    channel->user_bytes_per_element = 4;
+    channel->user_data_type = EXR_PIXEL_FLOAT;
+    channel->user_pixel_stride = floats * 4;
+    channel->user_line_stride = width * floats * 4;
+    channel->decode_to_ptr = (uint8_t *)target;
 }
 
-static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window, struct image *image, unsigned *met) {
-    exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
-    uint32_t width = image->levels[0].width, height = image->levels[0].height;
-    int step = 0;
-    bool ok = MAY_FAIL(exr_get_scanlines_per_chunk(context, 0, &step)) == EXR_ERR_SUCCESS, begun = false;
-    assert(!ok || step > 0); /* 1 to 256, depending on the compression */
-    for (uint32_t y = 0; ok && y < height; y += (uint32_t)step) {
-        exr_chunk_info_t chunk;
-        ok = exr_read_scanline_chunk_info(context, 0, window->min.y + (int)y, &chunk) == EXR_ERR_SUCCESS;
-        /* The library counts chunks from the top of the data window and cuts the last one off at its end. */
-        assert(!ok || ((uint32_t)chunk.width == width && chunk.height > 0 && (uint32_t)chunk.height <= height - y));
-        ok = ok && MAY_FAIL(begun ? exr_decoding_update(context, 0, &chunk, &decoder)
-                                  : exr_decoding_initialize(context, 0, &chunk, &decoder)) == EXR_ERR_SUCCESS;
-        if (ok)
-            *met = set_channels(&decoder, (float *)image->levels[0].texels + (size_t)y * width * 4, width);
-        ok = ok && (begun || MAY_FAIL(exr_decoding_choose_default_routines(context, 0, &decoder)) == EXR_ERR_SUCCESS);
-        begun = true;
-        ok = ok && exr_decoding_run(context, 0, &decoder) == EXR_ERR_SUCCESS;
+/* Samples of RY or BY are kept for the whole picture: they are at some of its columns and rows. */
+static bool set_chroma(struct picture *p, exr_coding_channel_info_t *channel, int which, int32_t x, int32_t y) {
+    int32_t columns = channel->x_samples, rows = channel->y_samples;
+    if (!p->chroma[which]) {
+        p->columns[which] = columns;
+        p->rows[which] = rows;
+        p->chroma_width[which] = (p->width + columns - 1) / columns;
+        p->chroma_height[which] = (p->height + rows - 1) / rows;
+        p->chroma[which] = mem_alloc_zero((size_t)p->chroma_width[which] * (size_t)p->chroma_height[which], 4);
+        p->no_memory = !p->chroma[which];
     }
-    (void)exr_decoding_destroy(context, &decoder);
+    int32_t column = (x + columns - 1) / columns, row = (y + rows - 1) / rows;
+    if (p->no_memory || channel->width > p->chroma_width[which] - column ||
+        channel->height > p->chroma_height[which] - row)
+        return false;
+    size_t at = (size_t)row * (size_t)p->chroma_width[which] + (size_t)column;
+    set_target(channel, p->chroma[which] + at, 1, p->chroma_width[which]);
+    return true;
+}
+
+/* The channels of the picture are decoded; the others are skipped. */
+static void set_channels(struct picture *p, const exr_chunk_info_t *chunk, int32_t x, int32_t y) {
+    for (int16_t i = 0; i < p->decoder.channel_count; i++) {
+        exr_coding_channel_info_t *channel = &p->decoder.channels[i];
+        int number = channel_number(channel->channel_name);
+        bool whole = channel->x_samples == 1 && channel->y_samples == 1, is_y = strcmp(channel->channel_name, "Y") == 0;
+        channel->decode_to_ptr = NULL;
+        if (number == CHANNEL_OTHER || (number < CHANNEL_RY && !whole) || channel->x_samples < 1 ||
+            channel->y_samples < 1)
+            continue;
+        if (number < CHANNEL_RY)
+            set_target(channel, p->chunk + number, 3, chunk->width);
+        else if (!set_chroma(p, channel, number - CHANNEL_RY, x, y))
+            continue;
+        p->met |= is_y ? (unsigned)MET_Y : 1u << number;
+    }
+}
+
+/* The part of the chunk that the display window shows. */
+static void copy_chunk(const struct picture *p, const exr_chunk_info_t *chunk, int32_t x, int32_t y) {
+    int64_t left = (int64_t)p->data.min.x - p->display.min.x + x, top = (int64_t)p->data.min.y - p->display.min.y + y;
+    const struct image_level *to = &p->image->levels[0];
+    for (int32_t row = 0; row < chunk->height; row++) {
+        for (int32_t column = 0; column < chunk->width; column++) {
+            int64_t at_x = left + column, at_y = top + row;
+            if (at_x >= 0 && at_y >= 0 && at_x < to->width && at_y < to->height)
+                memcpy((float *)to->texels + ((size_t)at_y * to->width + (size_t)at_x) * 4,
+                       p->chunk + ((size_t)row * (size_t)chunk->width + (size_t)column) * 3, 12);
+        }
+    }
+}
+
+static bool decode_chunk(struct picture *p, const exr_chunk_info_t *chunk, int32_t x, int32_t y) {
+    exr_decode_pipeline_t *decoder = &p->decoder;
+    /* The first chunk is the largest; the library cuts chunks off at the end of the data window. */
+    if (!p->chunk) {
+        p->chunk_width = chunk->width;
+        p->chunk_height = chunk->height;
+        p->chunk = mem_alloc_zero((size_t)chunk->width * (size_t)chunk->height, 12);
+        p->no_memory = !p->chunk;
+    }
+    assert(chunk->width <= p->chunk_width && chunk->height <= p->chunk_height);
+    bool ok =
+        p->chunk && MAY_FAIL(p->begun ? exr_decoding_update(p->context, 0, chunk, decoder)
+                                      : exr_decoding_initialize(p->context, 0, chunk, decoder)) == EXR_ERR_SUCCESS;
+    if (ok)
+        set_channels(p, chunk, x, y);
+    ok = ok && !p->no_memory;
+    ok = ok && (p->begun || MAY_FAIL(exr_decoding_choose_default_routines(p->context, 0, decoder)) == EXR_ERR_SUCCESS);
+    p->begun = true;
+    ok = ok && exr_decoding_run(p->context, 0, decoder) == EXR_ERR_SUCCESS;
+    if (ok)
+        copy_chunk(p, chunk, x, y);
     return ok;
+}
+
+static bool decode_lines(struct picture *p) {
+    int32_t step = 0;
+    bool ok = MAY_FAIL(exr_get_scanlines_per_chunk(p->context, 0, &step)) == EXR_ERR_SUCCESS;
+    assert(!ok || step > 0); /* 1 to 256, depending on the compression */
+    for (int32_t y = 0; ok && y < p->height; y += step) {
+        exr_chunk_info_t chunk;
+        ok = exr_read_scanline_chunk_info(p->context, 0, p->data.min.y + y, &chunk) == EXR_ERR_SUCCESS &&
+             decode_chunk(p, &chunk, 0, y);
+    }
+    return ok;
+}
+
+/* Of the largest level. */
+static bool decode_tiles(struct picture *p, size_t size) {
+    int32_t width = 0, height = 0;
+    bool ok = MAY_FAIL(exr_get_tile_sizes(p->context, 0, 0, 0, &width, &height)) == EXR_ERR_SUCCESS && width > 0 &&
+              height > 0;
+    /* The file has a number of 8 bytes for each tile. */
+    if (ok && (uint64_t)((p->width - 1) / width + 1) * (uint64_t)((p->height - 1) / height + 1) > size / 8)
+        return false;
+    for (int32_t y = 0; ok && y < p->height; y += height)
+        for (int32_t x = 0; ok && x < p->width; x += width) {
+            exr_chunk_info_t chunk;
+            ok = exr_read_tile_chunk_info(p->context, 0, x / width, y / height, 0, 0, &chunk) == EXR_ERR_SUCCESS &&
+                 decode_chunk(p, &chunk, x, y);
+        }
+    return ok;
+}
+
+/* Between its samples, RY or BY is interpolated. */
+static double chroma_at(const struct picture *p, int which, int32_t x, int32_t y) {
+    int32_t columns = p->columns[which], rows = p->rows[which], width = p->chroma_width[which];
+    int32_t x0 = x / columns, y0 = y / rows, x1 = x0 + 1 < width ? x0 + 1 : x0;
+    int32_t y1 = y0 + 1 < p->chroma_height[which] ? y0 + 1 : y0;
+    double s = (double)(x % columns) / columns, t = (double)(y % rows) / rows;
+    const float *top = p->chroma[which] + (size_t)y0 * (size_t)width;
+    const float *bottom = p->chroma[which] + (size_t)y1 * (size_t)width;
+    return (1 - t) * ((1 - s) * (double)top[x0] + s * (double)top[x1]) +
+           t * ((1 - s) * (double)bottom[x0] + s * (double)bottom[x1]);
+}
+
+/* RY = (R - Y) / Y and BY = (B - Y) / Y, where Y is the luminance of Rec. 709 ("Technical Introduction to OpenEXR").
+ * Outside of the data window Y is 0. */
+static void set_colour(const struct picture *p, int64_t x, int64_t y, float *texel) {
+    double luminance = (double)texel[0];
+    bool inside = x >= 0 && y >= 0 && x < p->width && y < p->height;
+    double red = inside ? (1 + chroma_at(p, 0, (int32_t)x, (int32_t)y)) * luminance : 0;
+    double blue = inside ? (1 + chroma_at(p, 1, (int32_t)x, (int32_t)y)) * luminance : 0;
+    texel[0] = (float)red;
+    texel[1] = (float)((luminance - 0.212639 * red - 0.072192 * blue) / 0.715169);
+    texel[2] = (float)blue;
+}
+
+static void set_colours(const struct picture *p) {
+    const struct image_level *to = &p->image->levels[0];
+    bool chroma = (p->met & MET_CHROMA) == MET_CHROMA && p->met & MET_Y;
+    for (uint32_t y = 0; y < to->height; y++)
+        for (uint32_t x = 0; x < to->width; x++) {
+            float *texel = (float *)to->texels + ((size_t)y * to->width + x) * 4;
+            if (chroma)
+                set_colour(p, (int64_t)x + p->display.min.x - p->data.min.x,
+                           (int64_t)y + p->display.min.y - p->data.min.y, texel);
+            else if (p->met & MET_Y)
+                texel[1] = texel[2] = texel[0];
+            for (int k = 0; k < 3; k++)
+                texel[k] = bounded(texel[k]);
+            texel[3] = 1;
+        }
 }
 
 /* The largest number of pixels per byte of the file: one channel of two bytes through zlib (1032 : 1), and with lossy
@@ -333,70 +466,74 @@ static uint64_t pixels_per_byte(exr_context_t context) {
     return blocks ? 64 * zipped : zipped;
 }
 
-static struct image *decode(exr_context_t context, const char *path, struct stream *stream, struct error *error) {
-    exr_storage_t storage;
-    exr_attr_box2i_t window;
-    if (MAY_FAIL(exr_get_storage(context, 0, &storage)) != EXR_ERR_SUCCESS ||
-        MAY_FAIL(exr_get_data_window(context, 0, &window)) != EXR_ERR_SUCCESS) {
-        report_error(path, stream, "broken EXR", error);
-        return NULL;
-    }
-    if (storage != EXR_STORAGE_SCANLINE) {
-        error_set(error, ERROR_SCENE, "%s: only EXR pictures in scan lines are read, not tiled or deep ones", path);
-        return NULL;
-    }
-    int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
+/* Whether the file can hold the data window, and the display window is not much larger than that. */
+static bool check_sizes(const struct picture *p, int64_t width, int64_t height, size_t size, struct error *error) {
+    const int64_t small = 1 << 22; /* pixels of a display window that any file may have */
+    uint64_t most = pixels_per_byte(p->context) * size;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
-    assert(width >= 1 && height >= 1 && width <= IMAGE_MAX_SIDE &&
-           height <= IMAGE_MAX_SIDE); /* the header claims this */
-    if ((uint64_t)height / 256 > stream->size / 8 ||
-        (uint64_t)width * (uint64_t)height / pixels_per_byte(context) > stream->size) {
-        error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", path);
-        return NULL;
-    }
-    struct image *image = image_allocate(path, (uint32_t)width, (uint32_t)height, 32, error);
-    if (!image)
-        return NULL;
-    memset(image->levels[0].texels, 0, (size_t)width * (size_t)height * 16);
-    unsigned met = 0;
-    bool ok = decode_chunks(context, &window, image, &met) || report_error(path, stream, "broken EXR", error);
-    if (ok && met != 7 && met != 8)
-        ok = error_set(error, ERROR_SCENE, "%s: an EXR picture needs the channels R, G and B, or Y", path);
-    float *texels = image->levels[0].texels;
-    for (size_t i = 0; ok && i < (size_t)width * (size_t)height * 4; i += 4) {
-        for (size_t k = 0; k < 3; k++)
-            texels[i + k] = bounded(texels[i + (met == 8 ? 0 : k)]);
-        texels[i + 3] = 1;
-    }
-    if (!ok) {
-        image_release(image);
-        return NULL;
-    }
-    bool built = image_build_levels(image, error);
-    assert(built); /* floats need no extra memory for it */
-    (void)built;
-    return image;
+    if ((size_t)p->height / 256 > size / 8 || (uint64_t)p->width * (uint64_t)p->height > most)
+        return error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", p->path);
+    if (width < 1 || height < 1 || width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE ||
+        (width * height > small && (uint64_t)width * (uint64_t)height > most))
+        return error_set(error, ERROR_SCENE, "%s: broken EXR: its display window is no window, or too large", p->path);
+    return true;
+}
+
+static bool decode(struct picture *p, struct stream *stream, struct error *error) {
+    exr_storage_t storage;
+    if (MAY_FAIL(exr_get_storage(p->context, 0, &storage)) != EXR_ERR_SUCCESS ||
+        MAY_FAIL(exr_get_data_window(p->context, 0, &p->data)) != EXR_ERR_SUCCESS ||
+        MAY_FAIL(exr_get_display_window(p->context, 0, &p->display)) != EXR_ERR_SUCCESS)
+        return report_error(p->path, stream, "broken EXR", error);
+    if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
+        return error_set(error, ERROR_SCENE, "%s: deep EXR pictures are not read", p->path);
+    int64_t data_width = (int64_t)p->data.max.x - p->data.min.x + 1;
+    int64_t data_height = (int64_t)p->data.max.y - p->data.min.y + 1;
+    int64_t width = (int64_t)p->display.max.x - p->display.min.x + 1;
+    int64_t height = (int64_t)p->display.max.y - p->display.min.y + 1;
+    assert(data_width >= 1 && data_height >= 1 && data_width <= IMAGE_MAX_SIDE &&
+           data_height <= IMAGE_MAX_SIDE); /* the header claims this */
+    p->width = (int32_t)data_width;
+    p->height = (int32_t)data_height;
+    if (!check_sizes(p, width, height, stream->size, error))
+        return false;
+    p->image = image_allocate(p->path, (uint32_t)width, (uint32_t)height, 32, error);
+    if (!p->image)
+        return false;
+    memset(p->image->levels[0].texels, 0, (size_t)width * (size_t)height * 16);
+    bool ok = storage == EXR_STORAGE_TILED ? decode_tiles(p, stream->size) : decode_lines(p);
+    (void)exr_decoding_destroy(p->context, &p->decoder);
+    stream->no_memory |= p->no_memory;
+    if (!ok)
+        return report_error(p->path, stream, "broken EXR", error);
+    if (p->met & MET_Y ? p->met & MET_RGB : p->met != MET_RGB)
+        return error_set(error, ERROR_SCENE, "%s: an EXR picture needs the channels R, G and B, or Y", p->path);
+    set_colours(p);
+    return true;
 }
 
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error) {
     /* Borrowed: reading never writes to it. */
     struct stream stream = {.bytes = (uint8_t *)(uintptr_t)data, .size = size};
+    struct picture picture = {.path = path, .decoder = EXR_DECODE_PIPELINE_INITIALIZER};
     exr_context_initializer_t init = callbacks(&stream);
-    exr_context_t context;
     init.max_image_width = init.max_image_height = IMAGE_MAX_SIDE;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     to_report = &stream;
-    exr_result_t begun = exr_start_read(&context, path, &init);
-    struct image *image = NULL;
+    exr_result_t begun = exr_start_read(&picture.context, path, &init);
+    bool ok = false;
     stream.no_memory |= begun == EXR_ERR_OUT_OF_MEMORY;
     if (begun == EXR_ERR_SUCCESS) {
-        image = decode(context, path, &stream, error);
-        (void)exr_finish(&context);
+        ok = decode(&picture, &stream, error);
+        (void)exr_finish(&picture.context);
     } else {
         report_error(path, &stream, "broken EXR", error);
     }
     to_report = NULL;
-    return image;
+    mem_free(picture.chunk);
+    mem_free(picture.chroma[0]);
+    mem_free(picture.chroma[1]);
+    return image_finish(picture.image, ok, error);
 }
 
 #endif

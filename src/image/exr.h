@@ -28,8 +28,9 @@ enum { EXR_CHANNELS = 64 };
 bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
                         const struct exr_channel *channels, uint32_t count, struct error *error);
 bool exr_is(const uint8_t *data, size_t size);
-/* R, G, B or Y of the first part, in scan lines; other channels are ignored. NaN and negative light become 0.
- * Errors name the path. */
+/* The display window of the first part, black outside of the data window, in scan lines or tiles (of these the largest
+ * level): R, G, B, or Y with RY and BY or without; other channels are ignored. NaN and negative light become 0. Errors
+ * name the path. */
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error);
 
 #endif

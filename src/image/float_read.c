@@ -36,8 +36,9 @@ static bool next_line(struct reading *r, char line[LINE_LIMIT]) {
     if (length >= LINE_LIMIT || r->at + length >= r->size)
         return false;
     memcpy(line, r->data + r->at, length);
-    line[length] = '\0';
     r->at += length + 1;
+    length -= length > 0 && line[length - 1] == '\r';
+    line[length] = '\0';
     return memchr(line, 0, length) == NULL;
 }
 
@@ -220,15 +221,30 @@ bool pfm_is(const uint8_t *data, size_t size) {
            (data[2] == '\n' || data[2] == ' ' || data[2] == '\r');
 }
 
-/* The next word of the header and the one white-space byte after it. */
+static bool is_space(uint8_t c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+/* Comments reach from # to the end of the line. */
+static void skip_space(struct reading *r) {
+    while (r->at < r->size && (is_space(r->data[r->at]) || r->data[r->at] == '#')) {
+        const uint8_t *start = r->data + r->at, *end = start;
+        if (*start == '#')
+            end = memchr(start, '\n', r->size - r->at);
+        r->at += end ? (size_t)(end - start) + 1 : r->size - r->at;
+    }
+}
+
+/* The next word of the header and the one white-space byte after it, or CR LF. */
 static bool next_word(struct reading *r, char word[64]) {
     size_t length = 0;
-    while (r->at < r->size && length < 63 && !strchr(" \t\r\n", r->data[r->at]))
+    skip_space(r);
+    while (r->at < r->size && length < 63 && !is_space(r->data[r->at]))
         word[length++] = (char)r->data[r->at++];
     word[length] = '\0';
-    if (length == 0 || r->at >= r->size || !strchr(" \t\r\n", r->data[r->at]))
+    if (length == 0 || r->at >= r->size || !is_space(r->data[r->at]))
         return false;
-    r->at++;
+    r->at += r->size - r->at > 1 && memcmp(r->data + r->at, "\r\n", 2) == 0 ? 2 : 1;
     return true;
 }
 

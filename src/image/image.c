@@ -3,11 +3,14 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "image/bmp_read_internal.h"
 #include "image/exr.h"
 #include "image/float_read_internal.h"
 #include "image/jpeg_read.h"
 #include "image/levels.h"
 #include "image/png_read_internal.h"
+#include "image/tga_read_internal.h"
+#include "image/webp_read_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -164,9 +167,45 @@ struct rgba image_largest(const struct image *image) {
     return largest;
 }
 
-/* The choice of a reader. For unknown formats the PNG reader makes the error; it names the probable format. */
+/* The choice of a reader. For unknown formats the PNG reader makes the error. */
 
 #define FILE_LIMIT ((size_t)1 << 32)
+
+/* The name of a format that gray does not read, or NULL. */
+static const char *unread_kind(const uint8_t *data, size_t size) {
+    static const struct {
+        const char *kind, *bytes;
+        size_t offset, length;
+    } kinds[] = {
+        {"GIF", "GIF8", 0, 4},
+        {"TIFF", "II*\0", 0, 4},
+        {"TIFF", "MM\0*", 0, 4},
+        {"TIFF", "II+\0", 0, 4},
+        {"TIFF", "MM\0+", 0, 4},
+        {"Photoshop (PSD)", "8BPS", 0, 4},
+        {"AVIF", "ftypavif", 4, 8},
+        {"AVIF", "ftypavis", 4, 8},
+        {"HEIC", "ftyphei", 4, 7},
+        {"HEIC", "ftypmif1", 4, 8},
+        {"KTX2", "\xabKTX 20", 0, 7},
+        {"KTX", "\xabKTX 11", 0, 7},
+        {"DDS", "DDS ", 0, 4},
+        {"JPEG 2000", "\0\0\0\x0cjP  ", 0, 8},
+        {"JPEG XL", "\0\0\0\x0cJXL ", 0, 8},
+        {"JPEG XL", "\xff\x0a", 0, 2},
+        {"Basis Universal", "sB", 0, 2},
+        {"SVG or XML", "<", 0, 1},
+        {"PNM", "P2", 0, 2},
+        {"PNM", "P3", 0, 2},
+        {"PNM", "P5", 0, 2},
+        {"PNM", "P6", 0, 2},
+    };
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+        if (size >= kinds[i].offset + kinds[i].length &&
+            memcmp(data + kinds[i].offset, kinds[i].bytes, kinds[i].length) == 0)
+            return kinds[i].kind;
+    return NULL;
+}
 
 struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error) {
     if (size >= 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
@@ -177,6 +216,18 @@ struct image *image_parse(const char *path, const uint8_t *data, size_t size, st
         return image_parse_exr(path, data, size, error);
     if (pfm_is(data, size))
         return image_parse_pfm(path, data, size, error);
+    if (webp_is(data, size))
+        return image_parse_webp(path, data, size, error);
+    if (tga_is(path, data, size))
+        return image_parse_tga(path, data, size, error);
+    if (bmp_is(data, size))
+        return image_parse_bmp(path, data, size, error);
+    const char *kind = unread_kind(data, size);
+    if (kind) {
+        error_set(error, ERROR_SCENE,
+                  "%s: this is a picture of the kind %s, which gray does not read: convert it to PNG", path, kind);
+        return NULL;
+    }
     return image_parse_png(path, data, size, error);
 }
 

@@ -173,3 +173,20 @@ bool image_build_levels(struct image *image, struct error *error) {
     mem_free(sums);
     return true;
 }
+
+struct image *image_finish(struct image *image, bool ok, struct error *error) {
+    if (ok && image_build_levels(image, error))
+        return image;
+    image_release(image);
+    return NULL;
+}
+
+void image_fill_empty_alpha(struct image *image) {
+    uint8_t *texels = image->levels[0].texels;
+    size_t size = (size_t)image->levels[0].width * image->levels[0].height * 4;
+    for (size_t i = 3; i < size; i += 4)
+        if (texels[i] > 0)
+            return;
+    for (size_t i = 3; i < size; i += 4)
+        texels[i] = 255;
+}

@@ -50,6 +50,10 @@ struct image {
  * size is refused. */
 struct image *image_allocate(const char *name, uint32_t width, uint32_t height, int bits, struct error *error);
 bool image_build_levels(struct image *image, struct error *error);
+/* The image with its levels; NULL, after releasing it, if it was not read (`ok`), or without memory. */
+struct image *image_finish(struct image *image, bool ok, struct error *error);
+/* Of 8 bits: opaque if alpha is 0 everywhere, as programs write it that do not know alpha. */
+void image_fill_empty_alpha(struct image *image);
 /* One texel, premultiplied, in units squared. */
 static inline struct rgba image_level_texel(const struct image *image, int level, uint32_t x, uint32_t y) {
     const struct image_level *l = &image->levels[level];

@@ -99,12 +99,14 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         [PATH_IN_TOO_MANY_HOLES] = "holes",
     };
     static const char *const cut[] = {[RAY_FOLLOWED] = "no", [RAY_OVER_LIMIT] = "limit", [RAY_TOO_WEAK] = "cutoff"};
+    /* The ray. */
     text_writer_put(writer, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\",\"weight\":%a,\"begun\":%b", ray->number,
                     inspect_ray(ray->kind), cut[ray->cut], ray->weight, ray->begun);
     if (ray->begun) {
         text_writer_put(writer,
                         ",\"origin\":%a,\"direction\":%a,\"time\":%j,\"share\":%j,\"media\":%u,\"media_ior\":%j",
                         ray->origin, ray->direction, ray->time, ray->share, ray->media_count, ray->media_ior);
+        /* What it meets. */
         text_writer_put(writer, ",\"distance\":%j,\"meets\":\"%s\"", ray->distance,
                         ray->met          ? "surface"
                         : ray->area_light ? "light"
@@ -115,6 +117,7 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
             text_writer_put(writer, ",\"emission\":%a", ray->vertex.emission);
         if (ray->is_vertex)
             text_writer_put(writer, ",\"path\":\"%s\"", ends[ray->vertex.end]);
+        /* The rays that follow, and the light. */
         text_writer_put(writer, ",\"rays\":[");
         json_rays(report, writer, ray->first);
         text_writer_put(writer, "],\"seen\":%a,\"left\":%a,\"fog\":%a,\"brings\":%a", ray->seen, ray->left,

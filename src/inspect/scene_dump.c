@@ -46,6 +46,7 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
     const struct prototype *prototype = primitive_prototype(d->world, primitive);
     const struct mesh *mesh = geometry_mesh(&prototype->geometry);
     struct text_writer *writer = d->writer;
+    /* The node and its shape. */
     text_writer_put(writer, "%s{\"number\":%u,\"node\":%q,\"node_number\":%u,\"shape\":\"%s\"",
                     primitive > 0 ? "," : "", primitive + 1, path, primitive_node(d->world, primitive)->serial,
                     geometry_kind_name(&prototype->geometry));
@@ -53,6 +54,7 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
         text_writer_print(writer, ",\"triangles\":%u", mesh_triangle_count(mesh));
     if (mesh && mesh_dropped_faces(mesh) > 0)
         text_writer_print(writer, ",\"dropped_faces\":%u", mesh_dropped_faces(mesh));
+    /* The materials. */
     if (prototype->geometry.csg) {
         text_writer_print(writer, ",\"operands\":[");
         for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++)
@@ -64,6 +66,7 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
         text_writer_print(writer, ",\"material\":%u,\"slots\":%u", number_of(d, prototype->material),
                           prototype->slot_count > 1 ? prototype->slot_count : 1);
     }
+    /* The position. */
     struct transform map = world_placement(d->world, primitive, 0);
     text_writer_put(writer, ",\"min\":%a,\"max\":%a,\"world_from_object\":[", d->world->boxes[primitive].min,
                     d->world->boxes[primitive].max);

@@ -119,6 +119,7 @@ static void read_textures(const struct material *material, const struct hit *hit
         {INPUT_FUZZ_COLOUR, true, offsetof(struct openpbr, fuzz_colour)},
         {INPUT_FUZZ_ROUGHNESS, false, offsetof(struct openpbr, fuzz_roughness)},
     };
+    /* Each input that has a texture is read at the hit. */
     struct texture_reader reader;
     texture_reader_init(&reader, hit, material->textures, NULL);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -8,6 +8,7 @@
 #include "mesh/mesh_topology.h"
 #include "mesh/triangulate_internal.h"
 
+#include <stdio.h>
 #include <string.h>
 
 struct mesh *mesh_share(struct mesh *mesh) {
@@ -78,12 +79,23 @@ bool mesh_is_closed(const struct mesh *mesh) {
     return mesh->closed;
 }
 
-bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b) {
-    if (mesh->closed || mesh->triangle_count == 0)
-        return false;
-    *a = mesh->open_edge[0];
-    *b = mesh->open_edge[1];
-    return true;
+bool mesh_is_open(const struct mesh *mesh) {
+    return mesh->open_edge_count > 0;
+}
+
+void mesh_describe_open_edges(const struct mesh *mesh, char *text, size_t size) {
+    int used =
+        snprintf(text, size, "the first open edges (of one face, or of faces that disagree about the outside) go");
+    for (uint32_t i = 0; i < mesh->open_edge_count; i++) {
+        const struct vec3 *a = &mesh->open_edges[i][0], *b = &mesh->open_edges[i][1];
+        used += snprintf(text + used, size - (size_t)used, "%s from {%.6g, %.6g, %.6g} to {%.6g, %.6g, %.6g}",
+                         i ? "," : "", a->x, a->y, a->z, b->x, b->y, b->z);
+    }
+    /* A hundred thousandth of the size: the seams of exporters are narrower, details are wider. */
+    double length = vec3_length(vec3_sub(mesh->bounds.max, mesh->bounds.min));
+    (void)snprintf(text + used, size - (size_t)used,
+                   "; weld = %.0e in gr.mesh joins vertices closer than that, which closes seams but no holes",
+                   1e-5 * length);
 }
 
 bool mesh_is_outward(const struct mesh *mesh) {
@@ -142,7 +154,7 @@ size_t mesh_memory(const struct mesh *mesh) {
     if (mesh->second_uvs)
         bytes += mesh->uv_count * sizeof *mesh->second_uvs;
     if (mesh->colours)
-        bytes += mesh->vertex_count * sizeof *mesh->colours;
+        bytes += (mesh->colours_by_triangle ? mesh->triangle_count : mesh->vertex_count) * sizeof *mesh->colours;
     if (mesh->materials)
         bytes += triangles * sizeof *mesh->materials;
     if (mesh->face_start)
@@ -398,7 +410,9 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
         describe_all_uvs(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {
-        const float *p = mesh->colours[corner[0]], *q = mesh->colours[corner[1]], *r = mesh->colours[corner[2]];
+        bool flat = mesh->colours_by_triangle;
+        const float *p = mesh->colours[flat ? triangle : corner[0]], *q = mesh->colours[flat ? triangle : corner[1]],
+                    *r = mesh->colours[flat ? triangle : corner[2]];
         out->has_colour = true;
         out->colour = vec3_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
                                 w * (double)p[1] + u * (double)q[1] + v * (double)r[1],
@@ -416,12 +430,13 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
 
 uint64_t mesh_input_hash(const struct mesh_input *input) {
     uint32_t corners = input->face_count ? input->face_start[input->face_count] : 0;
-    uint32_t counts[6] = {input->vertex_count,
+    uint32_t counts[7] = {input->vertex_count,
                           input->face_count,
                           input->normals ? input->normal_count : MESH_NONE,
                           input->uvs ? input->uv_count : MESH_NONE,
                           input->face_material != NULL,
-                          input->colours != NULL};
+                          input->colours != NULL,
+                          input->colours_by_face};
     uint64_t h = hash_bytes(counts, sizeof counts, 0);
     /* The counts come first, so that no table can be taken for another one. */
     h = hash_bytes(input->vertices, input->vertex_count * sizeof *input->vertices, h);
@@ -441,7 +456,8 @@ uint64_t mesh_input_hash(const struct mesh_input *input) {
     if (input->face_material)
         h = hash_bytes(input->face_material, input->face_count * sizeof *input->face_material, h);
     if (input->colours)
-        h = hash_bytes(input->colours, input->vertex_count * sizeof *input->colours, h);
+        h = hash_bytes(input->colours,
+                       (input->colours_by_face ? input->face_count : input->vertex_count) * sizeof *input->colours, h);
     return h;
 }
 
@@ -530,10 +546,11 @@ static bool copy_tables(struct mesh *mesh, const struct mesh_input *input, size_
         }
     }
     if (input->colours) {
-        mesh->colours = mem_alloc(input->vertex_count * sizeof *mesh->colours);
+        mesh->colours_by_triangle = input->colours_by_face;
+        mesh->colours = mem_alloc((input->colours_by_face ? triangles : input->vertex_count) * sizeof *mesh->colours);
         if (!mesh->colours)
             return false;
-        if (input->vertex_count)
+        if (input->vertex_count && !input->colours_by_face)
             memcpy(mesh->colours, input->colours, input->vertex_count * sizeof *mesh->colours);
     }
     if (input->face_material) {
@@ -585,6 +602,8 @@ static void add_face(struct mesh *mesh, const struct mesh_input *input, uint32_t
         }
         if (mesh->materials)
             mesh->materials[at] = input->face_material[face];
+        if (mesh->colours_by_triangle)
+            memcpy(mesh->colours[at], input->colours[face], sizeof *mesh->colours);
     }
 }
 
@@ -624,6 +643,8 @@ static uint32_t drop_degenerate(struct mesh *mesh, uint32_t *face_of) {
             memmove(mesh->uv_corners[kept], mesh->uv_corners[i], sizeof *mesh->uv_corners);
         if (mesh->materials)
             mesh->materials[kept] = mesh->materials[i];
+        if (mesh->colours_by_triangle)
+            memmove(mesh->colours[kept], mesh->colours[i], sizeof *mesh->colours);
         face_of[kept++] = face_of[i];
     }
     uint32_t dropped = mesh->triangle_count - kept;
@@ -673,6 +694,8 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
         mesh->normal_corners = shrink(mesh->normal_corners, count * sizeof *mesh->normal_corners);
         mesh->uv_corners = shrink(mesh->uv_corners, count * sizeof *mesh->uv_corners);
         mesh->materials = shrink(mesh->materials, count * sizeof *mesh->materials);
+        if (mesh->colours_by_triangle)
+            mesh->colours = shrink(mesh->colours, count * sizeof *mesh->colours);
     }
     find_bounds(mesh);
     mesh->set = (struct triangle_set){(const double(*)[3])mesh->vertices, (const uint32_t(*)[3])mesh->corners,

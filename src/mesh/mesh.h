@@ -41,6 +41,7 @@ struct mesh_input {
     const uint32_t *uv_index;
     const uint32_t *face_material; /* material slot per face, or NULL */
     const float (*colours)[3];     /* of the vertices, or NULL */
+    bool colours_by_face;          /* they are those of the faces instead */
 };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
@@ -59,8 +60,11 @@ struct box mesh_bounds(const struct mesh *mesh);
 /* The tightest box of the mesh under `map`; reads every corner. */
 struct box mesh_bounds_under(const struct mesh *mesh, const struct affine *map);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
-/* For a mesh that is not closed: one open edge by its two positions; false when closed. */
-bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);
+enum { MESH_OPEN_EDGES = 3 };
+/* Whether it has open edges: used by one face, or by faces that disagree about the outside. */
+bool mesh_is_open(const struct mesh *mesh);
+/* The first ones and what helps, as the end of a sentence about a mesh that is open. */
+void mesh_describe_open_edges(const struct mesh *mesh, char *text, size_t size);
 bool mesh_is_outward(const struct mesh *mesh);  /* closed, and its triangles' normals point outwards */
 const char *mesh_file(const struct mesh *mesh); /* NULL: it was made from tables */
 uint32_t mesh_triangle_count(const struct mesh *mesh);

@@ -22,7 +22,7 @@ struct corner {
 
 struct face {
     struct corner corners[3];
-    uint32_t material;
+    uint32_t origin; /* the triangle of the mesh */
 };
 
 /* Numbers in rows of `width`; the midpoint of two rows is a new row. */
@@ -146,8 +146,8 @@ static struct corner middle_corner(struct pass *pass, struct corner a, struct co
         d->normals.width ? middle_of(&pass->normals, &d->normals, NULL, a.normal, b.normal) : MESH_NONE};
 }
 
-static void add_face(struct pass *pass, uint32_t material, struct corner a, struct corner b, struct corner c) {
-    pass->faces[pass->count++] = (struct face){{a, b, c}, material};
+static void add_face(struct pass *pass, uint32_t origin, struct corner a, struct corner b, struct corner c) {
+    pass->faces[pass->count++] = (struct face){{a, b, c}, origin};
 }
 
 static void divide_face(struct pass *pass, const struct face *face, unsigned marked) {
@@ -159,28 +159,28 @@ static void divide_face(struct pass *pass, const struct face *face, unsigned mar
     const struct corner a = face->corners[first], b = face->corners[(first + 1) % 3],
                         c = face->corners[(first + 2) % 3];
     if (count == 0) {
-        add_face(pass, face->material, a, b, c);
+        add_face(pass, face->origin, a, b, c);
         return;
     }
     const struct corner ab = middle_corner(pass, a, b);
     if (count == 1) {
-        add_face(pass, face->material, a, ab, c);
-        add_face(pass, face->material, ab, b, c);
+        add_face(pass, face->origin, a, ab, c);
+        add_face(pass, face->origin, ab, b, c);
         return;
     }
     const struct corner bc = middle_corner(pass, b, c);
     if (count == 3) {
         const struct corner ca = middle_corner(pass, c, a);
-        add_face(pass, face->material, a, ab, ca);
-        add_face(pass, face->material, ab, b, bc);
-        add_face(pass, face->material, ca, bc, c);
-        add_face(pass, face->material, ab, bc, ca);
+        add_face(pass, face->origin, a, ab, ca);
+        add_face(pass, face->origin, ab, b, bc);
+        add_face(pass, face->origin, ca, bc, c);
+        add_face(pass, face->origin, ab, bc, ca);
         return;
     }
-    add_face(pass, face->material, ab, b, bc);
+    add_face(pass, face->origin, ab, b, bc);
     bool by_a = edge_length(pass->d, a.vertex, bc.vertex) <= edge_length(pass->d, ab.vertex, c.vertex);
-    add_face(pass, face->material, a, ab, by_a ? bc : c);
-    add_face(pass, face->material, by_a ? a : ab, bc, c);
+    add_face(pass, face->origin, a, ab, by_a ? bc : c);
+    add_face(pass, face->origin, by_a ? a : ab, bc, c);
 }
 
 /* At most `halved` edges are halved, and each of their faces is divided. `faces` is the exact number of faces
@@ -259,7 +259,7 @@ static bool division_init(struct division *d, const struct mesh *mesh) {
               (!mesh->uvs || copy_rows(&d->uvs, mesh->uvs[0], 2, mesh->uv_count)) &&
               (!mesh->normals || copy_rows(&d->normals, mesh->normals[0], 3, mesh->normal_count));
     /* Colours are computed with like everything else, in double precision. */
-    if (ok && mesh->colours) {
+    if (ok && mesh->colours && !mesh->colours_by_triangle) {
         d->colours.width = 3;
         ok = rows_grow(&d->colours, mesh->vertex_count);
         for (size_t i = 0; ok && i < (size_t)mesh->vertex_count * 3; i++)
@@ -267,7 +267,7 @@ static bool division_init(struct division *d, const struct mesh *mesh) {
         d->colours.count = mesh->vertex_count;
     }
     for (uint32_t f = 0; ok && f < mesh->triangle_count; f++) {
-        d->faces[f].material = mesh->materials ? mesh->materials[f] : 0;
+        d->faces[f].origin = f;
         for (int k = 0; k < 3; k++)
             /* Vertices at one place are one vertex, so that the surface does not tear. */
             d->faces[f].corners[k] =
@@ -423,7 +423,7 @@ static bool write_tables(struct division *d, const struct mesh *mesh, struct mes
         own->face_material = mem_alloc((size_t)faces * sizeof *own->face_material);
         ok = own->face_material != NULL;
         for (uint32_t f = 0; ok && f < faces; f++)
-            own->face_material[f] = d->faces[f].material;
+            own->face_material[f] = mesh->materials[d->faces[f].origin];
         input->face_material = own->face_material;
     }
     if (ok && d->colours.width) {
@@ -432,6 +432,14 @@ static bool write_tables(struct division *d, const struct mesh *mesh, struct mes
         for (size_t i = 0; ok && i < 3 * (size_t)d->colours.count; i++)
             own->colours[i / 3][i % 3] = (float)d->colours.numbers[i];
         input->colours = (const float(*)[3])own->colours;
+    }
+    if (ok && mesh->colours_by_triangle) {
+        own->colours = mem_alloc((size_t)faces * sizeof *own->colours);
+        ok = own->colours != NULL;
+        for (uint32_t f = 0; ok && f < faces; f++)
+            memcpy(own->colours[f], mesh->colours[d->faces[f].origin], sizeof *own->colours);
+        input->colours = (const float(*)[3])own->colours;
+        input->colours_by_face = true;
     }
     return ok;
 }

@@ -24,6 +24,7 @@ struct mesh {
     double (*second_uvs)[2]; /* the same */
     uint32_t (*uv_corners)[3];
     float (*colours)[3]; /* of the vertices, or NULL */
+    bool colours_by_triangle;
     uint32_t *materials; /* per triangle, or NULL */
     /* The original polygons, stored only if the triangles do not determine them. */
     uint32_t *face_start, *face_vertex;
@@ -31,7 +32,8 @@ struct mesh {
     uint64_t input_hash;
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
-    struct vec3 open_edge[2];
+    uint32_t open_edge_count;
+    struct vec3 open_edges[MESH_OPEN_EDGES][2];
     struct triangle_set set; /* the triangles for searches: borrows the tables above */
     struct mesh_accel *accel;
 };

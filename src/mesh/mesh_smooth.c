@@ -36,12 +36,15 @@ static uint32_t corner_count(const struct mesh_input *input) {
 
 /* --- welding --- */
 
-bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct error *error) {
+bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, double distance, struct error *error) {
     uint32_t corners = corner_count(input), count = input->vertex_count, kept = 0;
     uint32_t *same = mem_alloc((size_t)count * sizeof *same), *index = mem_alloc((size_t)corners * sizeof *index);
     double(*vertices)[3] = mem_alloc((size_t)count * sizeof *vertices);
-    float(*colours)[3] = input->colours ? mem_alloc((size_t)count * sizeof *colours) : NULL;
-    bool ok = same && index && vertices && (colours || !input->colours) && mesh_weld(input->vertices, count, same);
+    bool by_vertex = input->colours && !input->colours_by_face;
+    float(*colours)[3] = by_vertex ? mem_alloc((size_t)count * sizeof *colours) : NULL;
+    bool ok = same && index && vertices && (colours || !by_vertex) &&
+              (distance > 0 ? mesh_weld_near(input->vertices, count, distance, same)
+                            : mesh_weld(input->vertices, count, same));
     if (!ok) {
         mem_free(vertices);
         mem_free(colours);
@@ -72,7 +75,8 @@ bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct e
     own->vertex_index = index;
     /* Normals and uvs that shared the vertices' indices keep the old ones. */
     input->vertices = (const double(*)[3])vertices;
-    input->colours = (const float(*)[3])colours;
+    if (by_vertex)
+        input->colours = (const float(*)[3])colours;
     input->vertex_count = kept;
     input->vertex_index = index;
     return true;

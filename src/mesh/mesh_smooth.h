@@ -13,8 +13,9 @@ struct mesh_tables {
 };
 void mesh_tables_destroy(struct mesh_tables *tables);
 
-/* One vertex for each used position; its colour is that of the first vertex there. False: no memory. */
-bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct error *error);
+/* One vertex for each used position, or for vertices closer than a distance above 0 (mesh_topology.h); its colour is
+ * that of the first vertex there. False: no memory. */
+bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, double distance, struct error *error);
 /* Reverses every face, and its normals. */
 bool mesh_input_flip(struct mesh_input *input, struct mesh_tables *own, struct error *error);
 /* A normal for every corner: the mean of the faces at its vertex, weighted with their angles there (Thuermer and

@@ -8,6 +8,7 @@
 #include "base/sort.h"
 #include "mesh/mesh_topology.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Sorted uses of the edges at one vertex: (other vertex) * 2 + direction. The first edge not used once each way, or the
@@ -20,6 +21,24 @@ static size_t first_unpaired(const uint64_t *uses, size_t count) {
             return i;
     }
     return count;
+}
+
+static struct vec3 position(const struct mesh *mesh, uint32_t vertex) {
+    const double *v = mesh->vertices[vertex];
+    return vec3_make(v[0], v[1], v[2]);
+}
+
+/* The edges at a vertex that are not used once each way, while there is room for them. */
+static void note_open_edges(struct mesh *mesh, uint32_t vertex, const uint64_t *uses, size_t count) {
+    for (size_t i = 0; (i += first_unpaired(uses + i, count - i)) < count;) {
+        if (mesh->open_edge_count == MESH_OPEN_EDGES)
+            return;
+        uint64_t other = uses[i] >> 1;
+        mesh->open_edges[mesh->open_edge_count][0] = position(mesh, vertex);
+        mesh->open_edges[mesh->open_edge_count++][1] = position(mesh, (uint32_t)other);
+        while (i < count && uses[i] >> 1 == other)
+            i++;
+    }
 }
 
 static double enclosed_volume(const struct mesh *mesh) {
@@ -36,11 +55,6 @@ static double enclosed_volume(const struct mesh *mesh) {
         volume += vec3_dot(p[0], vec3_cross(p[1], p[2]));
     }
     return volume;
-}
-
-static struct vec3 position(const struct mesh *mesh, uint32_t vertex) {
-    const double *v = mesh->vertices[vertex];
-    return vec3_make(v[0], v[1], v[2]);
 }
 
 bool mesh_find_topology(struct mesh *mesh) {
@@ -63,17 +77,12 @@ bool mesh_find_topology(struct mesh *mesh) {
             for (size_t v = 2; pass == 0 && v < (size_t)mesh->vertex_count + 2; v++)
                 start[v] += start[v - 1];
         }
-        mesh->closed = mesh->triangle_count > 0;
-        for (uint32_t v = 0; v < mesh->vertex_count && mesh->closed; v++) {
-            size_t count = start[v + 1] - start[v];
-            sort_words(uses + start[v], count);
-            size_t bad = first_unpaired(uses + start[v], count);
-            if (bad == count)
-                continue;
-            mesh->closed = false;
-            mesh->open_edge[0] = position(mesh, v);
-            mesh->open_edge[1] = position(mesh, (uint32_t)(uses[start[v] + bad] >> 1));
+        mesh->open_edge_count = 0;
+        for (uint32_t v = 0; v < mesh->vertex_count && mesh->open_edge_count < MESH_OPEN_EDGES; v++) {
+            sort_words(uses + start[v], start[v + 1] - start[v]);
+            note_open_edges(mesh, v, uses + start[v], start[v + 1] - start[v]);
         }
+        mesh->closed = mesh->triangle_count > 0 && mesh->open_edge_count == 0;
         mesh->outward = mesh->closed && enclosed_volume(mesh) > 0;
     }
     mem_free(same);
@@ -121,4 +130,64 @@ bool mesh_weld(const double (*vertices)[3], uint32_t count, uint32_t *same) {
     }
     mem_free(table);
     return true;
+}
+
+/* Kept vertices by the cell of a grid of the distance that they are in, as lists: at most a few in each. */
+struct cells {
+    const double (*vertices)[3];
+    double distance;
+    uint32_t *first, *next; /* by hash; by vertex */
+    size_t mask;
+};
+
+static size_t cell_at(const struct cells *cells, const double corner[3]) {
+    return (size_t)position_hash(corner) & cells->mask;
+}
+
+/* The lowest kept vertex closer than the distance, in the cells around p; NONE. */
+static uint32_t kept_near(const struct cells *cells, const double p[3], const double cell[3]) {
+    uint32_t found = NONE;
+    for (int k = 0; k < 27; k++) {
+        const double around[3] = {cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1};
+        for (uint32_t v = cells->first[cell_at(cells, around)]; v != NONE; v = cells->next[v]) {
+            const double *q = cells->vertices[v];
+            struct vec3 between = vec3_make(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+            if (v < found && vec3_length(between) < cells->distance)
+                found = v;
+        }
+    }
+    return found;
+}
+
+bool mesh_weld_near(const double (*vertices)[3], uint32_t count, double distance, uint32_t *same) {
+    size_t slots = 16;
+    double largest = 0;
+    for (size_t i = 0; i < 3 * (size_t)count; i++)
+        largest = fmax(largest, fabs(vertices[i / 3][i % 3]));
+    /* Closer than the spacing of doubles is equal, and cells have no neighbours there. */
+    if (distance < largest * 0x1p-50)
+        return mesh_weld(vertices, count, same);
+    while (slots < 2 * (size_t)count)
+        slots *= 2;
+    struct cells cells = {.vertices = vertices,
+                          .distance = distance,
+                          .first = mem_alloc(slots * sizeof *cells.first),
+                          .next = mem_alloc((size_t)count * sizeof *cells.next),
+                          .mask = slots - 1};
+    bool has_memory = cells.first && cells.next;
+    if (has_memory)
+        memset(cells.first, 0xff, slots * sizeof *cells.first);
+    for (uint32_t v = 0; v < count && has_memory; v++) {
+        const double *p = vertices[v];
+        const double cell[3] = {floor(p[0] / distance), floor(p[1] / distance), floor(p[2] / distance)};
+        uint32_t near = kept_near(&cells, p, cell);
+        same[v] = near == NONE ? v : near;
+        if (near != NONE)
+            continue;
+        cells.next[v] = cells.first[cell_at(&cells, cell)];
+        cells.first[cell_at(&cells, cell)] = v;
+    }
+    mem_free(cells.first);
+    mem_free(cells.next);
+    return has_memory;
 }

@@ -179,7 +179,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
         return true;
     struct checkpoint_tiles have = {film ? film_tiles_in(film, FILM_TILE_DONE) : 0, film ? film_tiles_begun(film) : 0};
     bool empty = have.done + have.begun == 0 && checkpoint->done_count == 0;
-    /* One that nobody asked for is written only where a long run is interrupted. */
+    /* Without --checkpoint, only an interrupted long run writes one. */
     if (checkpoint->late && (!now || empty || clock - checkpoint->written_at < long_run))
         return true;
     /* Nothing is new. */
@@ -195,7 +195,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
         *tiles = have;
         return true;
     }
-    /* A failure is told once; the next update tries again. */
+    /* Only the first failure is reported; each update tries again. */
     bool report = !checkpoint->failed || now;
     checkpoint->failed = true;
     return !report;

@@ -105,26 +105,24 @@ static bool measure_similarity(struct comparison *c, struct error *error) {
 
 /* The picture of the difference. In PNG files the largest one is white. */
 
+/* Number i of a row: red, green and blue of each pixel. */
+static double difference_at(const struct comparison *c, uint32_t i, uint32_t y) {
+    double a[4], b[4];
+    pixel(c->a, i / 3, y, a);
+    pixel(c->b, i / 3, y, b);
+    return fabs(a[i % 3] - b[i % 3]);
+}
+
 static void row_light(void *context, uint32_t y, float *line) {
     const struct comparison *c = context;
-    for (uint32_t x = 0; x < c->width; x++) {
-        double a[4], b[4];
-        pixel(c->a, x, y, a);
-        pixel(c->b, x, y, b);
-        for (uint32_t k = 0; k < 3; k++)
-            line[3 * x + k] = (float)fabs(a[k] - b[k]);
-    }
+    for (uint32_t i = 0; i < 3 * c->width; i++)
+        line[i] = (float)difference_at(c, i, y);
 }
 
 static void row_bytes(void *context, uint32_t y, uint8_t *line) {
     const struct comparison *c = context;
-    for (uint32_t x = 0; x < c->width; x++) {
-        double a[4], b[4];
-        pixel(c->a, x, y, a);
-        pixel(c->b, x, y, b);
-        for (uint32_t k = 0; k < 3; k++)
-            line[3 * x + k] = (uint8_t)(c->largest > 0 ? 255 * fmin(fabs(a[k] - b[k]) / c->largest, 1) + 0.5 : 0);
-    }
+    for (uint32_t i = 0; i < 3 * c->width; i++)
+        line[i] = (uint8_t)(c->largest > 0 ? 255 * fmin(difference_at(c, i, y) / c->largest, 1) + 0.5 : 0);
 }
 
 static bool write_difference(const struct options *options, struct comparison *c, struct error *error) {

@@ -201,12 +201,14 @@ static const char *result_hint(lua_State *L, int index) {
  * describes the value replaces it. */
 static bool is_result(lua_State *L, int function, int *count) {
     int top = lua_gettop(L);
+    /* A number of another recording. */
     if (is_symbol(L, top) && !recorder_of(L)->active) {
         lua_pushliteral(L, "a number of a recorded function is used outside the function");
         name_function(L, function);
         lua_replace(L, top);
         return false;
     }
+    /* A number, or three of them. */
     *count = 1;
     if (lua_type(L, top) == LUA_TNUMBER || is_symbol(L, top))
         return true;
@@ -221,6 +223,7 @@ static bool is_result(lua_State *L, int function, int *count) {
         if (fine)
             return true;
     }
+    /* The error says what it is. */
     const char *words = value_words(L, top);
     lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s%s", words, result_hint(L, top));
     name_function(L, function);
@@ -385,9 +388,11 @@ static void count_paths(lua_State *L, int function, int first) {
     int error = lua_gettop(L);
     frame->depth = 0;
     do {
+        /* A call takes the decisions so far and finds new ones. */
         uint32_t known = frame->depth;
         (void)record_path(L, function, first, error);
         raise_if_given_up(L);
+        /* Each new decision is a branch whose other side is to be taken. */
         for (uint32_t k = known; k < frame->depth; k++) {
             uint32_t above = k > known ? count - 1 : next - 1;
             if (count + 1 >= RECORD_PATHS)
@@ -396,6 +401,7 @@ static void count_paths(lua_State *L, int function, int first) {
             branches[count++] =
                 (struct branch){frame->decisions[k].condition, above, k, side, frame->decisions[k].answer};
         }
+        /* The next call takes the other side of the oldest branch. */
         if (next == count)
             break;
         begin_with(recorder, branches, next++);
@@ -470,6 +476,7 @@ static void put_in_bounds(uint32_t i, const struct box *bounds, double out[3]) {
 static void compare_point(lua_State *L, int function, uint32_t i, struct comparison *comparison) {
     double inputs[EXPR_INPUT_COUNT], recorded[EXPR_OUTPUTS], called[3];
     int top = lua_gettop(L), count = 0, outputs = comparison->program->output_count;
+    /* Lua is called with the inputs of point i. */
     test_point(i, comparison->domain, inputs);
     if (comparison->bounds)
         put_in_bounds(i, comparison->bounds, &inputs[EXPR_POINT_X]);
@@ -477,6 +484,7 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
         lua_pushnumber(L, inputs[k]);
     if (!call_function(L, function, top + 1) || !is_result(L, function, &count))
         raise_text(L, lua_gettop(L));
+    /* The program computes the same. */
     expr_evaluate(comparison->program, inputs, recorded);
     int result = lua_gettop(L);
     bool same = true;
@@ -494,6 +502,7 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
     lua_settop(L, top);
     if (same && count <= outputs)
         return;
+    /* The error says where they differ. */
     char a[128], b[128];
     describe_outputs(called, outputs, a, sizeof a);
     describe_outputs(recorded, outputs, b, sizeof b);
@@ -685,11 +694,13 @@ static int raise_of_curve(lua_State *L) {
 static int sample_curve(lua_State *L) {
     struct tone_table *table = lua_touserdata(L, 2);
     for (int i = 0; i < TONE_ENTRIES; i++) {
+        /* The call. */
         lua_settop(L, 2);
         lua_pushvalue(L, 1);
         lua_pushnumber(L, tone_table_light(i));
         lua_call(L, 1, LUA_MULTRET);
         recorder_of(L)->prints = false;
+        /* It must return one finite number. */
         int results = lua_gettop(L) - 2;
         if (results != 1) {
             lua_pushfstring(L, "the function returns %d values, not a number", results);

@@ -394,6 +394,7 @@ static int record_steps(lua_State *L) {
 int record_loop(lua_State *L) {
     struct recorder *recorder = recorder_of(L);
     int states = lua_gettop(L) - 2;
+    /* The arguments; a call outside of recording runs as it is. */
     lua_Integer count = luaL_checkinteger(L, 1);
     luaL_argcheck(L, count >= 0 && count <= RECORD_LOOP, 1, "a constant number of steps up to 10000 is needed");
     luaL_argcheck(L, states > 0, 2, "a state is needed");
@@ -403,6 +404,7 @@ int record_loop(lua_State *L) {
     for (int k = 0; k < states; k++)
         luaL_argcheck(L, is_state(L, 2 + k), 2 + k, "a state must be a number or a vector");
     luaL_argcheck(L, 3 * states <= EXPR_STATES, 2, "there may be 21 states");
+    /* The steps are recorded; an error leaves the loop as it was entered. */
     struct looping l = {.step = 1, .last = (uint32_t)count};
     read_states(L, 2, states, &l.states);
     const uint32_t depth = recorder->loop_depth, level = recorder->level;

@@ -213,6 +213,7 @@ void record_end_paths(struct recorder *recorder) {
 bool record_decide(lua_State *L, uint32_t condition) {
     struct recorder *recorder = recorder_of(L);
     struct record_frame *frame = &recorder->frames[recorder->level];
+    /* A constant, a condition decided before, or one that follows from those. */
     const union expr_value *constant = expr_constant(&recorder->graph, condition);
     if (constant)
         return constant->i != 0;
@@ -227,11 +228,13 @@ bool record_decide(lua_State *L, uint32_t condition) {
     }
     if (answer >= 0)
         return answer == 1;
+    /* The limit of branches. */
     if (frame->taken == RECORD_PATHS)
         record_give_up(L,
                        "a call of the function branches more than %d times on its arguments; for a loop with a "
                        "constant number of steps use gr.loop(n, state, f)",
                        RECORD_PATHS);
+    /* A new decision is added; one of an earlier call is repeated. */
     struct decision *decision = &frame->decisions[frame->taken++];
     if (frame->taken > frame->depth) {
         bool preferred = recorder->level > 0 || !recorder->prefers_false;
@@ -242,6 +245,7 @@ bool record_decide(lua_State *L, uint32_t condition) {
     } else if (decision->condition != condition) {
         record_give_up(L, "the function is not pure: a second call with the same arguments took another branch");
     }
+    /* The bounds of what the condition depends on become narrower. */
     know_answer(recorder, condition, decision->answer);
     if (!record_interval_narrow(recorder, decision)) {
         sandbox_of(L)->lua = L;
@@ -706,6 +710,7 @@ void symbols_open(lua_State *L) {
                                          {"__eq", symbol_equal},
                                          {"__tostring", symbol_text},
                                          {NULL, NULL}};
+    /* The metatable of recorded numbers. */
     lua_newtable(L);
     luaL_setfuncs(L, operators, 0);
     lua_pushliteral(L, "recorded number");
@@ -714,6 +719,7 @@ void symbols_open(lua_State *L) {
     lua_setfield(L, -2, "__metatable");
     recorder_of(L)->symbol_metatable = lua_topointer(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &symbol_key);
+    /* Functions of Lua that accept recorded numbers, too. */
 #define WRAP_FUNCTION(name, of_symbols) wrap_function(L, "math", #name, math_##name);
     MATH_FUNCTIONS(WRAP_FUNCTION)
     wrap_function(L, LUA_GNAME, "type", type_of);

@@ -515,18 +515,21 @@ static int cells(lua_State *L) {
 
 /* turbulence(p, octaves): the sum of |noise(2^k p)| / 2^k for k from 0 on. */
 static int turbulence(lua_State *L) {
+    /* The arguments. */
     int next = push_point(L, 1) - 1, top = lua_gettop(L);
     bool has_octaves = next + 1 <= top - 3;
     lua_Integer octaves = has_octaves ? luaL_checkinteger(L, next + 1) : 4;
     luaL_argcheck(L, octaves >= 1 && octaves <= 32, next + 1, "a constant number of octaves up to 32 is needed");
     double p[3], sum = 0, scale = 1;
     uint32_t nodes[3], total;
+    /* A point of numbers. */
     if (!point_is_recorded(L, p)) {
         for (lua_Integer k = 0; k < octaves; k++, scale *= 2)
             sum = sum + fabs(noise_perlin(scale * p[0], scale * p[1], scale * p[2], 0)) / scale;
         lua_pushnumber(L, sum);
         return 1;
     }
+    /* A recorded point: the operations of the same sum. */
     point_nodes(L, nodes);
     total = float_node(L, 0);
     for (lua_Integer k = 0; k < octaves; k++, scale *= 2) {

@@ -334,6 +334,7 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
     int centre = reuse ? n / 2 * n + n / 2 : -1;
     for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
         int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
+        /* The samples of a packet, without the one that is known. */
         batch->count = 0;
         for (int k = begin; k < end; k++) {
             if (k == centre && !first)
@@ -342,6 +343,7 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
                 batch->positions[batch->count++] = sample_of_pattern(&pattern, k);
         }
         renderer_sample_batch(renderer, part->worker);
+        /* Their weighted sum, in the order of the pattern. */
         uint32_t next = 0;
         for (int k = begin; k < end; k++) {
             bool is_first = k == centre && first;

@@ -152,9 +152,11 @@ static int tokens(lua_State *H) {
     lua_settop(H, 1);
     lua_newtable(H);
     for (lua_Integer n = 1; more != 0 && (token = lexer_next(&lexer)).kind != TOKEN_END; n++) {
+        /* Brackets; `more` tokens follow the end of the statement. */
         depth += token_is_symbol(&token, '(') || token_is_symbol(&token, '{');
         depth -= token_is_symbol(&token, ')') || token_is_symbol(&token, '}');
         more -= token.line > 1 && depth <= 0;
+        /* The table of the token. */
         lua_createtable(H, 0, 4);
         lua_pushlstring(H, token.text, token.length);
         lua_setfield(H, -2, kinds[token.kind]);

@@ -36,10 +36,12 @@ static int position_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;
     lua_Debug frame;
+    /* The coroutine is an optional first argument. */
     if (lua_isthread(L, 1)) {
         from = lua_tothread(L, 1);
         at = 2;
     }
+    /* A function, or a level of the stack. */
     if (lua_isfunction(L, at)) {
         lua_pushvalue(L, at);
         lua_xmove(L, from, 1);
@@ -52,6 +54,7 @@ static int position_info(lua_State *L) {
         }
         lua_getinfo(from, "Sl", &frame);
     }
+    /* The position only. */
     lua_createtable(L, 0, 3);
     lua_pushlstring(L, frame.source, frame.srclen);
     lua_setfield(L, -2, "source");

@@ -248,6 +248,7 @@ void streams_close(struct sandbox *sandbox) {
 
 void streams_open(lua_State *L) {
     struct sandbox *sandbox = sandbox_of(L);
+    /* Standard streams and files of io. */
     lua_getglobal(L, "io");
     if (sandbox->host.error_text && !sandbox->options->no_sandbox)
         sandbox->errors = redirect(L, "stderr");
@@ -266,6 +267,7 @@ void streams_open(lua_State *L) {
     lua_setglobal(L, "print");
     if (sandbox->options->no_sandbox)
         return;
+    /* Functions of os and package that take names of files. */
     lua_getglobal(L, "os");
     lua_pushcfunction(L, os_remove);
     lua_setfield(L, -2, "remove");

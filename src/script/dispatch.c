@@ -70,6 +70,7 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
         lua_setfield(L, -2, "advance");
         lua_pushboolean(L, glyph->missing);
         lua_setfield(L, -2, "missing");
+        /* Its contours: lists of pairs. */
         lua_createtable(L, (int)glyph->contour_count, 0);
         for (uint32_t c = 0; c < glyph->contour_count; c++) {
             uint32_t first = glyph->starts[c], count = glyph->starts[c + 1] - first;
@@ -87,6 +88,7 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
         lua_setfield(L, -2, "contours");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
+    /* The measures of the text. */
     lua_pushnumber(L, text->width);
     lua_setfield(L, -2, "width");
     lua_pushnumber(L, text->ascender);
@@ -314,9 +316,11 @@ static void set_index(lua_State *L, const void *metatable_key, lua_CFunction fun
 }
 
 void dispatch_open(lua_State *L) {
+    /* Methods of nodes. */
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
 
+    /* Functions of gr; --lenient keeps them as they are. */
     if (context_of(L)->lenient) {
         push_functions(L, OWNER_GR);
         context_keep_functions(L);
@@ -328,12 +332,14 @@ void dispatch_open(lua_State *L) {
     }
     lua_pushstring(L, GRAY_VERSION);
     lua_setfield(L, -2, "version");
+    /* A name that does not exist is an error with a suggestion. */
     lua_createtable(L, 0, 2);
     lua_pushcfunction(L, missing_function);
     lua_setfield(L, -2, "__index");
     lua_pushboolean(L, 0);
     lua_setfield(L, -2, "__metatable");
     lua_setmetatable(L, -2);
+    /* gr is a global and a module. */
     lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
     lua_pushvalue(L, -2);
     lua_setfield(L, -2, "gr");

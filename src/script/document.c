@@ -44,13 +44,14 @@ static void describe_parameter(const struct script_parameter *p, char out[DOCUME
     bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
     choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
-    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE ? " or a texture"
-                       : p->flags & OR_CURVE                          ? " or a function"
-                       : p->flags & OR_COMPASS                        ? " or {azimuth = ..., elevation = ...}"
-                       : p->flags & OR_PAIR                           ? " or two numbers"
-                       : p->flags & OR_SKY                            ? " or a sky"
-                       : p->kind == KIND_NUMBER && choices[0]         ? " or "
-                                                                      : "";
+    const char *more = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE    ? " or a texture"
+                       : p->flags & OR_CURVE                             ? " or a function"
+                       : p->flags & OR_COMPASS                           ? " or {azimuth = ..., elevation = ...}"
+                       : p->flags & OR_PAIR                              ? " or two numbers"
+                       : p->flags & OR_SKY                               ? " or a sky"
+                       : p->kind == KIND_BOOLEAN && p->flags & OR_NUMBER ? " or a number"
+                       : p->kind == KIND_NUMBER && choices[0]            ? " or "
+                                                                         : "";
     size_t used = (size_t)snprintf(out, DOCUMENT_LINE, "%s (%s%s%s", p->name,
                                    p->kind == KIND_CHOICE ? choices : kind_words(p->kind), more,
                                    p->kind == KIND_NUMBER ? choices : "");
@@ -188,6 +189,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
         return "string|gr.texture|gr.sky";
     if (p->kind == KIND_TEXT && (p->flags & OR_PAIR))
         return "string|number[]";
+    if (p->kind == KIND_BOOLEAN && (p->flags & OR_NUMBER))
+        return "boolean|number";
     if (p->kind == KIND_DIRECTION && (p->flags & OR_COMPASS))
         return "gr.triple|{azimuth: number, elevation: number}";
     choices_words(p, "|", out, CHOICES_SIZE);
@@ -297,6 +300,7 @@ static void annotate_function(struct document *document, const struct script_fun
     int index;
     char names[DOCUMENT_LINE] = "";
     document_add(document, "---%s\n", function->help);
+    /* The parameters of the first form. */
     while (form_next(function, &form, &index, &optional)) {
         char type[CHOICES_SIZE], line[DOCUMENT_LINE];
         const struct script_parameter *p = &function->parameters[index];
@@ -317,6 +321,7 @@ static void annotate_function(struct document *document, const struct script_fun
                      function->owner == OWNER_NODE ? "node." : "", function->name);
         (void)snprintf(names + used, sizeof names - used, ", fields");
     }
+    /* Its result, the other forms, and the form with named fields. */
     if (result)
         annotate_results(document, result);
     for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++)
@@ -328,6 +333,7 @@ static void annotate_function(struct document *document, const struct script_fun
         add_result(document, function);
         document_add(document, "\n");
     }
+    /* The function itself. */
     document_add(document, "function %s%s(%s) end\n\n", function->owner == OWNER_GR ? "gr." : "node:", function->name,
                  names);
 }

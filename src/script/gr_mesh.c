@@ -49,8 +49,8 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_SMOOTH] =
         {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "the given normals",
          "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
-    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                   "Whether vertices at the same position become one."},
+    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL | OR_NUMBER, ABOVE(0), NULL, "false",
+                   "Whether vertices at the same position become one; a number: those closer than this."},
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are reversed."},
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
@@ -70,6 +70,7 @@ static void read_options(const struct script_value *args, struct model_options *
     options->smooth = args[MESH_SMOOTH].given;
     options->smooth_angle = args[MESH_SMOOTH].number;
     options->weld = args[MESH_WELD].boolean;
+    options->weld_distance = args[MESH_WELD].number;
     options->flip = args[MESH_FLIP].boolean;
     options->animated = args[MESH_TIME].given || args[MESH_ANIMATION].given;
     options->time = args[MESH_TIME].number;
@@ -77,8 +78,13 @@ static void read_options(const struct script_value *args, struct model_options *
     options->variant = args[MESH_VARIANT].given ? args[MESH_VARIANT].text : NULL;
 }
 
-static const struct model *model_of_file(struct script_context *context, const struct script_value *args,
-                                         struct error *error) {
+static void warn_of_model(struct script_context *context, const struct model *model, int first) {
+    for (int i = first; i < model->warning_count; i++)
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+}
+
+static struct model *model_of_file(struct script_context *context, const struct script_value *args,
+                                   struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
@@ -93,9 +99,9 @@ static const struct model *model_of_file(struct script_context *context, const s
         return NULL;
     }
     bool fresh;
-    const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
-    for (int i = 0; model && fresh && i < model->warning_count; i++)
-        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
+    struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
+    if (model && fresh)
+        warn_of_model(context, model, 0);
     return model;
 }
 
@@ -204,7 +210,7 @@ static struct mesh *mesh_from_tables(struct script_context *context, const struc
     struct mesh_tables own = {0};
     read_options(args, &options);
     struct mesh *mesh = NULL;
-    if ((!options.weld || mesh_input_weld(&input, &own, error)) &&
+    if ((!options.weld || mesh_input_weld(&input, &own, options.weld_distance, error)) &&
         (!options.flip || mesh_input_flip(&input, &own, error)) &&
         (!options.smooth || mesh_input_smooth(&input, &own, options.smooth_angle, error)))
         mesh = assets_mesh(context->scene.assets, &input, error);
@@ -249,6 +255,7 @@ static bool keep_slots(struct script_context *context, const struct script_value
 
 static bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
+    /* A file, or vertices and faces. */
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -260,7 +267,8 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     if (from_file) {
-        const struct model *model = model_of_file(context, args, error);
+        /* A file: its nodes, with materials for its parts. */
+        struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
@@ -276,10 +284,14 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
             result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
             return result->pointer != NULL;
         }
-        result->pointer =
-            model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
+        if (!model || !check_parts(model, parts, error))
+            return false;
+        int warned = model->warning_count;
+        result->pointer = model_add_nodes(&context->scene, model, &placing, error);
+        warn_of_model(context, model, warned);
         return result->pointer != NULL;
     }
+    /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
     struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)

@@ -228,7 +228,6 @@ static bool gr_geometry(struct script_context *context, const struct script_valu
 
 /* An open surface has no inside. Open surfaces further below are found when the world is built. */
 static bool check_operand(const struct node *operand, struct error *error) {
-    struct vec3 a, b;
     if (operand->kind == NODE_CSG && operand->operation == NODE_CLIPPED)
         return error_set(error, ERROR_SCENE,
                          "'%s' is clipped, cut open without caps, so it has no inside; intersect it instead",
@@ -239,13 +238,13 @@ static bool check_operand(const struct node *operand, struct error *error) {
         const char *why = shape_why_open(&operand->shape);
         return !why || error_set(error, ERROR_SCENE, "'%s' %s", operand->name, why);
     }
-    if (!mesh_open_edge(operand->shape.mesh, &a, &b))
+    if (!mesh_is_open(operand->shape.mesh))
         return true;
     const char *file = mesh_file(operand->shape.mesh);
-    return error_set(error, ERROR_SCENE,
-                     "mesh '%s'%s%.200s is not closed, so it has no inside: the edge from {%.6g, %.6g, %.6g} to "
-                     "{%.6g, %.6g, %.6g} is open",
-                     operand->name, file ? " of " : "", file ? file : "", a.x, a.y, a.z, b.x, b.y, b.z);
+    char edges[600];
+    mesh_describe_open_edges(operand->shape.mesh, edges, sizeof edges);
+    return error_set(error, ERROR_SCENE, "mesh '%s'%s%.200s is not closed, so it has no inside: %s", operand->name,
+                     file ? " of " : "", file ? file : "", edges);
 }
 
 /* With --lenient an operand may be a feature that does not exist yet. The result shows the other operands, unless they

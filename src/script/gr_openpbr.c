@@ -247,11 +247,13 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
                 {EMISSION_COLOUR, INPUT_EMISSION, false},
                 {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
+    /* A texture of each input. */
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!with_texture(context, m, rows[i].input, rows[i].is_share, &args[rows[i].parameter], error))
             return false;
     if (!with_luminance(context, m, &args[EMISSION_LUMINANCE], error))
         return false;
+    /* A constant opacity below 1 is a texture, too. */
     const struct script_value *opacity = &args[GEOMETRY_OPACITY];
     if (opacity->texture || !(number_or(opacity, 1) < 1))
         return true;
@@ -289,6 +291,7 @@ static bool tangent_is_fine(const struct script_parameter *parameter, const stru
 }
 
 static void set_numbers(const struct script_value *args, struct openpbr *out, struct phong *phong) {
+    /* The layers. */
     out->base_weight = number_or(&args[BASE_WEIGHT], out->base_weight);
     out->base_diffuse_roughness = args[BASE_DIFFUSE_ROUGHNESS].number;
     out->base_metalness = args[BASE_METALNESS].number;
@@ -309,6 +312,7 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
     out->tangent = args[GEOMETRY_TANGENT].vector;
     out->coat_tangent = args[GEOMETRY_COAT_TANGENT].vector;
+    /* What they share with classic materials. */
     phong->kd = colour_or(&args[BASE_COLOUR], phong->kd);
     phong->ks = colour_or(&args[SPECULAR_COLOUR], phong->ks);
     phong->roughness = number_or(&args[SPECULAR_ROUGHNESS], phong->roughness);
@@ -318,6 +322,7 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
     phong->has_ior = phong->refract > 0 && !out->thin_walled;
     phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
+    /* With a depth, the colour is that of light after this length. */
     double depth = args[TRANSMISSION_DEPTH].number;
     struct vec3 colour = out->transmission_colour;
     if (!(depth > 0) || !phong->has_ior)

@@ -504,10 +504,12 @@ static bool gr_render(struct script_context *context, const struct script_value 
     struct script_value args[RENDER_COUNT];
     (void)result;
     memcpy(args, given, sizeof args);
+    /* Arguments that are missing are completed. */
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
     if (!complete(context, args, error))
         return false;
+    /* The request as the arguments state it. */
     char where[PATH_SIZE + 32], title[96];
     sandbox_where(&context->sandbox, where, sizeof where);
     const char *call = arena_format(&context->sandbox.call, "%s%s", where, function_title(context->function, title));
@@ -533,6 +535,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .settings = script_of(context)->host->settings,
         .frame = script_of(context)->animation.frame,
     };
+    /* Settings of the program, then those of the call. */
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct scene_light lights[STUDIO_LIGHTS];
     struct camera fitted;
@@ -545,11 +548,13 @@ static bool gr_render(struct script_context *context, const struct script_value 
     apply_settings(context->sandbox.options, args, &request);
     for (int i = 0; i < setting_field_count; i++)
         request.fields |= (uint64_t)args[RENDER_FIRST_SETTING + i].given << i;
+    /* What the fields mean together. */
     note_lone_fields(context, given);
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)
         context_warn_of_bytes(context, "background", args[RENDER_BACKGROUND].vector);
+    /* The linear pipeline decodes colours of the screen. */
     bool linear = settings_linear(&request.settings);
     if (linear && args[RENDER_AMBIENT].display)
         request.ambient = transfer_decode_colour(srgb, request.ambient);
@@ -562,6 +567,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         fog->display = false;
         request.fog = fog;
     }
+    /* Functions, lens, motion, sky and light. */
     if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
@@ -570,6 +576,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         (shines && !add_sky_light(context, &request, error)) ||
         !light_dark_picture(context, args, &request, lights, error))
         return false;
+    /* The picture is rendered with the saved changes; its time does not count as the script's. */
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))
         return false;

@@ -230,6 +230,7 @@ static bool gr_quadric(struct script_context *context, const struct script_value
     struct quadric *quadric = arena_alloc(&context->scene.arena, sizeof *quadric);
     if (!quadric)
         return error_no_memory(error, "a quadric");
+    /* The coefficients; without any, a unit sphere. */
     double largest = 0;
     for (int i = 0; i < 10; i++) {
         quadric->c[i] = number_or(&args[QUADRIC_XX + i], 0);
@@ -245,6 +246,7 @@ static bool gr_quadric(struct script_context *context, const struct script_value
     }
     if (!(largest >= NUMBER_SMALLEST))
         return error_set(error, ERROR_SCENE, "at least one of xx, yy, zz, xy, xz, yz, x, y, z must not be 0");
+    /* The box that cuts it. */
     quadric->limits.min = vector_or(&args[QUADRIC_MIN], -INFINITY, -INFINITY, -INFINITY);
     quadric->limits.max = vector_or(&args[QUADRIC_MAX], INFINITY, INFINITY, INFINITY);
     struct vec3 min = quadric->limits.min, max = quadric->limits.max;
@@ -427,6 +429,7 @@ static bool gr_polygon(struct script_context *context, const struct script_value
     uint32_t *ends = arena_alloc_array(&context->sandbox.call, outline_count, sizeof *ends);
     if (!corners || !ends)
         return error_no_memory(error, "a polygon");
+    /* The corners of all outlines. */
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = outlines->given ? outlines->indices[i] : i;
         if (index >= points->count)
@@ -434,6 +437,7 @@ static bool gr_polygon(struct script_context *context, const struct script_value
                              index, points->count);
         corners[i] = vec3_make(points->points[index][0], points->points[index][1], points->points[index][2]);
     }
+    /* Where each outline ends. */
     for (uint32_t i = 0; i < outline_count; i++) {
         ends[i] = outlines->given ? outlines->starts[i + 1] : count;
         uint32_t corners_here = ends[i] - (i ? ends[i - 1] : 0);

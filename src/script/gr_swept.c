@@ -218,6 +218,7 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
                                 .lipschitz = args[IMPLICIT_LIPSCHITZ].given    ? args[IMPLICIT_LIPSCHITZ].number
                                              : args[IMPLICIT_DISTANCE].boolean ? 1
                                                                                : 0};
+    /* Fields that exclude or need each other. */
     in.is_distance = args[IMPLICIT_DISTANCE].boolean;
     if (args[IMPLICIT_LIPSCHITZ].given && in.is_distance)
         return error_set(error, ERROR_SCENE, "lipschitz and distance exclude each other");
@@ -233,6 +234,7 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
     if (bounds->given)
         in.bounds = (struct box){vec3_make(bounds->points[0][0], bounds->points[0][1], bounds->points[0][2]),
                                  vec3_make(bounds->points[1][0], bounds->points[1][1], bounds->points[1][2])};
+    /* The solid; notices about what would make it faster. */
     struct shape shape = {.kind = SHAPE_IMPLICIT, .implicit = implicit_build(&context->scene.arena, &in, error)};
     if (shape.implicit && !examine_implicit(context, &in, shape.implicit, error))
         return false;
@@ -440,6 +442,7 @@ static bool gr_patch(struct script_context *context, const struct script_value *
     const char *name = args[SHAPE_NAME].given ? args[SHAPE_NAME].text : "patch";
     struct patch_input in = {.name = name, .points = points->points, .flip = args[PATCH_FLIP].boolean};
     in.tolerance = args[PATCH_TOLERANCE].number;
+    /* 16 points for each patch, by indices or in order. */
     if (patches->given) {
         double(*all)[3] = arena_alloc_array(&context->sandbox.call, (size_t)patches->count * 16 + 1, sizeof *all);
         if (!all)
@@ -464,6 +467,7 @@ static bool gr_patch(struct script_context *context, const struct script_value *
     } else {
         in.count = points->count / 16;
     }
+    /* The mesh of all patches. */
     struct mesh_input input;
     if (!patch_tessellate(&context->sandbox.call, &in, &input, error))
         return false;

@@ -234,12 +234,14 @@ static void render_last_picture(struct script *script, bool failed) {
     struct script_context *c = &script->context;
     const struct script_host *host = script->host;
     const struct lenient *lenient = c->lenient;
+    /* A picture, an error that forbids one, or an empty scene: there is none to make. */
     char name[PATH_SIZE], text[3 * PATH_SIZE];
     if (script->pictures > 0 || lenient->refused || c->sandbox.fatal.kind != ERROR_NONE)
         return;
     struct node *root = lenient_root(c);
     if (!root)
         return;
+    /* A small picture from the fitted camera, with the lights of the script. */
     context_picture_name(c, "-lenient.png", name, sizeof name);
     struct render_request request = {.where = c->sandbox.files.path,
                                      .scene = &c->scene,
@@ -260,6 +262,7 @@ static void render_last_picture(struct script *script, bool failed) {
                                           .angle = request.settings.lens.angle,
                                           .focus = 1,
                                           .screen = 1};
+    /* Without a light there is one at the eye. */
     struct scene_light above = {
         .light = {
             .kind = LIGHT_POINT, .position = request.camera.eye, .colour = {0.7, 0.7, 0.7}, .falloff = {1, 0, 0}}};
@@ -267,6 +270,7 @@ static void render_last_picture(struct script *script, bool failed) {
         request.lights = &above;
         request.light_count = 1;
     }
+    /* It is rendered, and a message says so. */
     struct error error = {0};
     limits_pause(&c->sandbox.limits);
     bool done = host->render(host->context, &request, &error);

@@ -8,6 +8,7 @@
 #include <strings.h>
 
 static bool check_together(const struct options *options, struct error *error) {
+    /* Actions other than rendering. */
     bool merge = options->action == ACTION_MERGE;
     if (options->action == ACTION_COMPARE)
         return options->script_count == 2 || error_set(error, ERROR_USAGE, "compare needs two pictures");
@@ -17,12 +18,14 @@ static bool check_together(const struct options *options, struct error *error) {
         return true;
     if (options->script_count == 0)
         return error_set(error, ERROR_USAGE, merge ? "no parts to merge were given" : "no scene script was given");
+    /* The names of scripts. */
     for (int i = 0; i < options->script_count; i++) {
         if (options->scripts[i][0] == '\0')
             return error_set(error, ERROR_USAGE, "the name of a script is empty");
         if (strcmp(options->scripts[i], "-") == 0)
             return error_set(error, ERROR_USAGE, "scripts are not read from standard input; give the name of a file");
     }
+    /* Files that would have one name, or none. */
     if (options->targets_prefix && options->first_pass_prefix &&
         strcmp(options->targets_prefix, options->first_pass_prefix) == 0)
         return error_set(error, ERROR_USAGE, "-write-aa-targets and -write-pre-aa would write the same file");
@@ -80,7 +83,7 @@ bool display_parse(const char *text, struct display_choice *out) {
     }
     if (strncmp(text, "term", 4) != 0 || (text[4] != '\0' && text[4] != ':'))
         return false;
-    /* Without a word the terminal is asked what it can draw. */
+    /* "term" alone: gray asks the terminal what it can draw. */
     out->kind = DISPLAY_TERMINAL;
     for (int i = 0; i < LIST_COUNT(TERMINAL_GRAPHICS); i++) {
         if (text[4] == '\0' || strcmp(text + 5, graphics[i]) == 0) {

@@ -239,8 +239,7 @@ static inline double greater(double a, double b) {
 }
 
 /* The line over one triangle, from s = from to s = to. */
-static bool fly_camera_triangle(struct cell_traversal *w, uint32_t column, uint32_t row, bool upper, double from,
-                                double to) {
+static bool meet_triangle(struct cell_traversal *w, uint32_t column, uint32_t row, bool upper, double from, double to) {
     double start = phi(w, from, column, row, upper), end = phi(w, to, column, row, upper);
     if (!w->known) {
         w->known = true;
@@ -255,14 +254,14 @@ static bool fly_camera_triangle(struct cell_traversal *w, uint32_t column, uint3
     return cross(w, lesser(greater(s, from), to), part);
 }
 
-static bool fly_camera_cell(struct cell_traversal *w, uint32_t column, uint32_t row, double from, double to) {
+static bool meet_cell(struct cell_traversal *w, uint32_t column, uint32_t row, double from, double to) {
     double before = (w->z + from * w->dz - row) - (w->x + from * w->dx - column);
     double after = (w->z + to * w->dz - row) - (w->x + to * w->dx - column);
     if ((before > 0) == (after > 0))
-        return fly_camera_triangle(w, column, row, before > 0, from, to);
+        return meet_triangle(w, column, row, before > 0, from, to);
     double middle = from + (to - from) * (before / (before - after));
-    return fly_camera_triangle(w, column, row, before > 0, from, middle) &&
-           fly_camera_triangle(w, column, row, after > 0, middle, to);
+    return meet_triangle(w, column, row, before > 0, from, middle) &&
+           meet_triangle(w, column, row, after > 0, middle, to);
 }
 
 /* The line over or under a whole block. */
@@ -372,7 +371,7 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
         else if (greater(y0, y1) < heights.lo)
             room = pass(&w, true, block.from, column, row);
         else if (block.level == 0)
-            room = fly_camera_cell(&w, column, row, block.from, block.to);
+            room = meet_cell(&w, column, row, block.from, block.to);
         else
             depth = divide(&w, &block, stack, depth);
     }

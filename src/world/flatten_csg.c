@@ -57,13 +57,13 @@ static bool add_token(struct flattening *f, struct csg_draft *draft, struct csg_
 }
 
 static bool report_open(struct flattening *f, const struct node *node) {
-    struct vec3 a = {0}, b = {0};
     const char *file = node->shape.kind == SHAPE_MESH ? mesh_file(node->shape.mesh) : NULL;
-    if (node->shape.kind == SHAPE_MESH && mesh_open_edge(node->shape.mesh, &a, &b))
-        return error_set(f->error, ERROR_SCENE,
-                         "node '%.100s' is an operand of CSG but its mesh%s%.200s is open: the edge from (%g, %g, %g) "
-                         "to (%g, %g, %g) belongs to one face only, or to faces that disagree about the outside",
-                         node->name, file ? " of " : "", file ? file : "", a.x, a.y, a.z, b.x, b.y, b.z);
+    if (node->shape.kind == SHAPE_MESH && mesh_is_open(node->shape.mesh)) {
+        char edges[600];
+        mesh_describe_open_edges(node->shape.mesh, edges, sizeof edges);
+        return error_set(f->error, ERROR_SCENE, "node '%.100s' is an operand of CSG but its mesh%s%.200s is open: %s",
+                         node->name, file ? " of " : "", file ? file : "", edges);
+    }
     return error_set(f->error, ERROR_SCENE, "node '%.100s' is an operand of CSG but %s", node->name,
                      shape_why_open(&node->shape));
 }
@@ -249,6 +249,7 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, const str
         frame->content = operand;
         break;
     }
+    /* An operand without effect leaves no trace. */
     forget_decided(draft, frame);
     return ok;
 }

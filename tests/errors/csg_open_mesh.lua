@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.csg_union: mesh 'flag' of lib/triangle.obj is not closed, so it has no inside: the edge from {0, 0, 0} to {1, 0, 0} is open (node 'u')
+-- expect: SCRIPT:2: gr.csg_union: mesh 'flag' of lib/triangle.obj is not closed, so it has no inside: the first open edges (of one face, or of faces that disagree about the outside) go from {0, 0, 0} to {1, 0, 0}, from {0, 0, 0} to {0, 1, 0}, from {1, 0, 0} to {0, 1, 0}; weld = 1e-05 in gr.mesh joins vertices closer than that, which closes seams but no holes (node 'u')
 gr.csg_union('u', gr.sphere('s'), gr.mesh('flag', 'lib/triangle.obj'))

@@ -18,6 +18,7 @@ static inline void fuzz_model(const char *path, const uint8_t *data, size_t size
         options.smooth = data[size - 1] & 1;
         options.smooth_angle = 30;
         options.weld = data[size - 1] & 2;
+        options.weld_distance = data[size - 1] & 8 ? 0.5 : 0;
         options.flip = data[size - 1] & 4;
     }
     if (!model_parse(&model, path, data, size, &options, &error)) {

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 
 #define TARGETS(X)                                                                                                     \
+    X(bitmap)                                                                                                          \
     X(expr)                                                                                                            \
     X(font)                                                                                                            \
     X(messages)                                                                                                        \

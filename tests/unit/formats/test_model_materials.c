@@ -53,7 +53,7 @@ static bool surface_of_file(const char *name, const char *material, struct surfa
     struct model_placing placing = {.name = "p"};
     bool fresh, found = false;
     scene_init(&scene, &assets);
-    const struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
+    struct model *model = model_asset(&assets, in_folder(name), name, &options, &fresh, &error);
     struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
     CHECK_TEXT(error.text, "");
     for (uint32_t i = 0; node && i < node->slot_count; i++) {
@@ -333,4 +333,78 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         arena_destroy(&arena);
     }
     image_release(image);
+}
+
+/* --- pictures that cannot be used --- */
+
+static void check_unusable(const char *name, const char *text, size_t size, const char *reason) {
+    char library[400];
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh;
+    if (text)
+        test_write_file(in_folder(name), text, size);
+    (void)snprintf(library, sizeof library,
+                   "newmtl a\nKd 0.2 0.4 0.6\nKs 0.3 0.3 0.3\nKe 1 1 1\n"
+                   "map_Kd %s\nmap_Ks %s\nmap_Ke %s\nmap_d %s\nmap_bump %s\nnorm %s\n",
+                   name, name, name, name, name, name);
+    test_write_text(in_folder("u.mtl"), library);
+    test_write_text(in_folder("u.obj"), SQUARE "mtllib u.mtl\nusemtl a\nf 1/1 2/2 3/3\n");
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("u.obj"), "u", &(struct model_options){0}, &fresh, &error);
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    if (node) {
+        struct hit hit = middle();
+        struct surface_inputs got;
+        material_inputs_at(node->slots[0], &hit, &got);
+        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(got.ks.x, 0.3, 0);
+        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_NEAR(got.opacity, 1, 0);
+        CHECK_NEAR(got.normal.z, 1, 0);
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK(strstr(model->warnings[0], name) && strstr(model->warnings[0], reason));
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
+TEST(a_picture_that_cannot_be_used_has_no_effect_and_emission_by_it_is_off) {
+    check_unusable("nowhere.png", NULL, 0, "is not there");
+    check_unusable("t.gif", "GIF89a....", 10, "the kind GIF, which gray does not read: convert it to PNG (the picture");
+    check_unusable("t.tif", "II*\0....", 8, "the kind TIFF, which gray does not read: convert it to PNG (the picture");
+    check_unusable("t.png", "\x89PNG\r\n\x1a\n", 8, "truncated PNG");
+    check_unusable("t.bmp", "BM", 2, "broken BMP");
+    check_unusable("t.tga", "", 0, "the file is empty");
+}
+
+TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "p"};
+    bool fresh;
+    write_even("even.png", 255, 0, 0);
+    test_write_text(in_folder("w.mtl"), "newmtl a\nKd 0.2 0.4 0.6\nKe 1 1 1\nmap_Kd even.png\nmap_Ke even.png\n");
+    test_write_text(in_folder("w.obj"), SQUARE "mtllib w.mtl\nusemtl a\nf 1 2 3\n");
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("w.obj"), "w", &(struct model_options){0}, &fresh, &error);
+    struct node *node = model ? model_add_nodes(&scene, model, &placing, &error) : NULL;
+    CHECK_TEXT(error.text, "");
+    if (node) {
+        struct hit hit = middle();
+        struct surface_inputs got;
+        hit.has_uv = false;
+        material_inputs_at(node->slots[0], &hit, &got);
+        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK(strstr(model->warnings[0],
+                     "the pictures of the material 'a' have no effect on meshes without coordinates"));
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
 }

@@ -92,7 +92,7 @@ static const struct corner corners[] = {
     /* OBJ and MTL */
     {"a.obj", "\xfe\xff", "this is UTF-16 text"},
     {"a.obj", "\xff\xfe", "this is UTF-16 text"},
-    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nfx 1 2 3\nfo 1 2 3\nf 1/", "f needs at least 3 corners"},
+    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nfx 1 2 3\nfo 1 2 3\nf 1/", NULL},
     {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -", "is not a corner of a face"},
     {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3/", NULL},
     {"a.obj", "", "no faces in this file"},
@@ -105,18 +105,17 @@ static const struct corner corners[] = {
     {"a.obj", "mtllib corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
     {"a.obj", "mtllib nothing corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
     {"a.obj", "mtllib corner.mtl nothing corner.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", NULL},
-    {"a.obj", "mtllib wrong.mtl\nv 0 0 0\n", "wrong.mtl:2: '' is not a finite number"},
-    {"a.obj", "mtllib long.mtl\nv 0 0 0\n",
-     "long.mtl:2: 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx' is not a finite number"},
+    {"a.obj", "mtllib wrong.mtl\nv 0 0 0\n", "wrong.mtl:2: a value is not a finite number"},
+    {"a.obj", "mtllib long.mtl\nv 0 0 0\n", "long.mtl:2: a value is not a finite number"},
     {"a.obj", "mtllib bom.mtl\nmtllib tiny.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl b\nf 1 2 3\n", NULL},
     /* STL */
     {"a.stl",
      "\xef\xbb\xbfsolid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
      "endfacet\nendsolid x\n",
      NULL},
-    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0", "the file ends where a finite number must be"},
+    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0", "the file ends in a triangle"},
     {"a.stl", "so", "a binary STL file has at least 84 bytes"},
-    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 ", "the file ends where a finite number must be"},
+    {"a.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 ", "the file ends in a triangle"},
     /* PLY */
     {"a.ply", "ply\r", "the file ends before end_header"},
     {"a.ply", "ply\nend_header\n", "comes before the format"},
@@ -383,7 +382,7 @@ TEST(any_allocation_may_fail_while_long_lists_grow) {
     bytes_free(&b);
 }
 
-TEST(texture_coordinates_that_are_no_numbers_are_reported) {
+TEST(texture_coordinates_that_are_no_numbers_are_left_out) {
     struct bytes b = {0};
     bytes_print(&b, "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                     "property float z\nelement face 1\nproperty list uchar uchar vertex_indices\n"
@@ -393,7 +392,16 @@ TEST(texture_coordinates_that_are_no_numbers_are_reported) {
     bytes_add(&b, "\3\0\1\2\6", 5);
     for (int k = 0; k < 6; k++)
         bytes_float(&b, k == 4 ? (double)INFINITY : 0.5, false);
-    expect("t.ply", b.data, b.size, "not a finite number");
+    struct model model;
+    struct error error;
+    CHECK(parse_model(&model, "t.ply", b.data, b.size, NULL, &error));
+    CHECK_TEXT(error.text, "");
+    char warning[200];
+    (void)snprintf(warning, sizeof warning,
+                   "t.ply: byte %zu: texture coordinates are not finite: faces that use them have none", b.size);
+    CHECK_EQ_INT(model.warning_count, 1);
+    CHECK_TEXT(model.warnings[0], warning);
+    model_destroy(&model);
     bytes_free(&b);
 }
 

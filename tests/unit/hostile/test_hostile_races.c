@@ -289,10 +289,10 @@ static void run_race(const struct race *race, uid_t user, long moment, long stri
     free(reason);
 }
 
-/* Every third moment, each race from another one on; all of them in make test-long. */
+/* Every fourth moment, each race from another one on; all of them in make test-long. */
 static void run_races(const struct race *races, size_t count, bool all) {
     for (size_t i = 0; i < count; i++) {
-        long first = all ? 1 : 1 + (long)i % 3, stride = all ? 1 : 3;
+        long first = all ? 1 : 1 + (long)i % 4, stride = all ? 1 : 4;
         if (getuid() == 0)
             run_race(&races[i], 0, first, stride);
         if (attack_user() && (getuid() != 0 || i % 2))

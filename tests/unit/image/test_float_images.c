@@ -102,6 +102,12 @@ TEST(radiance_pictures_of_every_spelling_are_read) {
     CHECK_NEAR(first_red("a", WHOLE("PF\n1 2\n-1.0\n\0\0\x80?\0\0\0\0\0\0\0\0\0\0\0@\0\0\0\0\0\0\0\0"), 0, 1), 1, 0);
     CHECK_NEAR(first_red("a", WHOLE("PF\n1 2\n0.5\n?\x80\0\0\0\0\0\0\0\0\0\0@\0\0\0\0\0\0\0\0\0\0\0"), 0, 0), 1, 0);
     CHECK_NEAR(first_red("a", WHOLE("Pf 1 1 -1 \0\0\x80?"), 0, 0), 1, 0);
+    /* Comments and line ends of Windows. */
+    CHECK_NEAR(first_red("a", WHOLE("PF\r\n1 2\r\n0.5\r\n?\x80\0\0\0\0\0\0\0\0\0\0@\0\0\0\0\0\0\0\0\0\0\0"), 0, 0), 1,
+               0);
+    CHECK_NEAR(first_red("a", WHOLE("Pf\n# made by\n#\n1 # wide\n1\n# order\n-1\n\0\0\x80?"), 0, 0), 1, 0);
+    CHECK_NEAR(first_red("a", WHOLE("#?RGBE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n\x80\0\0\x81"), 0, 0), one,
+               0);
     /* NaN and negative light become 0. */
     CHECK_NEAR(first_red("a", WHOLE("Pf\n1 1\n-1\n\0\0\xc0\x7f"), 0, 0), 0, 0);
     CHECK_NEAR(first_red("a", WHOLE("Pf\n1 1\n-1\n\0\0\x80\xbf"), 0, 0), 0, 0);
@@ -130,6 +136,7 @@ TEST(broken_pictures_of_light_are_one_line) {
         {WHOLE(HEAD "\n-Y 1 +X 8\n\2\2\0\x08\0\0\x88\0\x88\0\x88\0"), "run"},
         {WHOLE("PF\n"), "size"},
         {WHOLE("PF\n-1 1\n-1\n"), "size"},
+        {WHOLE("PF\n# no end"), "size"},
         {WHOLE("PF\n1 1\n0\n"), "scale"},
         {WHOLE("PF\n1 1\n-1x\n"), "scale"},
         {WHOLE("PF\n2 1\n-1\n01234567890"), "too short"},

@@ -243,8 +243,6 @@ TEST(png_errors_say_what_is_wrong) {
         const char *message;
     } cases[] = {
         {"", 0, "t.png: not a PNG file: the file is empty"},
-        {"\xff\xd8\xff\xe0..JFIF", 10, "t.png: not a PNG file: it looks like a JPEG"},
-        {"GIF89a", 6, "t.png: not a PNG file: it looks like a GIF"},
         {"hello", 5, "t.png: not a PNG file: it starts with other bytes"},
         {"\x89PNG\n\x1a\n....", 11,
          "t.png: not a PNG file: it looks like a PNG that was copied as text, which changed its line ends"},

@@ -1,5 +1,7 @@
 /* Meshes: closed or not, watertight, the index against a test of every triangle, and the description of hits. */
 #include "mesh/mesh_internal.h"
+#include "mesh/mesh_smooth.h"
+#include "mesh/mesh_topology.h"
 #include "tests/unit/mesh_makers.h"
 
 static struct geom_scratch scratch_make(void) {
@@ -12,7 +14,7 @@ static bool same_bits(double a, double b) {
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
-TEST(mesh_of_a_box_is_closed_and_without_one_face_it_names_an_open_edge) {
+TEST(mesh_of_a_box_is_closed_and_without_one_face_it_names_three_open_edges) {
     struct maker m = {0};
     for (int i = 0; i < 8; i++)
         maker_vertex(&m, i & 1, i >> 1 & 1, i >> 2);
@@ -20,15 +22,18 @@ TEST(mesh_of_a_box_is_closed_and_without_one_face_it_names_an_open_edge) {
     for (int f = 0; f < 5; f++)
         maker_face(&m, faces[f], 4);
     struct mesh *open = maker_mesh(&m);
-    struct vec3 a = {0}, b = {0};
+    char text[600];
     CHECK(!mesh_is_closed(open));
-    CHECK(mesh_open_edge(open, &a, &b));
-    CHECK(a.z == 1 && b.z == 1);
+    CHECK(mesh_is_open(open));
+    mesh_describe_open_edges(open, text, sizeof text);
+    CHECK_TEXT(text, "the first open edges (of one face, or of faces that disagree about the outside) go "
+                     "from {0, 0, 1} to {1, 0, 1}, from {0, 0, 1} to {0, 1, 1}, from {1, 0, 1} to {1, 1, 1}; "
+                     "weld = 2e-05 in gr.mesh joins vertices closer than that, which closes seams but no holes");
     CHECK_EQ_INT(mesh_triangle_count(open), 10);
     maker_face(&m, faces[5], 4);
     struct mesh *closed = maker_mesh(&m);
     CHECK(mesh_is_closed(closed));
-    CHECK(!mesh_open_edge(closed, &a, &b));
+    CHECK(!mesh_is_open(closed));
     CHECK_EQ_INT(mesh_triangle_count(closed), 12);
     struct mesh_input input = maker_input(&m);
     CHECK(mesh_equals_input(closed, &input));
@@ -52,9 +57,90 @@ TEST(mesh_with_vertices_given_once_per_triangle_is_closed_by_position) {
     mesh_release(mesh);
     m.vertices[7][1] = nextafter(m.vertices[7][1], 2);
     mesh = maker_mesh(&m);
-    struct vec3 a, b;
-    bool named = mesh_open_edge(mesh, &a, &b);
-    CHECK(named == !mesh_is_closed(mesh));
+    CHECK(mesh_is_open(mesh) == !mesh_is_closed(mesh));
+    mesh_release(mesh);
+    maker_free(&m);
+}
+
+/* A ball whose corners were written with few digits, each of another triangle with another error. */
+TEST(mesh_whose_corners_are_apart_is_closed_by_welding_with_a_distance) {
+    struct maker m = {0};
+    struct test_random random = {5};
+    maker_sphere(&m, 12);
+    struct mesh *whole = maker_mesh(&m);
+    for (uint32_t v = 0; v < m.vertex_count; v++)
+        for (int k = 0; k < 3; k++)
+            m.vertices[v][k] += test_uniform(&random, -1e-7, 1e-7);
+    for (int scale = 0; scale < 2; scale++) {
+        uint32_t counts[2];
+        for (int i = 0; i < 2; i++) {
+            struct mesh_input input = maker_input(&m);
+            struct mesh_tables own = {0};
+            struct error error = {0};
+            CHECK(mesh_input_weld(&input, &own, ldexp(i ? 1e-6 : 1e-30, 40 * scale), &error));
+            counts[i] = input.vertex_count;
+            struct mesh *mesh = mesh_create(&input, &error);
+            CHECK_EQ_INT(mesh_is_closed(mesh), i);
+            CHECK(!i || mesh_triangle_count(mesh) == mesh_triangle_count(whole));
+            mesh_release(mesh);
+            mesh_tables_destroy(&own);
+        }
+        CHECK(counts[1] < counts[0]);
+        for (uint32_t v = 0; v < m.vertex_count; v++)
+            for (int k = 0; k < 3; k++)
+                m.vertices[v][k] = ldexp(m.vertices[v][k], 40);
+    }
+    mesh_release(whole);
+    maker_free(&m);
+}
+
+TEST(vertices_closer_than_the_distance_become_the_lowest_kept_one_as_in_a_search_of_all) {
+    enum { COUNT = 2000 };
+    static double vertices[COUNT][3];
+    static uint32_t same[COUNT], wanted[COUNT];
+    struct test_random random = {9};
+    for (int round = 0; round < 12; round++) {
+        double distance = ldexp(1, -round);
+        for (int v = 0; v < COUNT; v++)
+            for (int k = 0; k < 3; k++)
+                vertices[v][k] = test_uniform(&random, -1, 1) * (k == 2 ? 1e-3 : 1);
+        CHECK(mesh_weld_near((const double(*)[3])vertices, COUNT, distance, same));
+        for (uint32_t v = 0; v < COUNT; v++) {
+            wanted[v] = v;
+            for (uint32_t w = 0; w < v && wanted[v] == v; w++) {
+                const double *p = vertices[v], *q = vertices[w];
+                double length = vec3_length(vec3_make(q[0] - p[0], q[1] - p[1], q[2] - p[2]));
+                if (wanted[w] == w && length < distance)
+                    wanted[v] = w;
+            }
+        }
+        CHECK(memcmp(same, wanted, sizeof same) == 0);
+    }
+}
+
+TEST(mesh_colours_of_faces_are_those_of_their_triangles_also_when_some_are_dropped) {
+    struct maker m = {0};
+    static const float colours[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < 8; i++)
+        maker_vertex(&m, i & 1, i >> 1 & 1, i >> 2);
+    maker_face(&m, (const uint32_t[]){0, 1, 3, 2}, 4);
+    maker_face(&m, (const uint32_t[]){0, 0, 1}, 3);
+    maker_face(&m, (const uint32_t[]){4, 5, 7}, 3);
+    struct mesh_input input = maker_input(&m);
+    struct error error = {0};
+    uint64_t plain = mesh_input_hash(&input);
+    input.colours = colours;
+    input.colours_by_face = true;
+    CHECK(mesh_input_hash(&input) != plain);
+    struct mesh *mesh = mesh_create(&input, &error);
+    CHECK_EQ_INT(mesh_triangle_count(mesh), 3);
+    for (uint32_t t = 0; t < 3; t++) {
+        struct crossing crossing = {.part = t, .u = 0.25, .v = 0.25};
+        struct ray ray = test_ray(vec3_make(0, 0, 9), vec3_make(0, 0, -1));
+        struct surface surface;
+        mesh_describe(mesh, &ray, &crossing, &surface);
+        CHECK(surface.has_colour && surface.colour.x == (t < 2) && surface.colour.z == (t == 2));
+    }
     mesh_release(mesh);
     maker_free(&m);
 }

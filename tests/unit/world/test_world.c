@@ -548,7 +548,7 @@ TEST_TIMES(world_flattens_a_long_chain_of_nodes, 4) {
     stage_end(&s);
 }
 
-TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edge) {
+TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edges) {
     struct stage s;
     struct shape_makers makers = {0};
     struct test_random random = {7};
@@ -561,7 +561,7 @@ TEST(csg_operand_that_is_open_is_an_error_that_names_node_and_edge) {
     ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
     struct node *cut = scene_combine(&s.scene, "cut", NODE_DIFFERENCE, (struct node *[]){ball, open}, 2, &s.error);
     CHECK(!stage_build(&s, cut, ACCEL_GRID));
-    CHECK(strstr(s.error.text, "node 'bowl'") != NULL && strstr(s.error.text, "edge from") != NULL);
+    CHECK(strstr(s.error.text, "node 'bowl'") != NULL && strstr(s.error.text, "open edges") != NULL);
     stage_end(&s);
     shape_makers_destroy(&makers);
 }
