@@ -197,10 +197,11 @@ static bool read_skinning(struct gltf *g, const struct primitive *p, const struc
         if (!read_attribute(g, p, p->joints[k], 4, corners, &out->joints[k]) ||
             !read_attribute(g, p, p->weights[k], 4, corners, &out->weights[k]))
             return false;
-        for (uint64_t i = 0; i < 4 * corners->vertices; i++)
-            if (out->weights[k].numbers[i] != 0 && !(out->joints[k].numbers[i] < (double)by->joint_count))
-                return gltf_fail(g, p->where, "joint %.0f, but the skin has only %zu", out->joints[k].numbers[i],
-                                 by->joint_count);
+        for (uint64_t i = 0; i < 4 * corners->vertices; i++) {
+            double joint = out->joints[k].numbers[i];
+            if (out->weights[k].numbers[i] != 0 && !(joint >= 0 && joint < (double)by->joint_count))
+                return gltf_fail(g, p->where, "joint %.0f, but the skin has only %zu", joint, by->joint_count);
+        }
     }
     return true;
 }

@@ -67,6 +67,7 @@ static bool read_placement(const struct tree *tree, uint32_t index, struct trans
         double m[16];
         if (!gltf_numbers(g, source, "matrix", m, 16, where))
             return false;
+        *out = transform_identity();
         out->forward = from_columns(m);
         if (!transform_from_affine(&out->forward, out))
             out->inverse.m[0][0] = INFINITY;
@@ -407,7 +408,7 @@ static bool add_instances(const struct tree *tree, uint32_t index, uint32_t mesh
     bool ok = read_instances(tree->g, json_object_get(extension, "attributes"), &all, where);
     for (uint64_t i = 0; ok && i < all.count; i++) {
         const double *part[3];
-        struct transform placement;
+        struct transform placement = transform_identity();
         for (int k = 0; k < 3; k++)
             part[k] = all.parts[k] ? all.parts[k] + i * (k == GLTF_ROTATION ? 4 : 3) : none[k];
         ok = compose_parts(part[0], part[1], part[2], &placement) ||
