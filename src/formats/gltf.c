@@ -1,8 +1,8 @@
 /* glTF 2.0, as JSON with buffers in other files or inside it, and as GLB. Source: Khronos Group, "glTF 2.0
  * Specification" (ISO/IEC 12113:2022). jansson parses the JSON. The reader takes the nodes of the scene with their
- * transforms, their meshes (triangles, strips, fans; position, normal, first texture coordinates, first colour),
- * materials, pictures, cameras and lights. It ignores skins, morphs and animations. A required extension that the
- * reader does not know is an error.
+ * transforms at rest or at a time of an animation, their meshes (triangles, strips, fans; position, normal, two texture
+ * coordinates, first colour) with skins and morphs, materials, pictures, cameras and lights. A required extension that
+ * the reader does not know is an error.
  *
  * Any number of primitives may use one accessor, so a small file can request very large meshes. A multiple of the
  * size of the file bounds everything that is made from it. */

@@ -102,9 +102,9 @@ bool gltf_choose_animation(struct gltf *g, const json_t *(**out)[GLTF_PATHS]) {
 /* The keys of a sampler around the time. */
 struct keys {
     uint64_t before;
-    bool between; /* the next key counts, too */
-    double step;  /* seconds between them */
-    double at;    /* 0 at the first one, 1 at the second one */
+    bool mixed;  /* the next key counts, too */
+    double step; /* seconds between them */
+    double at;   /* 0 at the first one, 1 at the second one */
 };
 
 static bool find_keys(struct gltf *g, uint32_t accessor, const struct gltf_accessor *times, struct keys *out) {
@@ -128,8 +128,8 @@ static bool find_keys(struct gltf *g, uint32_t accessor, const struct gltf_acces
         !gltf_accessor_read(g, accessor, times, low + 1, 1, &to))
         return false;
     out->step = to - from;
-    out->between = time > from && time < to;
-    out->at = out->between ? (time - from) / out->step : 0;
+    out->mixed = time > from && time < to;
+    out->at = out->mixed ? (time - from) / out->step : 0;
     return true;
 }
 
@@ -179,7 +179,7 @@ bool gltf_sample(struct gltf *g, const json_t *sampler, enum gltf_path path, dou
         !find_keys(g, input, &times, &keys) ||
         !gltf_accessor_read(g, output, &values, keys.before * stride + (is_cubic ? elements : 0), elements, out))
         return false;
-    if (!keys.between || is_step)
+    if (!keys.mixed || is_step)
         return true;
     double *next = mem_alloc(3 * width * sizeof *next);
     if (!next)

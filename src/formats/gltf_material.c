@@ -169,8 +169,7 @@ static void warn_of_pictures(struct gltf *g, const json_t *extensions, const cha
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!json_object_get(json_object_get(extensions, keys[i][0]), keys[i][1]))
             continue;
-        model_warn(g->model, "%s: %s: pictures of extensions are not read (%s of %s)", g->path, where, keys[i][1],
-                   keys[i][0]);
+        gltf_lacks(g, where, "pictures of extensions are not read (%s of %s)", keys[i][1], keys[i][0]);
         return;
     }
 }

@@ -197,10 +197,11 @@ static bool read_skinning(struct gltf *g, const struct primitive *p, const struc
         if (!read_attribute(g, p, p->joints[k], 4, corners, &out->joints[k]) ||
             !read_attribute(g, p, p->weights[k], 4, corners, &out->weights[k]))
             return false;
-        for (uint64_t i = 0; i < 4 * corners->vertices; i++)
-            if (out->weights[k].numbers[i] != 0 && !(out->joints[k].numbers[i] < (double)by->joint_count))
-                return gltf_fail(g, p->where, "joint %.0f, but the skin has only %zu", out->joints[k].numbers[i],
-                                 by->joint_count);
+        for (uint64_t i = 0; i < 4 * corners->vertices; i++) {
+            double joint = out->joints[k].numbers[i];
+            if (out->weights[k].numbers[i] != 0 && !(joint >= 0 && joint < (double)by->joint_count))
+                return gltf_fail(g, p->where, "joint %.0f, but the skin has only %zu", joint, by->joint_count);
+        }
     }
     return true;
 }
@@ -247,7 +248,7 @@ static void deform(const struct corners *corners, const struct skinning *skinnin
     for (uint64_t i = 0; i < corners->vertices; i++) {
         double *at = to->numbers + i * (uint64_t)to->components;
         struct vec3 v = {at[0], at[1], at[2]};
-        struct affine map = skinning->joints[0].numbers ? mean_of_joints(skinning, i, by->joints) : *by->flat;
+        struct affine map = skinning->joints[0].numbers ? mean_of_joints(skinning, i, by->joints) : *by->projection;
         v = is_normal ? turn_normal(&map, v) : affine_point(&map, v);
         at[0] = v.x, at[1] = v.y, at[2] = v.z;
     }
@@ -273,7 +274,7 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
                   [UV] = {p->uv, 2, 2, &mesh->uvs},
                   [SECOND_UV] = {plan->second_uvs ? second : MODEL_NONE, 2, 2, &mesh->second_uvs},
                   [COLOUR] = {p->colour, 3, 3, &mesh->colours}};
-    bool fine = read_skinning(g, p, corners, by, &skinning), moves = by->flat || skinning.joints[0].numbers;
+    bool fine = read_skinning(g, p, corners, by, &skinning), moves = by->projection || skinning.joints[0].numbers;
     for (size_t t = 0; fine && t < sizeof tables / sizeof tables[0]; t++) {
         struct attribute attribute = {0};
         bool given = tables[t].accessor != MODEL_NONE;
@@ -288,6 +289,9 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
         int components = attribute.components;
         for (uint64_t i = 0; ok && (t == UV || t == SECOND_UV) && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
+        for (uint64_t i = 0; ok && t == COLOUR && components == 4 && i < corners->vertices; i++)
+            if (numbers[i * 4 + 3] < 1)
+                gltf_lacks(g, p->where, "the alpha of the colours of vertices is not read");
         fine = ok && (t == COLOUR ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
                                   : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
         mem_free(numbers);

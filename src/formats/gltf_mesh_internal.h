@@ -10,7 +10,7 @@ struct gltf_deformation {
     size_t weight_count;
     const struct affine *joints; /* the model's space from that of the mesh, for each joint of a skin; NULL: no skin */
     size_t joint_count;
-    const struct affine *flat; /* a map without an inverse, or NULL */
+    const struct affine *projection; /* a map without an inverse, or NULL */
 };
 
 /* Makes one more mesh of the model, of meshes[number]. */

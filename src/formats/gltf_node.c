@@ -67,6 +67,7 @@ static bool read_placement(const struct tree *tree, uint32_t index, struct trans
         double m[16];
         if (!gltf_numbers(g, source, "matrix", m, 16, where))
             return false;
+        *out = transform_identity();
         out->forward = from_columns(m);
         if (!transform_from_affine(&out->forward, out))
             out->inverse.m[0][0] = INFINITY;
@@ -299,10 +300,10 @@ static bool read_skin(const struct tree *tree, uint32_t index, struct affine **o
 }
 
 /* The number of the mesh, in the model, as a node shows it. A mesh that no node changes is made once. */
-static bool make_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, uint32_t skin, const struct affine *flat,
-                      uint32_t *out) {
+static bool make_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, uint32_t skin,
+                      const struct affine *projection, uint32_t *out) {
     struct gltf *g = tree->g;
-    struct gltf_deformation by = {.flat = flat};
+    struct gltf_deformation by = {.projection = projection};
     double *weights = NULL;
     struct affine *joints = NULL;
     bool own;
@@ -312,7 +313,7 @@ static bool make_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, ui
         ok = read_skin(tree, skin, &joints, &by.joint_count);
     by.weights = weights;
     by.joints = joints;
-    bool plain = !own && !joints && !flat;
+    bool plain = !own && !joints && !projection;
     if (ok && (!plain || g->plain[mesh] == MODEL_NONE)) {
         ok = gltf_read_mesh(g, mesh, &by);
         *out = (uint32_t)g->model->meshes.count - 1;
@@ -381,18 +382,18 @@ static bool keeps_area(const struct affine *map) {
 }
 
 /* The mesh below node `parent` of the model, at a place in it; without an inverse, as a mesh of its own. */
-static bool place_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, uint32_t parent,
-                       const struct transform *placement, const char *where) {
+static bool add_mesh_node(const struct tree *tree, uint32_t index, uint32_t mesh, uint32_t parent,
+                          const struct transform *placement, const char *where) {
     struct gltf *g = tree->g;
     struct transform identity = transform_identity();
-    bool flat = !transform_is_finite(placement);
+    bool singular = !transform_is_finite(placement);
     uint32_t number;
-    if (flat && !keeps_area(&placement->forward)) {
+    if (singular && !keeps_area(&placement->forward)) {
         gltf_lacks(g, where, "it is scaled to nothing and not shown");
         return true;
     }
-    if (!make_mesh(tree, index, mesh, MODEL_NONE, flat ? &placement->forward : NULL, &number) ||
-        !add_node(g, model_nodes(g->model)[parent].name, parent, flat ? &identity : placement))
+    if (!make_mesh(tree, index, mesh, MODEL_NONE, singular ? &placement->forward : NULL, &number) ||
+        !add_node(g, model_nodes(g->model)[parent].name, parent, singular ? &identity : placement))
         return false;
     model_nodes(g->model)[g->model->nodes.count - 1].mesh = number;
     return true;
@@ -407,13 +408,13 @@ static bool add_instances(const struct tree *tree, uint32_t index, uint32_t mesh
     bool ok = read_instances(tree->g, json_object_get(extension, "attributes"), &all, where);
     for (uint64_t i = 0; ok && i < all.count; i++) {
         const double *part[3];
-        struct transform placement;
+        struct transform placement = transform_identity();
         for (int k = 0; k < 3; k++)
             part[k] = all.parts[k] ? all.parts[k] + i * (k == GLTF_ROTATION ? 4 : 3) : none[k];
         ok = compose_parts(part[0], part[1], part[2], &placement) ||
              gltf_fail(tree->g, where, "the rotation of instance %llu is no quaternion", (unsigned long long)i);
         placement = transform_compose(outer, &placement);
-        ok = ok && place_mesh(tree, index, mesh, parent, &placement, where);
+        ok = ok && add_mesh_node(tree, index, mesh, parent, &placement, where);
     }
     for (int k = 0; k < 3; k++)
         mem_free(all.parts[k]);
@@ -443,7 +444,7 @@ static bool show_mesh(const struct tree *tree, uint32_t index, uint32_t number, 
     if (json_object_get(json_object_get(source, "extensions"), "EXT_mesh_gpu_instancing"))
         return add_instances(tree, index, mesh, number, outer, where);
     if (!transform_is_finite(outer))
-        return place_mesh(tree, index, mesh, number, outer, where);
+        return add_mesh_node(tree, index, mesh, number, outer, where);
     if (!make_mesh(tree, index, mesh, MODEL_NONE, NULL, &made))
         return false;
     model_nodes(g->model)[number].mesh = made;
@@ -474,8 +475,8 @@ static bool read_node(struct tree *tree, struct visit visit) {
         return false;
     struct affine model_from_node = affine_compose(&visit.model_from_parent, &placement.forward);
     /* From the first map without an inverse on, nodes stay where their parents are, and meshes move. */
-    bool flat = !transform_is_finite(&visit.rest) || !transform_is_finite(&placement);
-    if (flat) {
+    bool singular = !transform_is_finite(&visit.rest) || !transform_is_finite(&placement);
+    if (singular) {
         rest = transform_compose(&visit.rest, &placement);
         rest.inverse.m[0][0] = INFINITY;
         placement = transform_identity();

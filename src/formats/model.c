@@ -591,7 +591,10 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
         return error_set(error, ERROR_SCENE, "%s: %s", model->path, page);
     if (!is_whole_stl(data, size) && !text_is_readable(model->path, data, size, error))
         return false;
-    switch (kind_of(model->path, data, size)) {
+    enum model_kind kind = kind_of(model->path, data, size);
+    if (kind != MODEL_GLTF && (model->options.animated || model->options.variant))
+        model_warn(model, "%s: only glTF files have animations and variants of materials", model->path);
+    switch (kind) {
     case MODEL_OBJ:
         return obj_load(model, (const char *)data, size, error);
     case MODEL_PLY:

@@ -123,7 +123,7 @@ static void add_skin(struct bytes *b) {
                                                       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"  \
                                                       "\"JOINTS_0\":1,\"WEIGHTS_0\":2}}]}],"
 
-TEST(gltf_skins_place_vertices_by_their_joints_and_not_by_the_node) {
+TEST(gltf_skins_move_vertices_by_their_joints_and_not_by_the_node) {
     struct bytes b = {0};
     struct model model;
     struct error error = {0};
@@ -172,12 +172,12 @@ TEST(gltf_skins_with_joints_that_do_not_exist_or_in_a_ring_end_with_an_answer) {
 #define INSTANCING(attributes) "\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{" attributes "}}}"
 
 TEST(gltf_instances_share_the_mesh_of_their_node) {
-    static const double places[] = {1, 2, 3, 4, 5, 6}, scales[] = {1, 1, 1, 2, 0, 2};
+    static const double shifts[] = {1, 2, 3, 4, 5, 6}, scales[] = {1, 1, 1, 2, 0, 2};
     struct bytes b = {0};
     struct model model;
     struct error error = {0};
     add_triangle(&b);
-    add_floats(&b, places, 6);
+    add_floats(&b, shifts, 6);
     add_floats(&b, scales, 6);
     CHECK(parse_with(
         &model, &b,
