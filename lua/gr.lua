@@ -77,14 +77,14 @@ function gr.instances(of, at) end
 
 ---@class gr.joint.fields
 ---@field name? string name (a string; default 'joint'): Name of the node, for messages.
----@field x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@field y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@field x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@field y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@field children? gr.node[] children (a table of nodes; default {}): Child nodes.
 
 ---A node that rotates about x and y, with limits of the angles.
 ---@param name string name (a string; default 'joint'): Name of the node, for messages.
----@param x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
----@param y gr.triple y (a table of 3 numbers, in degrees): The same for y.
+---@param x? gr.triple x (a table of 3 numbers, in degrees; default {0, 0, 0}): Smallest, initial and largest angle about x; gray draws the initial one.
+---@param y? gr.triple y (a table of 3 numbers, in degrees; default {0, 0, 0}): The same for y.
 ---@return gr.node
 ---@overload fun(fields: gr.joint.fields): gr.node
 function gr.joint(name, x, y) end
@@ -173,8 +173,35 @@ function gr.nh_box(name, corner, size) end
 ---@overload fun(name: string, file: string): gr.node
 ---@overload fun(name: string, verts: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(material: gr.material, file: string): gr.node
+---@overload fun(name: string, verts: gr.triple[], normals: gr.triple[], faces: integer[][]): gr.node
 ---@overload fun(fields: gr.mesh.fields): gr.node
 function gr.mesh(material, verts, faces) end
+
+---@class gr.model.fields
+---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): Material of the surface.
+---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
+---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
+---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
+---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
+---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
+---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
+---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
+---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
+
+---The same as gr.mesh of a file: its node, which also has its cameras and lights.
+---@param file string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@return gr.node
+---@overload fun(fields: gr.model.fields): gr.node
+function gr.model(file) end
 
 ---@class gr.fast_mesh.fields
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
@@ -1009,28 +1036,28 @@ function gr.wood_pnd_material(material, f, density, interp, mix) end
 
 ---@class gr.td_cube_material.fields
 ---@field material gr.material material (a material): The base material.
----@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image on each side of the unit cube, over another material.
 ---@param material gr.material material (a material): The base material.
----@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_cube_material.fields): gr.material
 function gr.td_cube_material(material, png) end
 
 ---@class gr.td_sphere_material.fields
 ---@field material gr.material material (a material): The base material.
----@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image around the unit sphere, over another material.
 ---@param material gr.material material (a material): The base material.
----@param png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param png string|gr.texture png (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.td_sphere_material.fields): gr.material
 function gr.td_sphere_material(material, png) end
@@ -1054,7 +1081,7 @@ function gr.difresnel_material(material) end
 function gr.difresneld_material(material) end
 
 ---@class gr.texture.fields
----@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@field file string|gr.texture file (the name of a picture file or a texture): A picture file.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1062,15 +1089,16 @@ function gr.difresneld_material(material) end
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
+---@field alpha? boolean alpha (true or false; default false): Whether the alpha of the picture is the opacity of the surface.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
----@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
+---@param file string|gr.texture file (the name of a picture file or a texture): A picture file.
 ---@return gr.texture
 ---@overload fun(fields: gr.texture.fields): gr.texture
 function gr.texture(file) end
 
 ---@class gr.bump.fields
----@field file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@field file string|gr.texture|function file (the name of a picture file or a texture): A picture file, or any texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1082,7 +1110,7 @@ function gr.texture(file) end
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
 ---A bump map or normal map for node:set_bump.
----@param file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@param file string|gr.texture|function file (the name of a picture file or a texture): A picture file, or any texture.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.texture
 ---@overload fun(fields: gr.bump.fields): gr.texture
@@ -1090,7 +1118,7 @@ function gr.bump(file, height) end
 
 ---@class gr.image_material.fields
 ---@field material gr.material material (a material): The base material.
----@field image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@field image string|gr.texture image (the name of a picture file or a texture): A picture file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1102,14 +1130,14 @@ function gr.bump(file, height) end
 
 ---An image mapped by the texture coordinates of the shape, over another material.
 ---@param material gr.material material (a material): The base material.
----@param image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
+---@param image string|gr.texture image (the name of a picture file or a texture): A picture file, or a texture.
 ---@return gr.material
 ---@overload fun(fields: gr.image_material.fields): gr.material
 function gr.image_material(material, image) end
 
 ---@class gr.bump_material.fields
 ---@field material gr.material material (a material): The base material.
----@field image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@field image string|gr.texture|function image (the name of a picture file or a texture): A picture file, or a result of gr.bump.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1122,7 +1150,7 @@ function gr.image_material(material, image) end
 
 ---A bump map or normal map over another material.
 ---@param material gr.material material (a material): The base material.
----@param image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@param image string|gr.texture|function image (the name of a picture file or a texture): A picture file, or a result of gr.bump.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.material
 ---@overload fun(fields: gr.bump_material.fields): gr.material
@@ -1998,12 +2026,12 @@ function node:faces() end
 function node:set_material(material) end
 
 ---Replaces kd of a shape by an image.
----@param texture string|gr.texture texture (the name of a picture file or a texture): A texture, or the name of a PNG or JPEG file.
+---@param texture string|gr.texture texture (the name of a picture file or a texture): A texture, or the name of a picture file.
 ---@return gr.node
 function node:set_texture(texture) end
 
 ---Sets the bump map of a shape.
----@param bump string|gr.texture|function bump (the name of a picture file or a texture): A result of gr.bump, or the name of a PNG or JPEG file.
+---@param bump string|gr.texture|function bump (the name of a picture file or a texture): A result of gr.bump, or the name of a picture file.
 ---@return gr.node
 function node:set_bump(bump) end
 

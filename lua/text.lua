@@ -22,7 +22,7 @@ local function own_line(line, weight)
     local glyphs, x = { ascender = 0.85, descender = -0.3, line = 1.2 }, 0
     for _, code in utf8.codes(line) do
         local contours, width = font.outline(utf8.char(code), weight)
-        local glyph = { code = code, contours = {}, missing = not contours and code ~= 32 }
+        local glyph = { code = code, contours = {}, missing = not contours and code ~= 32 and code ~= 160 }
         glyph.x = (x + weight / 2 + 0.25) * LETTER
         for c, pieces in ipairs(contours or {}) do
             local out = {}
@@ -72,6 +72,7 @@ function M.letters(string, options)
     local weight = check.number(where, 'weight', options.weight, 0.2, 2, 1) * 0.9
     if options.font ~= nil then check.text(where, 'font', options.font) end
     if not utf8.len(string) then check.fail(where, 'string must be UTF-8') end
+    if not options.font then font.warn_of_missing(string) end
     local out, y, width = { low = 0, high = 0 }, 0, 0
     local count = 0
     for line in (string .. '\n'):gmatch '(.-)\n' do

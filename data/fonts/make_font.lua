@@ -12,7 +12,7 @@ local function round(x) return math.floor(x + 0.5) end
 -- Each glyph: contours as points { x, y, on the curve }, and its advance.
 local glyphs = { { code = 0, contours = { { { 50, 0, true }, { 50, 700, true }, { 450, 700, true }, { 450, 0, true } },
                                           { { 100, 50, true }, { 400, 50, true }, { 400, 650, true }, { 100, 650, true } } }, advance = 500 },
-                 { code = 32, contours = {}, advance = round(2.6 * unit) } }
+                 { code = 32, contours = {}, advance = round(2.6 * unit) }, { code = 160, contours = {}, advance = round(2.6 * unit) } }
 for _, letter in ipairs(font.letters()) do
     local contours, width = font.outline(letter, WEIGHT)
     local left, made = WEIGHT / 2 + 0.25, {}
@@ -29,6 +29,7 @@ for _, letter in ipairs(font.letters()) do
     end
     glyphs[#glyphs + 1] = { code = utf8.codepoint(letter), contours = made, advance = round((width + WEIGHT + 0.5) * unit) }
 end
+table.sort(glyphs, function(a, b) return a.code < b.code end)
 
 local number = {}
 for k, glyph in ipairs(glyphs) do number[glyph.code] = k - 1 end

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 struct script_context *context_of(lua_State *L) {
     return (struct script_context *)sandbox_of(L);
@@ -93,10 +94,23 @@ void context_warn_of_bytes(struct script_context *context, const char *name, str
                           name, c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
 }
 
+/* The length of a name up to its last dot, which is not its first letter. */
+static int without_ending(const char *name, int length) {
+    int at = length;
+    while (at > 0 && name[at - 1] != '.')
+        at--;
+    return at > 1 ? at - 1 : length;
+}
+
 void context_picture_name(const struct script_context *context, const char *end, char *out, size_t size) {
-    const char *path = context->sandbox.files.path, *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path,
-               *dot = strrchr(name, '.');
-    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    context_name_of_picture(context->sandbox.files.path, end, out, size);
+}
+
+void context_name_of_picture(const char *path, const char *end, char *out, size_t size) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int length = without_ending(name, (int)strlen(name));
+    if (strcasecmp(name + length, ".gz") == 0) /* a model has another one before it */
+        length = without_ending(name, length);
     while (length > 1 && name[0] == '.') /* a picture has no hidden name */
         name++, length--;
     (void)snprintf(out, size, "%.*s%s", length, name, end);

@@ -53,6 +53,8 @@ void context_warn_of_radians(struct script_context *context, const char *name, d
 void context_note_line(struct script_context *context);
 /* Of a picture that is named after the script: SCENE and this end. */
 void context_picture_name(const struct script_context *context, const char *end, char *out, size_t size);
+/* The same for any script or model. */
+void context_name_of_picture(const char *path, const char *end, char *out, size_t size);
 /* An array that lives as long as the call. Raises an error without memory. */
 void *context_array(struct script_context *context, size_t count, size_t size);
 /* The contents of the handle of a texture; NULL with an error. */

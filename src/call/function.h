@@ -167,7 +167,7 @@ struct script_result {
     const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
 
-enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 96 };
+enum { FORM_LIMIT = 5, PARAMETER_LIMIT = 96 };
 
 /* The first argument of a method: the node before the colon. */
 enum { SELF };

@@ -7,6 +7,7 @@
 #include "sandbox/sandbox.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -67,28 +68,45 @@ static void make_whole(lua_State *L, int index) {
     lua_replace(L, index);
 }
 
+/* Which arguments are positions and counts: the first one, the last one or 0 for all that follow, and how many
+ * arguments the call needs for that (in table.insert(t, 1.5) the fraction is the value). */
+struct whole_arguments {
+    const char *library, *name;
+    int first, last, at_least;
+};
+
+static const struct whole_arguments whole_arguments[] = {
+    {"math", "random", 1, 2, 1},  {"string", "byte", 2, 3, 2},    {"string", "char", 1, 0, 1},
+    {"string", "find", 3, 3, 3},  {"string", "rep", 2, 2, 2},     {"string", "sub", 2, 3, 2},
+    {"table", "concat", 3, 4, 3}, {"table", "insert", 2, 2, 3},   {"table", "remove", 2, 2, 2},
+    {"table", "unpack", 2, 3, 2}, {LUA_GNAME, "select", 1, 1, 1},
+};
+
 /* Runs Lua's own function in the place of this one, so that its errors name the line of the script and the function.
  * Upvalue 1: that of Lua's own function, the state of the random numbers. Upvalue 2: Lua's own function. */
 static int run_original(lua_State *L) {
     return lua_tocfunction(L, lua_upvalueindex(2))(L);
 }
 
-static void wrap_with_upvalue(lua_State *L, const char *library, const char *name, lua_CFunction function) {
+static void wrap(lua_State *L, const char *library, const char *name, lua_CFunction function,
+                 const struct whole_arguments *row) {
     lua_getglobal(L, library);
     lua_getfield(L, -1, name);
     if (!lua_getupvalue(L, -1, 1))
         lua_pushnil(L);
     lua_insert(L, -2);
-    lua_pushcclosure(L, function, 2);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)row);
+    lua_pushcclosure(L, function, 3);
     lua_setfield(L, -2, name);
     lua_pop(L, 1);
 }
 
-/* math.random(7 / 2) is math.random(3). */
-static int math_random(lua_State *L) {
-    make_whole(L, 1);
-    if (lua_gettop(L) >= 2)
-        make_whole(L, 2);
+/* ("abcdef"):sub(1, 7 / 2) is "abc". Upvalue 3: the row. */
+static int cut_fractions(lua_State *L) {
+    const struct whole_arguments *row = lua_touserdata(L, lua_upvalueindex(3));
+    int top = lua_gettop(L), last = row->last > 0 && row->last < top ? row->last : top;
+    for (int k = row->first; k <= last && top >= row->at_least; k++)
+        make_whole(L, k);
     return run_original(L);
 }
 
@@ -128,13 +146,14 @@ void compat_open(lua_State *L) {
                                      {"sinh", math_sinh},   {"tanh", math_tanh},   {"atan2", math_atan2},
                                      {"frexp", math_frexp}, {"ldexp", math_ldexp}, {NULL, NULL}};
     static const luaL_Reg helpers[] = {{"scene_globals", scene_globals}, {"first_seed", first_seed}, {NULL, NULL}};
+    for (size_t k = 0; k < sizeof whole_arguments / sizeof whole_arguments[0]; k++)
+        wrap(L, whole_arguments[k].library, whole_arguments[k].name, cut_fractions, &whole_arguments[k]);
+    wrap(L, "string", "format", string_format, NULL);
     lua_getglobal(L, "math");
     luaL_setfuncs(L, maths, 0);
     embedded_run(L, compat_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, compat_lua);
     lua_pop(L, 1);
-    wrap_with_upvalue(L, "math", "random", math_random);
-    wrap_with_upvalue(L, "string", "format", string_format);
 
     lua_pushinteger(L, 0);
     lua_createtable(L, 0, 2);

@@ -132,7 +132,7 @@ function scene.module(name, ...)
     end
 end
 
-scene.math.mod, scene.string.gfind, scene.unpack = math.fmod, string.gmatch, table.unpack
+scene.math.mod, scene.string.gfind, scene.unpack = math.fmod, string.gmatch, scene.table.unpack
 scene.math.randomseed() -- random numbers start from the seed of the command line
 
 -- The value of a text that is a literal, or the text. Tables are evaluated without any globals.

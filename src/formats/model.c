@@ -458,6 +458,21 @@ static bool is_word(const char *text, size_t length, const char *word) {
     return strlen(word) == length && strncasecmp(text, word, length) == 0;
 }
 
+bool model_is_named(const char *path) {
+    size_t length;
+    const char *extension = extension_of(path, &length);
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (is_word(extension, length, extensions[i]))
+            return true;
+    return false;
+}
+
+bool model_is_stl(const char *path) {
+    size_t length;
+    const char *extension = extension_of(path, &length);
+    return is_word(extension, length, "stl");
+}
+
 /* Makes meshes from the tables, and one node for files without nodes. */
 static bool model_finish(struct model *model, struct error *error) {
     size_t faces = 0;
@@ -465,10 +480,8 @@ static bool model_finish(struct model *model, struct error *error) {
         faces += model_meshes(model)[i].starts.count;
     if (faces == 0) {
         size_t length;
-        const char *extension = extension_of(model->path, &length);
-        bool is_known = length == 0;
-        for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-            is_known = is_known || is_word(extension, length, extensions[i]);
+        (void)extension_of(model->path, &length);
+        bool is_known = length == 0 || model_is_named(model->path);
         /* What was left out is the reason. */
         if (is_known && model->warning_count > 0)
             return error_set(error, ERROR_SCENE, "%s: no faces in this file (%s)", model->path, model->warnings[0]);

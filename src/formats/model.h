@@ -147,6 +147,10 @@ static inline size_t model_max(const struct model *model) {
     return model->options.max ? model->options.max : MODEL_NONE - 8;
 }
 
+/* Whether the file has an ending of models, also before ".gz". */
+bool model_is_named(const char *path);
+/* Whether it is that of STL, whose models have z up. */
+bool model_is_stl(const char *path);
 /* Reads the file and makes meshes with the options. Errors are one line: FILE:LINE: what, or FILE: byte N: what. */
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error);
 /* The same from memory; `path` is for messages, for the extension, and for the folder of other files. */

@@ -129,7 +129,7 @@ struct reader {
     struct list elements[KINDS]; /* double[3], double[2], double[3] */
     struct list indices[KINDS];  /* uint32_t per corner */
     struct list starts;          /* uint32_t per face: its first corner */
-    struct list ahead[KINDS];    /* struct doubt: indices that come before their elements, rising */
+    struct list forward[KINDS];  /* struct doubt: indices that come before their elements, rising */
     struct list odd_vertices;    /* struct doubt: those that are not finite */
     const char *odd_word;        /* of the last line of numbers; NULL: all are finite */
     struct list colours;         /* float[3] per vertex, as written; NaN: none */
@@ -326,29 +326,29 @@ static bool read_attribute(struct reader *reader, int kind) {
            fail(reader, "more elements than an index can name");
 }
 
-static size_t largest_ahead(const struct reader *reader, int kind) {
-    const struct doubt *ahead = reader->ahead[kind].items;
-    return reader->ahead[kind].count ? ahead[reader->ahead[kind].count - 1].number : 0;
+static size_t largest_forward(const struct reader *reader, int kind) {
+    const struct doubt *forward = reader->forward[kind].items;
+    return reader->forward[kind].count ? forward[reader->forward[kind].count - 1].number : 0;
 }
 
 /* The first index that stays without an element is one of those above all before it. */
-static bool add_ahead(struct reader *reader, int kind, size_t value) {
-    if (value <= largest_ahead(reader, kind))
+static bool add_forward(struct reader *reader, int kind, size_t value) {
+    if (value <= largest_forward(reader, kind))
         return true;
-    struct doubt *ahead = room(reader, &reader->ahead[kind], 1, sizeof *ahead);
-    if (!ahead)
+    struct doubt *forward = room(reader, &reader->forward[kind], 1, sizeof *forward);
+    if (!forward)
         return false;
-    *ahead = (struct doubt){.number = value, .line = reader->line};
-    reader->ahead[kind].count++;
+    *forward = (struct doubt){.number = value, .line = reader->line};
+    reader->forward[kind].count++;
     return true;
 }
 
 /* The first index that has no element, at the end; NULL: there is none. */
 static const struct doubt *first_beyond(const struct reader *reader, int kind) {
-    const struct doubt *ahead = reader->ahead[kind].items;
-    for (size_t i = 0; i < reader->ahead[kind].count; i++)
-        if (ahead[i].number > reader->elements[kind].count)
-            return &ahead[i];
+    const struct doubt *forward = reader->forward[kind].items;
+    for (size_t i = 0; i < reader->forward[kind].count; i++)
+        if (forward[i].number > reader->elements[kind].count)
+            return &forward[i];
     return NULL;
 }
 
@@ -394,7 +394,7 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
     if (value >= STRAY)
         return fail_word(reader, word, "has an index that is too large");
     *out = (uint32_t)(value - 1);
-    return add_ahead(reader, kind, (size_t)value);
+    return add_forward(reader, kind, (size_t)value);
 }
 
 /* 7, 7/1, 7//3, 7/1/3. Some files have slashes with nothing after them, which mean nothing. */
@@ -532,9 +532,9 @@ static bool read_libraries(struct reader *reader) {
 /* The lists as they were before the first corner of the face of this line. */
 static void forget_face(struct reader *reader, size_t corners, size_t line) {
     for (int kind = VERTEX; kind < KINDS; kind++) {
-        const struct doubt *ahead = reader->ahead[kind].items;
-        while (reader->ahead[kind].count && ahead[reader->ahead[kind].count - 1].line >= line)
-            reader->ahead[kind].count--;
+        const struct doubt *forward = reader->forward[kind].items;
+        while (reader->forward[kind].count && forward[reader->forward[kind].count - 1].line >= line)
+            reader->forward[kind].count--;
         if (reader->indices[kind].count > corners)
             reader->indices[kind].count = corners;
     }
@@ -660,7 +660,7 @@ static void forgive_vertices(struct reader *reader) {
                reader->path, lost);
     double *first = reader->elements[VERTEX].items;
     first[0] = isnan(first[0]) ? 0 : first[0];
-    reader->ahead[VERTEX].count = 0;
+    reader->forward[VERTEX].count = 0;
 }
 
 static bool check_vertices(struct reader *reader) {
@@ -842,7 +842,7 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
         list_destroy(&reader.starts);
     }
     for (int kind = VERTEX; kind < KINDS; kind++)
-        list_destroy(&reader.ahead[kind]);
+        list_destroy(&reader.forward[kind]);
     list_destroy(&reader.odd_vertices);
     list_destroy(&reader.colours);
     names_destroy(&reader.materials.names);

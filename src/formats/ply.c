@@ -446,7 +446,7 @@ static bool read_vertex(struct ply *ply, const struct element *element, double v
 }
 
 /* The line of the row that is read, or the byte after it. */
-static size_t place(const struct ply *ply) {
+static size_t position_of_row(const struct ply *ply) {
     return ply->format == ASCII ? ply->line : (size_t)(ply->at - ply->data);
 }
 
@@ -463,7 +463,7 @@ static bool add_numbers(struct ply *ply, struct list *list, const double *values
     list->count++;
     if (!fine) {
         out[0] = NAN;
-        left_out_add(odd, place(ply));
+        left_out_add(odd, position_of_row(ply));
     }
     return true;
 }
@@ -477,7 +477,7 @@ static bool add_colour(struct ply *ply, const double value[SCALARS], double scal
         c[k] = fine ? (float)number_clamped(fmax(value[RED + k] * scale, 0), 1) : 1;
     ply->mesh->colours.count++;
     if (!fine)
-        left_out_add(&ply->odd_colours, place(ply));
+        left_out_add(&ply->odd_colours, position_of_row(ply));
     return true;
 }
 
@@ -572,7 +572,7 @@ static bool read_corner_uvs(struct ply *ply, const struct property *p) {
     }
     ply->pending.count = fine ? count : 0;
     if (!fine)
-        left_out_add(&ply->odd_uvs, place(ply));
+        left_out_add(&ply->odd_uvs, position_of_row(ply));
     return true;
 }
 
@@ -630,7 +630,7 @@ static bool read_face(struct ply *ply, const struct element *element, bool corne
     if (!any)
         return true;
     if (ply->values.count < 3) {
-        left_out_add(&ply->short_faces, place(ply));
+        left_out_add(&ply->short_faces, position_of_row(ply));
         return true;
     }
     uint32_t count = (uint32_t)ply->values.count;
@@ -849,7 +849,7 @@ static bool load(struct ply *ply) {
         if (ply->elements[i].kind == FACES && has_colour(&ply->elements[i])) {
             mesh->colours_by_face = !(ply->has[RED] && ply->has[GREEN] && ply->has[BLUE]);
             if (!mesh->colours_by_face)
-                left_out_add(&ply->unseen_colours, place(ply));
+                left_out_add(&ply->unseen_colours, position_of_row(ply));
         }
     if (ply->vertex_total >= UINT32_MAX - 1)
         return error_set(ply->error, ERROR_SCENE, "%s: %llu vertices are too many", ply->path,

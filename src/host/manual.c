@@ -49,7 +49,7 @@ static int print_paged(const struct document *document) {
 }
 
 static void add_usage(struct document *document) {
-    document_lines(document, "gray [options] [--] scene.lua ...\n"
+    document_lines(document, "gray [options] [--] scene.lua|model.glb ...\n"
                              "gray merge [-o FILE] [options] PART ...\n"
                              "gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
                              "gray --man [TOPIC ...]\n"
@@ -57,7 +57,7 @@ static void add_usage(struct document *document) {
 }
 
 static void add_help(struct document *document) {
-    document_paragraph(document, "gray renders scenes that are written as Lua scripts.");
+    document_paragraph(document, "gray renders scenes that are written as Lua scripts, and models: OBJ, PLY, STL and glTF files.");
     document_section(document, "Usage");
     add_usage(document);
     document_gap(document);

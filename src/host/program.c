@@ -160,7 +160,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
         (void)snprintf(line, sizeof line, "gray: %s", error.text);
         text_print_message(stderr, TEXT_ERROR, line);
         if (error.kind == ERROR_USAGE)
-            (void)fputs("usage: gray [options] [--] scene.lua ...; gray --help lists all options\n", stderr);
+            (void)fputs("usage: gray [options] [--] scene.lua|model.glb ...; gray --help lists all options\n", stderr);
         status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);

@@ -6,8 +6,10 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "call/context.h"
 #include "denoise/denoise.h"
 #include "film/path_film.h"
+#include "formats/model.h"
 #include "host/render_reports.h"
 #include "inspect/inspect.h"
 #include "output/progress.h"
@@ -600,6 +602,18 @@ static void note_rewind(void *context) {
     begin_frame(process);
 }
 
+/* The models of the command line before this one whose pictures have the same name. */
+static uint32_t count_namesakes(const struct options *options, const char *path) {
+    char name[PATH_SIZE], other[PATH_SIZE];
+    uint32_t count = 0;
+    context_name_of_picture(path, ".png", name, sizeof name);
+    for (int i = 0; options->scripts[i] != path; i++) {
+        context_name_of_picture(options->scripts[i], ".png", other, sizeof other);
+        count += model_is_named(options->scripts[i]) && strcmp(name, other) == 0;
+    }
+    return count;
+}
+
 /* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0;
  * repeats: an earlier run did not call gr.frames. */
 static int run_once(struct render_process *process, const char *path, const struct frame *frame, bool repeats) {
@@ -616,6 +630,8 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .error_text = scene_text,
                                .frame = *frame,
                                .repeats = repeats,
+                               .checks = process->options->check,
+                               .namesakes = count_namesakes(process->options, path),
                                .frame_limit = options_picture_limit(process->options),
                                .animates = note_animation,
                                .frame_begins = begin_frame,

@@ -159,7 +159,7 @@ static bool read_runs(const struct reader *r, struct image *image) {
 }
 
 /* Whether the file can hold its pixels; the filling after the last row may be absent. */
-static bool is_long_enough(const struct reader *r) {
+static bool holds_its_pixels(const struct reader *r) {
     uint64_t row = ((uint64_t)r->width * r->bits + 7) / 8, stride = (row + 3) / 4 * 4;
     if (r->compression == RUNS_8 || r->compression == RUNS_4)
         return (uint64_t)r->width * r->height / PIXELS_PER_BYTE <= r->size;
@@ -175,7 +175,7 @@ struct image *image_parse_bmp(const char *path, const uint8_t *data, size_t size
     if (!read_header(&r))
         return NULL;
     bool too_large = r.width > IMAGE_MAX_SIDE || r.height > IMAGE_MAX_SIDE; /* said by image_allocate */
-    if (!too_large && !is_long_enough(&r)) {
+    if (!too_large && !holds_its_pixels(&r)) {
         fail(&r, "the file ends early");
         return NULL;
     }

@@ -283,6 +283,9 @@ static float bounded(float light) {
     return light > 0 ? fminf(light, FLT_MAX) : 0; /* NaN too */
 }
 
+/* Floats of a pixel of a chunk. With 1, 3 or 4 the library takes shortcuts that do not know channels to skip. */
+enum { CHUNK_FLOATS = 5 };
+
 /* Bits of the channels that were met. */
 enum { MET_RGB = 7, MET_CHROMA = 3 << CHANNEL_RY, MET_Y = 1 << CHANNEL_OTHER };
 
@@ -330,21 +333,28 @@ static bool set_chroma(struct picture *p, exr_coding_channel_info_t *channel, in
     return true;
 }
 
-/* The channels of the picture are decoded; the others are skipped. */
+static bool is_luminance(const exr_coding_channel_info_t *channel) {
+    return strcmp(channel->channel_name, "Y") == 0 && channel->x_samples == 1 && channel->y_samples == 1;
+}
+
+/* The channels of the picture are decoded; the others are skipped, and so are RY and BY without Y. */
 static void set_channels(struct picture *p, const exr_chunk_info_t *chunk, int32_t x, int32_t y) {
+    bool has_luminance = false;
+    for (int16_t i = 0; i < p->decoder.channel_count; i++)
+        has_luminance = has_luminance || is_luminance(&p->decoder.channels[i]);
     for (int16_t i = 0; i < p->decoder.channel_count; i++) {
         exr_coding_channel_info_t *channel = &p->decoder.channels[i];
         int number = channel_number(channel->channel_name);
-        bool whole = channel->x_samples == 1 && channel->y_samples == 1, is_y = strcmp(channel->channel_name, "Y") == 0;
+        bool whole = channel->x_samples == 1 && channel->y_samples == 1, chroma = number >= CHANNEL_RY;
         channel->decode_to_ptr = NULL;
-        if (number == CHANNEL_OTHER || (number < CHANNEL_RY && !whole) || channel->x_samples < 1 ||
+        if (number == CHANNEL_OTHER || (chroma ? !has_luminance : !whole) || channel->x_samples < 1 ||
             channel->y_samples < 1)
             continue;
-        if (number < CHANNEL_RY)
-            set_target(channel, p->chunk + number, 3, chunk->width);
+        if (!chroma)
+            set_target(channel, p->chunk + number, CHUNK_FLOATS, chunk->width);
         else if (!set_chroma(p, channel, number - CHANNEL_RY, x, y))
             continue;
-        p->met |= is_y ? (unsigned)MET_Y : 1u << number;
+        p->met |= is_luminance(channel) ? (unsigned)MET_Y : 1u << number;
     }
 }
 
@@ -357,7 +367,7 @@ static void copy_chunk(const struct picture *p, const exr_chunk_info_t *chunk, i
             int64_t at_x = left + column, at_y = top + row;
             if (at_x >= 0 && at_y >= 0 && at_x < to->width && at_y < to->height)
                 memcpy((float *)to->texels + ((size_t)at_y * to->width + (size_t)at_x) * 4,
-                       p->chunk + ((size_t)row * (size_t)chunk->width + (size_t)column) * 3, 12);
+                       p->chunk + ((size_t)row * (size_t)chunk->width + (size_t)column) * CHUNK_FLOATS, 12);
         }
     }
 }
@@ -368,7 +378,7 @@ static bool decode_chunk(struct picture *p, const exr_chunk_info_t *chunk, int32
     if (!p->chunk) {
         p->chunk_width = chunk->width;
         p->chunk_height = chunk->height;
-        p->chunk = mem_alloc_zero((size_t)chunk->width * (size_t)chunk->height, 12);
+        p->chunk = mem_alloc_zero((size_t)chunk->width * (size_t)chunk->height, CHUNK_FLOATS * 4);
         p->no_memory = !p->chunk;
     }
     assert(chunk->width <= p->chunk_width && chunk->height <= p->chunk_height);
@@ -469,12 +479,12 @@ static uint64_t pixels_per_byte(exr_context_t context) {
 /* Whether the file can hold the data window, and the display window is not much larger than that. */
 static bool check_sizes(const struct picture *p, int64_t width, int64_t height, size_t size, struct error *error) {
     const int64_t small = 1 << 22; /* pixels of a display window that any file may have */
-    uint64_t most = pixels_per_byte(p->context) * size;
+    uint64_t max = pixels_per_byte(p->context) * size;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
-    if ((size_t)p->height / 256 > size / 8 || (uint64_t)p->width * (uint64_t)p->height > most)
+    if ((size_t)p->height / 256 > size / 8 || (uint64_t)p->width * (uint64_t)p->height > max)
         return error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", p->path);
     if (width < 1 || height < 1 || width > IMAGE_MAX_SIDE || height > IMAGE_MAX_SIDE ||
-        (width * height > small && (uint64_t)width * (uint64_t)height > most))
+        (width * height > small && (uint64_t)width * (uint64_t)height > max))
         return error_set(error, ERROR_SCENE, "%s: broken EXR: its display window is no window, or too large", p->path);
     return true;
 }

@@ -1,5 +1,5 @@
 /* TGA in ("Truevision TGA File Format Specification", version 2.0, 1991): a header of 18 bytes, a text, a palette,
- * pixels of 1 to 4 bytes, plain or in packets. A pixel in packets has at least 1/128 of a byte and its colour, so a
+ * pixels of 1 to 4 bytes, plain or in packets. A pixel in packets has at min_size 1/128 of a byte and its colour, so a
  * picture that the file cannot hold is refused before memory is allocated. */
 #include "image/tga_read_internal.h"
 
@@ -119,9 +119,9 @@ struct image *image_parse_tga(const char *path, const uint8_t *data, size_t size
     }
     bool too_large = r.width > IMAGE_MAX_SIDE || r.height > IMAGE_MAX_SIDE; /* said by image_allocate */
     uint64_t pixels = (uint64_t)r.width * r.height, bytes = (r.bits + 7) / 8;
-    uint64_t least = r.packets ? (pixels + PACKET - 1) / PACKET * (1 + bytes) : pixels * bytes;
+    uint64_t min_size = r.packets ? (pixels + PACKET - 1) / PACKET * (1 + bytes) : pixels * bytes;
     struct image *image = NULL;
-    bool whole = r.at <= size && least <= size - r.at;
+    bool whole = r.at <= size && min_size <= size - r.at;
     if (whole || too_large)
         image = image_allocate(path, r.width, r.height, 8, error);
     if (!image && (whole || too_large))

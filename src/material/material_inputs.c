@@ -50,8 +50,10 @@ bool material_mix_kd(struct material *material, struct texture pattern, struct t
 
 bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,
                     struct arena *arena, struct error *error) {
+    struct texture_image own = *image;
+    own.alpha = image->cuts ? ALPHA_STRAIGHT : image->alpha;
     material->changed = input;
-    return put(material, input, texture_image(image, material_input(material, input)), arena, error);
+    return put(material, input, texture_image(&own, material_input(material, input)), arena, error);
 }
 
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
@@ -67,6 +69,17 @@ bool material_cut(struct material *material, const struct texture_image *image, 
     enum texture_function function = cutoff > 0 ? FUNCTION_STEP : FUNCTION_SATURATE;
     const struct texture *cover = texture_keep(arena, texture_map(picture, function, cutoff), error);
     return cover && material_multiply(material, INPUT_OPACITY, cover, arena, error);
+}
+
+bool material_cut_by_alpha(struct material *material, const struct texture_image *image, struct arena *arena,
+                           struct error *error) {
+    enum material_input changed = material->changed;
+    struct texture_image own = *image;
+    own.alpha = ALPHA_ONLY;
+    if (image->cuts && !material_cut(material, &own, 0, arena, error))
+        return false;
+    material->changed = changed;
+    return true;
 }
 
 bool material_add_bump(struct material *material, const struct bump *bump, struct arena *arena, struct error *error) {

@@ -18,12 +18,15 @@ bool material_multiply_constant(struct material *material, enum material_input i
 /* kd * pattern + mix * (1 - pattern): marble and wood. */
 bool material_mix_kd(struct material *material, struct texture pattern, struct texture mix, struct arena *arena,
                      struct error *error);
-/* The image over the input. Not for INPUT_OPACITY. */
+/* The image over the input, without its alpha if that is opacity. Not for INPUT_OPACITY. */
 bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,
                     struct arena *arena, struct error *error);
 /* Holes where the image is black, or by its alpha (ALPHA_ONLY); cutoff > 0: all or nothing, from there on. */
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
                   struct error *error);
+/* The same by the alpha of an image with `cuts`, as it is; nothing for others. */
+bool material_cut_by_alpha(struct material *material, const struct texture_image *image, struct arena *arena,
+                           struct error *error);
 /* `bump` over the existing bumps; its `below` is set. */
 bool material_add_bump(struct material *material, const struct bump *bump, struct arena *arena, struct error *error);
 /* The share `metalness` of kd becomes the colour of highlight and mirror and replaces that share of ks. */

@@ -88,6 +88,7 @@ struct texture_image {
     enum texture_alpha alpha;
     enum texture_encoding encoding;
     double gamma; /* in place of `encoding`, where it is above 0: light is the number to this power */
+    bool cuts;    /* its alpha is the opacity of the surface that it colours (material_cut_by_alpha) */
 };
 
 /* RED, GREEN, BLUE: one component, as a number. COMPLEMENT: 1 - x. SATURATE: between 0 and 1. STEP: 1 from `amount` on,

@@ -410,9 +410,9 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
         describe_all_uvs(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {
-        bool flat = mesh->colours_by_triangle;
-        const float *p = mesh->colours[flat ? triangle : corner[0]], *q = mesh->colours[flat ? triangle : corner[1]],
-                    *r = mesh->colours[flat ? triangle : corner[2]];
+        bool whole = mesh->colours_by_triangle;
+        const float *p = mesh->colours[whole ? triangle : corner[0]], *q = mesh->colours[whole ? triangle : corner[1]],
+                    *r = mesh->colours[whole ? triangle : corner[2]];
         out->has_colour = true;
         out->colour = vec3_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
                                 w * (double)p[1] + u * (double)q[1] + v * (double)r[1],

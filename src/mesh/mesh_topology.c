@@ -148,11 +148,11 @@ static size_t cell_at(const struct cells *cells, const double corner[3]) {
 static uint32_t kept_near(const struct cells *cells, const double p[3], const double cell[3]) {
     uint32_t found = NONE;
     for (int k = 0; k < 27; k++) {
-        const double around[3] = {cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1};
-        for (uint32_t v = cells->first[cell_at(cells, around)]; v != NONE; v = cells->next[v]) {
+        const double neighbour[3] = {cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1};
+        for (uint32_t v = cells->first[cell_at(cells, neighbour)]; v != NONE; v = cells->next[v]) {
             const double *q = cells->vertices[v];
-            struct vec3 between = vec3_make(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
-            if (v < found && vec3_length(between) < cells->distance)
+            struct vec3 offset = vec3_make(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+            if (v < found && vec3_length(offset) < cells->distance)
                 found = v;
         }
     }

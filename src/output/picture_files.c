@@ -137,6 +137,11 @@ static bool begins(const char *name, bool (*is)(const uint8_t *head, size_t size
     return begins;
 }
 
+/* What a picture may replace. */
+static bool is_replaced(const uint8_t *head, size_t size) {
+    return size == 0 || picture_file_is(head, size);
+}
+
 bool picture_files_check_output(const struct options *options, struct error *error) {
     static const char *const animations[] = {ANIMATION_FORMATS(LIST_WORD)};
     char name[NAME_LIMIT], extensions[PICTURE_EXTENSIONS_SIZE], moving[128] = "";
@@ -144,7 +149,7 @@ bool picture_files_check_output(const struct options *options, struct error *err
     if (free_name || options->animation != ANIMATION_NONE || !output_name(options->output, 1, name, NAME_LIMIT) ||
         ending_of(name) != ENDING_OTHER ||
         /* Later checks refuse it by its contents, or write to it. */
-        (is_there(name) && !begins(name, picture_file_is)))
+        (is_there(name) && !begins(name, is_replaced)))
         return true;
     for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++)
         snprintf(moving + strlen(moving), sizeof moving - strlen(moving), "%s%s", moving[0] ? ", " : "", animations[i]);

@@ -242,6 +242,11 @@ static void note_style(struct sandbox *sandbox, const char *text, size_t size) {
                              !contains(text, size, "gr.render {") && !contains(text, size, "gr.frames");
 }
 
+/* With its byte order mark, or without: one of the first two bytes is 0. */
+static bool is_utf_16(const uint8_t *data, size_t size) {
+    return size >= 2 && (memcmp(data, "\xff\xfe", 2) == 0 || memcmp(data, "\xfe\xff", 2) == 0 || !data[0] != !data[1]);
+}
+
 int files_load(lua_State *L, const char *path) {
     struct sandbox *sandbox = sandbox_of(L);
     struct source_name *source = arena_alloc(&sandbox->keep, sizeof *source);
@@ -268,6 +273,11 @@ int files_load(lua_State *L, const char *path) {
     if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
         text += 3;
         size -= 3;
+    }
+    if (is_utf_16(bytes.data, bytes.size)) {
+        lua_pushfstring(L, "%s:1: this is UTF-16 text; save it as UTF-8", path);
+        file_unmap(&bytes);
+        return LUA_ERRSYNTAX;
     }
     if (size > 0 && text[0] == '#') {
         const char *end = memchr(text, '\n', size);

@@ -353,12 +353,12 @@ end
 -- Files that are given as scripts by mistake. The first bytes decide before the ending does.
 
 local picture = 'is a picture, not a scene; -o FILE names the picture to write, and gr.texture(\'FILE\') reads one'
-local model = 'is a model, not a scene; a script shows it with gr.mesh(material, \'FILE\')'
+local model = 'is a model, and its name has no ending of models (.glb .gltf .obj .ply .stl); gr.model(\'FILE\') of a script reads it'
 local other_model = 'is a model, not a scene; gr.mesh of a script reads OBJ, PLY, STL and glTF files'
 local other_scene = 'is a file of another program; gray reads scenes that are Lua scripts (docs/language.md)'
 local endings = {
     [set'png jpg jpeg gif hdr exr webp bmp tif tiff tga ppm pfm svg apng mp4 webm y4m mkv mov avi'] = picture,
-    [set'glb gltf ply stl obj gz'] = model,
+    [set'gz'] = model,
     [set'fbx 3ds dae off step stp iges 3mf usd usda usdz abc x3d wrl'] = other_model,
     [set'blend pov inc scad pbrt pde py js json xml ma mb max c4d skp html htm md txt pdf doc csv sh zip'] = other_scene,
 }

@@ -86,6 +86,21 @@ static int collect_garbage(lua_State *L) {
     return lua_gettop(L);
 }
 
+/* Lua's warn(text, ...), with the line of the scene. Control messages ("@on") have no effect. */
+static int warn(lua_State *L) {
+    for (int k = 1; k == 1 || k <= lua_gettop(L); k++)
+        (void)luaL_checkstring(L, k);
+    lua_concat(L, lua_gettop(L));
+    if (*lua_tostring(L, 1) == '@')
+        return 0;
+    struct sandbox *sandbox = sandbox_of(L);
+    const struct running_function outer = sandbox->running; /* it does not warn */
+    sandbox->running = (struct running_function){0};
+    sandbox_warn(sandbox, "%s", lua_tostring(L, 1));
+    sandbox->running = outer;
+    return 0;
+}
+
 struct allowed {
     const char *library, *names; /* separated by blanks, one before and one after */
 };
@@ -165,6 +180,7 @@ void libraries_open(lua_State *L) {
     }
     embedded_open(L);
     set_function(L, "os", "exit", end_script);
+    set_function(L, LUA_GNAME, "warn", warn);
     if (sandbox_of(L)->options->no_sandbox)
         return;
     for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)

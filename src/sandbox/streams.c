@@ -55,14 +55,22 @@ static void push_failure(lua_State *L, const char *name, const char *why) {
     lua_remove(L, -2);
 }
 
-/* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always, then
- * where meshes and images are looked for. */
+/* Where a file to read is, if not at its name: where meshes and images are looked for. A mesh, which readers of courses
+ * open so, may also be in another folder of the scene. */
+static bool find_to_read(struct sandbox *sandbox, const char *name, char found[PATH_SIZE]) {
+    const char *ending = strrchr(name, '.');
+    struct error ignored;
+    return files_find(sandbox, name, found) ||
+           (ending && strcmp(ending, ".obj") == 0 && files_require(sandbox, name, found, &ignored));
+}
+
+/* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always. */
 static int open_stream(lua_State *L, const char *name, const char *mode) {
     struct sandbox *sandbox = sandbox_of(L);
     char found[PATH_SIZE];
     bool write = mode[0] != 'r' || strchr(mode, '+');
     const char *path = name;
-    if (!write && !path_policy_is_readable(sandbox->path_policy, name) && files_find(sandbox, name, found))
+    if (!write && !path_policy_is_readable(sandbox->path_policy, name) && find_to_read(sandbox, name, found))
         path = found;
     luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
     stream->closef = NULL; /* closed, for its finalizer */

@@ -2,6 +2,7 @@
  * canonical path (files). Scenes make meshes by the hundred thousand, so a hash table finds them; files are few, and a
  * look-up in their lists costs far less than reading one. */
 #include "scene/assets.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "image/image.h"
@@ -151,6 +152,16 @@ bool assets_add_object(struct assets *assets, const char *key, void *object, voi
     *entry = (struct asset_object){.object = object, .destroy = destroy, .key = copy, .next = assets->objects};
     assets->objects = entry;
     return true;
+}
+
+bool assets_has_image(const struct assets *assets, const char *path) {
+    struct file_identity wanted, found;
+    if (!file_identity_of(path, &wanted))
+        return false;
+    for (const struct asset_image *entry = assets->images; entry; entry = entry->next)
+        if (file_identity_of(entry->path, &found) && found.device == wanted.device && found.inode == wanted.inode)
+            return true;
+    return false;
 }
 
 struct image *assets_image(struct assets *assets, const char *path, struct error *error) {

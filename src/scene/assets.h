@@ -38,6 +38,8 @@ void assets_destroy(struct assets *assets);
 /* The mesh of this input: an equal one from the store or a new one. Owned by the store. */
 struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error);
 struct image *assets_image(struct assets *assets, const char *path, struct error *error);
+/* Whether it has the picture in that file. */
+bool assets_has_image(const struct assets *assets, const char *path);
 /* By key (the canonical path and how it was read); NULL when it is not there yet; and the way to add it: the store
  * takes over object, also when it fails. */
 void *assets_find_object(struct assets *assets, const char *key);

@@ -151,6 +151,7 @@ struct scene {
     struct scene_changes changes;
     enum transform_order order;
     bool studio;      /* the studio light acts: shapes without a material are light gray, without a warning */
+    bool is_model;    /* of a model of the command line: the same, and model_scene.lua is the script */
     bool spins;       /* some node does */
     double time;      /* seconds since the first frame, for spins; scene_set_time */
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */

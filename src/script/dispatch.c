@@ -11,6 +11,7 @@
 #include "formats/font.h"
 #include "record/record.h"
 #include "script/gr_frames_internal.h"
+#include "script/gr_model_internal.h"
 #include "script/gr_words_internal.h"
 #include "script/table_internal.h"
 #include "settings/foreign_words.h"
@@ -278,6 +279,8 @@ static int node_index(lua_State *L) {
     assert(handle && handle->type == HANDLE_NODE); /* scripts cannot reach the metatable */
     c->sandbox.running.subject = ((const struct node *)handle->pointer)->name;
     if (lua_type(L, 2) != LUA_TSTRING)
+        return 1;
+    if (models_push_field(L, handle->pointer, lua_tostring(L, 2)))
         return 1;
     if (!c->lenient)
         no_such_name(c, OWNER_NODE, lua_tostring(L, 2));

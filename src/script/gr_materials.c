@@ -160,6 +160,11 @@ static bool with_textures(struct script_context *context, struct material *m, co
         bool is_hole = inputs[i].input == INPUT_OPACITY && value->given && value->number < 1;
         if (!value->texture && !is_hole)
             continue;
+        const struct texture_image *cut = gr_cut_of(value, inputs[i].input);
+        if (cut && !material_cut_by_alpha(m, cut, arena, error))
+            return false;
+        if (cut && inputs[i].input == INPUT_OPACITY)
+            continue;
         const struct texture *texture = number_or_texture(context, value, error);
         if (texture && inputs[i].is_share)
             texture = texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error);
@@ -364,15 +369,18 @@ static bool image_over(struct script_context *context, const struct texture_imag
     struct material *m = scene_material(&context->scene, MATERIAL_IMAGE, base, error);
     if (!m)
         return false;
-    bool ok = input == INPUT_OPACITY ? material_cut(m, image, 0, arena, error)
-                                     : material_cover(m, input, image, arena, error);
+    bool holes = input == INPUT_OPACITY;
+    if ((holes || input == INPUT_KD) && !material_cut_by_alpha(m, image, arena, error))
+        return false;
+    bool ok =
+        holes ? image->cuts || material_cut(m, image, 0, arena, error) : material_cover(m, input, image, arena, error);
     return ok && give(result, m);
 }
 
 enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_MAPPING };
 static const struct script_parameter image_parameters[] = {
     [IMAGE_MATERIAL] = BASE,
-    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
+    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A picture file, or a texture."},
     [IMAGE_FILTER] = FILTER,
     [IMAGE_FLIP_U] = FLIP_U,
     [IMAGE_MAPPING] = SPHERE_MAPPING,
@@ -403,7 +411,7 @@ static bool gr_td_sphere(struct script_context *context, const struct script_val
 enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
 static const struct script_parameter image_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
-    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
+    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A picture file, or a texture."},
     LOOKUP_FIELDS(OVER_LOOKUP),
     [OVER_CHANNEL] = {"channel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_CHANNELS), NULL, "'kd'",
                       "The input that the image replaces; where opacity is below 1, the surface has holes."},
@@ -440,16 +448,23 @@ static bool read_bump(struct script_context *context, const struct script_value 
     return true;
 }
 
-enum { TEXTURE_FILE, TEXTURE_LOOKUP };
+enum { TEXTURE_FILE, TEXTURE_LOOKUP, TEXTURE_ALPHA = TEXTURE_LOOKUP + LOOKUP_COUNT };
 static const struct script_parameter texture_parameters[] = {
-    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
+    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A picture file."},
     LOOKUP_FIELDS(TEXTURE_LOOKUP),
+    [TEXTURE_ALPHA] = {"alpha", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                       "Whether the alpha of the picture is the opacity of the surface."},
 };
 
 static bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
                        struct error *error) {
+    struct texture_image image;
+    if (!read_image(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], &image, error))
+        return false;
+    if (args[TEXTURE_ALPHA].given)
+        image.cuts = args[TEXTURE_ALPHA].boolean;
     struct script_texture texture = {.texture =
-                                         read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error)};
+                                         texture_keep(&context->scene.arena, texture_image(&image, NULL), error)};
     result->pointer = texture.texture ? context_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
@@ -468,7 +483,7 @@ enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KI
         "Contents: heights, or normals as colours (x right, y up, z outwards).")
 
 static const struct script_parameter bump_parameters[] = {
-    [BUMP_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
+    [BUMP_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A picture file, or any texture."},
     LOOKUP_FIELDS(BUMP_LOOKUP),
     [BUMP_AMOUNT] = BUMP_AMOUNT_FIELD,
     [BUMP_KIND] = BUMP_KIND_FIELD,
@@ -486,7 +501,7 @@ static bool gr_bump(struct script_context *context, const struct script_value *a
 enum { BUMP_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, BUMP_OVER_KIND };
 static const struct script_parameter bump_over_parameters[] = {
     [OVER_MATERIAL] = BASE,
-    [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or a result of gr.bump."},
+    [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A picture file, or a result of gr.bump."},
     LOOKUP_FIELDS(OVER_LOOKUP),
     [BUMP_OVER_AMOUNT] = BUMP_AMOUNT_FIELD,
     [BUMP_OVER_KIND] = BUMP_KIND_FIELD,

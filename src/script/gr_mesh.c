@@ -7,7 +7,9 @@
 #include "formats/font.h"
 #include "formats/model_node.h"
 #include "mesh/mesh_smooth.h"
+#include "script/gr_model_internal.h"
 #include "script/rows_internal.h"
+#include "script/script_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,19 +85,43 @@ static void warn_of_model(struct script_context *context, const struct model *mo
         sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
 }
 
+/* Finds the file of a mesh. Scenes of courses name it without its ending, as gr.mesh('cow', 'cow'), and the puppets
+ * of one course have the name of the mesh first: gr.mesh('sphere', 'torso'). */
+static bool find_mesh(struct script_context *context, const struct script_value *args, char path[PATH_SIZE],
+                      struct error *error) {
+    static const char *const endings[] = {".obj", ".ply", ".stl", ".glb", ".gltf"};
+    const char *name = args[MESH_FILE].text, *slash = strrchr(name, '/');
+    if (files_require(&context->sandbox, name, path, error))
+        return true;
+    if (error->kind != ERROR_SCENE || error->limit || error->refused || strchr(slash ? slash : name, '.'))
+        return false;
+    const char *bases[] = {name, args[MESH_NAME].given ? args[MESH_NAME].text : name};
+    for (size_t k = 0; k < 2 * COUNT(endings); k++) {
+        char file[PATH_SIZE];
+        struct error other;
+        const char *base = bases[k / COUNT(endings)];
+        int length = snprintf(file, sizeof file, "%s%s", base, endings[k % COUNT(endings)]);
+        if (length >= PATH_SIZE || !files_require(&context->sandbox, file, path, &other))
+            continue;
+        if (base != name)
+            sandbox_warn(&context->sandbox, "there is no mesh '%s'; '%s' is shown", name, file);
+        return true;
+    }
+    return false;
+}
+
 static struct model *model_of_file(struct script_context *context, const struct script_value *args,
                                    struct error *error) {
-    const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
     struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
                                     .search_context = &context->sandbox,
                                     .forgive = context->lenient != NULL};
     read_options(args, &options);
-    if (!files_require(&context->sandbox, name, path, error))
+    if (!find_mesh(context, args, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
-        error_set(error, ERROR_SCENE, "cannot find '%s'", name);
+        error_set(error, ERROR_SCENE, "cannot find '%s'", args[MESH_FILE].text);
         return NULL;
     }
     bool fresh;
@@ -278,6 +304,8 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
                                         .part_count = parts->count};
         if (args[MESH_FACE_MATERIALS].given)
             return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
+        if (!model && context->scene.is_model) /* the message is complete */
+            return error_elsewhere(error);
         if (!model && context->lenient && error->kind == ERROR_SCENE && !error->limit) {
             lenient_warn(context, "%s: a cube takes its place", error->text);
             *error = (struct error){0};
@@ -289,7 +317,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
         int warned = model->warning_count;
         result->pointer = model_add_nodes(&context->scene, model, &placing, error);
         warn_of_model(context, model, warned);
-        return result->pointer != NULL;
+        return result->pointer && models_note(context, result->pointer, model, error);
     }
     /* Tables: one node. */
     struct mesh *mesh = mesh_from_tables(context, args, name, error);
@@ -314,6 +342,34 @@ static const struct script_parameter glyphs_parameters[] = {
     [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
 };
 
+/* The bytes of letter k of a text in UTF-8. */
+static int letter_bytes(const char *at) {
+    int count = 1;
+    while ((at[count] & 0xc0) == 0x80)
+        count++;
+    return count;
+}
+
+/* One warning names the letters of a text that the font lacks. */
+static void warn_of_missing(struct script_context *context, const char *path, const char *string,
+                            const struct font_text *text) {
+    enum { NAMED = 8 };
+    char names[NAMED * 8 + 1] = "", more[32] = "";
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < text->count; string += letter_bytes(string), k++) {
+        bool is_new = text->glyphs[k].missing;
+        for (uint32_t i = 0; i < k && is_new; i++)
+            is_new = text->glyphs[i].code != text->glyphs[k].code;
+        if (is_new && ++count <= NAMED)
+            (void)snprintf(names + strlen(names), sizeof names - strlen(names), "%s\"%.*s\"", count > 1 ? ", " : "",
+                           letter_bytes(string), string);
+    }
+    if (count > NAMED)
+        (void)snprintf(more, sizeof more, " and %u others", count - NAMED);
+    if (count > 0)
+        sandbox_warn(&context->sandbox, "%s has no letter for %s%s", path, names, more);
+}
+
 static bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     char path[PATH_SIZE];
@@ -334,10 +390,8 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);
-    for (uint32_t k = 0; done && k < text->count; k++)
-        if (text->glyphs[k].missing)
-            context_warn_once(context, WARNED_OTHER, "%s has no letter U+%04X, and maybe others", path,
-                              text->glyphs[k].code);
+    if (done)
+        warn_of_missing(context, path, args[GLYPHS_TEXT].text, text);
     result->pointer = text;
     return done;
 }
@@ -346,7 +400,9 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
 
 static const struct script_function mesh_rows[] = {
     GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
-       "material verts faces", "name file", "name verts faces", "material file"),
+       "material verts faces", "name file", "name verts faces", "material file", "name verts normals faces"),
+    GR("model", mesh_parameters, RESULT_NODE, gr_mesh,
+       "The same as gr.mesh of a file: its node, which also has its cameras and lights.", "file"),
     GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
     GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),

@@ -75,7 +75,7 @@ static bool gr_set_material(struct script_context *context, const struct script_
 enum { SET_TEXTURE = 1 };
 static const struct script_parameter set_texture_parameters[] = {
     SELF_PARAMETER,
-    [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a PNG or JPEG file."},
+    [SET_TEXTURE] = {"texture", KIND_IMAGE, 0, ANY, NULL, NULL, "A texture, or the name of a picture file."},
 };
 
 /* How the image is mapped depends on the shape (docs/language.md 6.2); that is decided when the scene is flattened. */
@@ -96,7 +96,7 @@ enum { SET_BUMP = 1 };
 static const struct script_parameter set_bump_parameters[] = {
     SELF_PARAMETER,
     [SET_BUMP] = {"bump", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL,
-                  "A result of gr.bump, or the name of a PNG or JPEG file."},
+                  "A result of gr.bump, or the name of a picture file."},
 };
 
 /* Likewise. */

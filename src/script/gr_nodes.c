@@ -119,9 +119,9 @@ static bool gr_instances(struct script_context *context, const struct script_val
 enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN };
 static const struct script_parameter joint_parameters[] = {
     [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
-    [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
+    [JOINT_X] = {"x", KIND_TRIPLE, OPTIONAL, ANY, "degrees", "{0, 0, 0}",
                  "Smallest, initial and largest angle about x; gray draws the initial one."},
-    [JOINT_Y] = {"y", KIND_TRIPLE, 0, ANY, "degrees", NULL, "The same for y."},
+    [JOINT_Y] = {"y", KIND_TRIPLE, OPTIONAL, ANY, "degrees", "{0, 0, 0}", "The same for y."},
     [JOINT_CHILDREN] = CHILDREN,
 };
 
@@ -381,7 +381,7 @@ static const struct script_function node_rows[] = {
     GR("instances", instances_parameters, RESULT_NODE, gr_instances,
        "A node at many positions; each position costs a tenth of the memory of a node.", "of at"),
     GR("joint", joint_parameters, RESULT_NODE, gr_joint,
-       "A node that rotates about x and y, with limits of the angles.", "name x y"),
+       "A node that rotates about x and y, with limits of the angles.", "name x? y?"),
     GR("sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere; by default of radius 1 at the origin.",
        "material", "name"),
     GR("cube", cube_parameters, RESULT_NODE, gr_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",

@@ -200,6 +200,11 @@ static bool with_texture(struct script_context *context, struct material *m, enu
     struct arena *arena = &context->scene.arena;
     if (!value->texture)
         return true;
+    const struct texture_image *cut = gr_cut_of(value, input);
+    if (cut && !material_cut_by_alpha(m, cut, arena, error))
+        return false;
+    if (cut && input == INPUT_OPACITY)
+        return true;
     const struct texture *texture = texture_of(context, value, error);
     if (texture && is_share)
         texture = texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error);

@@ -1,4 +1,5 @@
 /* gr.render. */
+#include "base/file.h"
 #include "compat/lenient.h"
 #include "compat/lenient_picture.h"
 #include "image/picture_file.h"
@@ -409,7 +410,7 @@ static bool render_turntable(struct script_context *context, const struct render
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
         if (context->scene.studio && !first->changed) /* the light of a studio turns with the camera */
-            studio_light(&request, lights);
+            studio_light(&request, context->scene.is_model, lights);
         if (!host->render(host->context, &request, error))
             return false;
     }
@@ -420,10 +421,14 @@ static bool render_turntable(struct script_context *context, const struct render
 static bool name_picture(struct script_context *context, struct script_value *file) {
     struct script *script = script_of(context);
     char end[32], name[PATH_SIZE];
-    uint32_t number = ++script->unnamed;
+    uint32_t number = ++script->unnamed, namesakes = script->host->namesakes;
     bool numbered = script->several_pictures || number > 1;
     (void)snprintf(end, sizeof end, numbered ? "-%u.png" : ".png", (unsigned)number);
     context_picture_name(context, end, name, sizeof name);
+    if (script->context.scene.is_model && (namesakes > 0 || assets_has_image(context->scene.assets, name))) {
+        (void)snprintf(end, sizeof end, namesakes > 1 ? "-render-%u.png" : "-render.png", (unsigned)namesakes);
+        context_picture_name(context, end, name, sizeof name);
+    }
     *file = (struct script_value){.given = true, .text = arena_format(&context->sandbox.call, "%s", name)};
     return file->text != NULL;
 }
@@ -460,6 +465,22 @@ static void fit_camera(const struct script_context *context, struct script_value
     set_number(&args[RENDER_VIEW_HEIGHT], framed.view_height);
 }
 
+/* --sky takes the place of sky and background. */
+static bool use_sky_of_command_line(struct script_context *context, struct script_value *args, struct error *error) {
+    const char *sky = context->sandbox.options->sky;
+    char path[PATH_SIZE];
+    if (!sky)
+        return true;
+    if (!file_canonical(sky, path, sizeof path)) {
+        error_set(error, ERROR_SCENE, "--sky: cannot find '%.600s'", sky);
+        return error_elsewhere(error);
+    }
+    const char *text = arena_format(&context->sandbox.call, "%s", path);
+    args[RENDER_SKY] = (struct script_value){.given = true, .text = text};
+    args[RENDER_BACKGROUND] = args[RENDER_MIRROR] = (struct script_value){0};
+    return text || error_no_memory(error, "a sky");
+}
+
 /* Fills in what a picture may leave out. Positional pictures of --lenient have a camera of their own. */
 static bool complete(struct script_context *context, struct script_value *args, struct error *error) {
     enum { WIDTH = 960 };
@@ -480,15 +501,16 @@ static bool light_dark_picture(struct script_context *context, const struct scri
     struct scene *scene = &context->scene;
     bool studio = script->only_named_pictures && !args[RENDER_LIGHTS].given && !args[RENDER_AMBIENT].given &&
                   !args[RENDER_BACKGROUND].given && !args[RENDER_SKY].given;
-    if (studio && !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
+    if (studio && !script->context.scene.is_model &&
+        !studio_is_dark(scene, request->root, &context->sandbox.call, &studio, error))
         return false;
     if (scene->studio != studio)
         scene_note_change(scene);
     scene->studio = studio;
     if (!studio)
         return true;
-    studio_light(request, lights);
-    if (script->studio_noticed || script->host->repeats)
+    studio_light(request, script->context.scene.is_model, lights);
+    if (script->studio_noticed || script->host->repeats || script->context.scene.is_model)
         return true;
     script->studio_noticed = true;
     char text[PATH_SIZE + 256];
@@ -507,7 +529,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     /* Arguments that are missing are completed. */
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
-    if (!complete(context, args, error))
+    if (!use_sky_of_command_line(context, args, error) || !complete(context, args, error))
         return false;
     /* The request as the arguments state it. */
     char where[PATH_SIZE + 32], title[96];

@@ -16,13 +16,20 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
     const struct script_texture *given = value->texture;
     struct vec3 v = value->vector;
     const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
-    if (image) { /* transparent parts are white */
+    if (image) { /* transparent parts are white, unless alpha is opacity */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
-        return white ? texture_keep(arena, texture_image(image, white), error) : NULL;
+        struct texture_image own = *image;
+        own.alpha = image->cuts ? ALPHA_STRAIGHT : image->alpha;
+        return white ? texture_keep(arena, texture_image(&own, white), error) : NULL;
     }
     if (given)
         return given->texture;
     return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
+}
+
+const struct texture_image *gr_cut_of(const struct script_value *value, enum material_input input) {
+    const struct texture_image *image = value->texture ? texture_as_image(value->texture->texture) : NULL;
+    return image && image->cuts && (input == INPUT_KD || input == INPUT_OPACITY) ? image : NULL;
 }
 
 static bool give(struct script_context *context, struct texture texture, struct script_result *result,

@@ -12,11 +12,14 @@
 #include "compat/lenient_picture.h"
 #include "compat/order.h"
 #include "compat/traverse.h"
+#include "formats/model.h"
 #include "record/record.h"
 #include "sandbox/embedded.h"
 #include "sandbox/hints.h"
 #include "script/dispatch_internal.h"
+#include "script/gr_model_internal.h"
 #include "script/gr_textures_internal.h"
+#include "script/model_scene_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -143,9 +146,14 @@ static int run_scene(lua_State *L) {
     lua_settop(L, 0);
     limits_open(L);
     dialect_run(L);
-    if (files_load(L, script->context.sandbox.files.path) != LUA_OK)
-        return lua_error(L);
-    lua_call(L, 0, 0);
+    if (script->context.scene.is_model) {
+        model_scene_run(L);
+    } else {
+        if (files_load(L, script->context.sandbox.files.path) != LUA_OK)
+            return lua_error(L);
+        lua_call(L, 0, 0);
+    }
+    models_report_unused(script);
     dialect_finish(L);
     return 0;
 }
@@ -172,6 +180,10 @@ static bool choose_order(struct script *script, struct error *error) {
     struct scene *scene = &script->context.scene;
     const char *path = sandbox->files.path;
     struct order_finding finding;
+    if (script->context.scene.is_model) {
+        script->only_named_pictures = true;
+        return true;
+    }
     if (!order_detect(path, sandbox->options->library_folder, sandbox->path_policy, &finding, error))
         return false;
     script->only_named_pictures = finding.only_named_pictures;
@@ -201,10 +213,18 @@ static bool choose_order(struct script *script, struct error *error) {
     return true;
 }
 
+static bool add_folder_of_sky(const struct script_options *options, struct path_policy *path_policy,
+                              struct error *error) {
+    char folder[PATH_SIZE];
+    const char *sky = options->sky ? options->sky : "", *slash = strrchr(sky, '/');
+    (void)snprintf(folder, sizeof folder, "%.*s.", slash ? (int)(slash + 1 - sky) : 0, sky);
+    return !options->sky || path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error);
+}
+
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error) {
     bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error) &&
-              dialect_add_folder(options, path_policy, error);
+              dialect_add_folder(options, path_policy, error) && add_folder_of_sky(options, path_policy, error);
     for (int k = 0; ok && k < options->allow_read_count; k++)
         ok = path_policy_add(path_policy, options->allow_read[k], PATH_POLICY_READ, error);
     for (int k = 0; ok && k < options->allow_write_count; k++)
@@ -327,6 +347,7 @@ bool script_run(const char *path, const struct script_options *options, const st
     *traceback = NULL;
     *sandbox = sandbox_of_script(path, options, host);
     scene_init(&script.context.scene, host->assets);
+    script.context.scene.is_model = model_is_named(path);
     struct path_policy path_policy = {0};
     /* The message if the message handler failed. */
     error_set(&script.failure, ERROR_SCENE, "%s: an error while an error was reported", path);

@@ -66,6 +66,8 @@ struct script_host {
     struct frame frame;
     bool repeats;
     uint32_t frame_limit;                /* of gr.frames; 0: FRAMES_MAX */
+    bool checks;                         /* --check: a model lists its contents */
+    uint32_t namesakes;                  /* models before this one whose picture has the same name */
     void (*animates)(void *context);     /* the script has called gr.frames */
     void (*frame_begins)(void *context); /* another frame of it: the script's time counts from here */
     /* For a window, or NULL: the number of the frame to render after `frame` (number 0: none yet); 0: no more. */

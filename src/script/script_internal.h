@@ -19,6 +19,7 @@ struct script {
     uint32_t unnamed;  /* pictures without a file name so far */
     struct script_changes changes;
     struct script_animation animation;
+    struct script_model *models; /* the nodes of files, the newest first (gr_model.c) */
 };
 
 static inline struct script *script_of(const struct script_context *context) {

@@ -13,6 +13,9 @@ struct camera_axes {
     struct vec3 right, up, back;
 };
 
+/* From the front, right and above. */
+static const struct vec3 default_view = {-0.4, -0.35, -1};
+
 static struct camera_axes axes_of(struct vec3 view, struct vec3 up) {
     struct vec3 back = vec3_negate(vec3_normalize(view)), right = vec3_cross(up, back);
     if (vec3_max_abs(right) <= 1e-9 * vec3_max_abs(up))
@@ -52,7 +55,7 @@ struct framed studio_frame(struct node *root, const struct framing *framing) {
     const double tall = 0.7, wide = 0.8, edge = 0.95; /* parts of the picture that the scene fills, and may fill */
     bool chosen = vec3_max_abs(framing->view) > 0;
     struct vec3 up = vec3_max_abs(framing->up) > 0 ? framing->up : vec3_make(0, 1, 0);
-    struct camera_axes axes = axes_of(chosen ? framing->view : vec3_make(-0.4, -0.35, -1), up);
+    struct camera_axes axes = axes_of(chosen ? framing->view : default_view, up);
     struct box box = box_along(root, &axes);
 
     /* The middle, and how far the scene extends from it. */
@@ -106,10 +109,10 @@ bool studio_is_dark(const struct scene *scene, const struct node *root, struct a
 }
 
 /* A square soft box: far enough away that all of the scene has the same light, to that direction. `light`: what a white
- * surface that faces it reflects. */
+ * surface that faces it reflects. `radius`: of the scene, or of all that is to have the same light. */
 static struct scene_light soft_box(const struct camera_axes *axes, struct vec3 middle, double radius,
                                    struct vec3 direction, double light) {
-    const double far = 30, side = 18; /* in radii of the scene */
+    const double far = 30, side = 18; /* in radii */
     struct vec3 to = vec3_normalize(along_axes(axes, direction));
     struct camera_axes own = axes_of(vec3_negate(to), axes->up);
     struct vec3 position = vec3_add_scaled(middle, to, far * radius);
@@ -127,7 +130,16 @@ static struct scene_light soft_box(const struct camera_axes *axes, struct vec3 m
                                           .visible = true}};
 }
 
-void studio_light(struct render_request *request, struct scene_light lights[STUDIO_LIGHTS]) {
+/* Directions along the axes of the camera, and the light on a white surface that faces them: {display, linear}. */
+static const struct soft_light {
+    struct vec3 to;
+    double light[2];
+} soft_lights[STUDIO_LIGHTS] = {{{-0.6, 0.7, 1.1}, {0.52, 0.42}}, {{0.9, 0.15, 0.8}, {0.15, 0.06}}};
+static const double ambient[2] = {0.44, 0.35}, even_sky = 0.3;
+static const double ground_radius = 64;    /* of what a camera sees of the ground, in radii of the scene */
+static const double before_even = 4.0 / 3; /* factor of the boxes: the even background is not bright */
+
+void studio_light(struct render_request *request, bool even, struct scene_light lights[STUDIO_LIGHTS]) {
     /* {y of the direction, r, g, b}: light from the sky of a path. */
     static const double stops[][4] = {{-1, 0.28, 0.28, 0.28}, {0, 0.52, 0.52, 0.52}, {1, 0.46, 0.46, 0.46}};
     const struct camera *camera = &request->camera;
@@ -137,15 +149,29 @@ void studio_light(struct render_request *request, struct scene_light lights[STUD
     struct camera_axes axes = axes_of(has_view ? view : vec3_make(0, 0, -1), camera->up);
     struct box box = box_along(request->root, &axes);
     struct vec3 middle = along_axes(&axes, vec3_scale(vec3_add(box.min, box.max), 0.5));
-    double radius = 0.5 * vec3_length(vec3_sub(box.max, box.min));
-    lights[0] = soft_box(&axes, middle, radius, vec3_make(-0.6, 0.7, 1.1), linear ? 0.42 : 0.52);
-    lights[1] = soft_box(&axes, middle, radius, vec3_make(0.9, 0.15, 0.8), linear ? 0.06 : 0.15);
+    double radius = (even ? ground_radius : 1) * 0.5 * vec3_length(vec3_sub(box.max, box.min));
+    for (int i = 0; i < STUDIO_LIGHTS; i++)
+        lights[i] =
+            soft_box(&axes, middle, radius, soft_lights[i].to, (even ? before_even : 1) * soft_lights[i].light[linear]);
     request->lights = lights;
     request->light_count = STUDIO_LIGHTS;
     if (is_path) {
         request->sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 3};
         request->sky_chosen = true;
     } else {
-        request->ambient = vec3_all(linear ? 0.35 : 0.44);
+        request->ambient = vec3_all(ambient[linear]);
     }
+    if (even)
+        request->sky = (struct sky){.kind = SKY_CONSTANT, .colour = vec3_all(even_sky)};
+}
+
+double studio_ground(const struct settings *settings, struct vec3 view) {
+    const double facing = 0.893; /* of a soft box of that size, which is near: its solid angle is smaller */
+    struct camera_axes axes = axes_of(vec3_max_abs(view) > 0 ? view : default_view, vec3_make(0, 1, 0));
+    bool linear = settings_linear(settings);
+    double light = settings->integrator == INTEGRATOR_PATH ? even_sky : ambient[linear];
+    for (int i = 0; i < STUDIO_LIGHTS; i++)
+        light += facing * before_even * soft_lights[i].light[linear] *
+                 fmax(vec3_normalize(along_axes(&axes, soft_lights[i].to)).y, 0);
+    return even_sky / light;
 }

@@ -28,7 +28,10 @@ bool studio_is_dark(const struct scene *scene, const struct node *root, struct a
                     struct error *error);
 
 enum { STUDIO_LIGHTS = 2 };
-/* Lights a request whose camera and settings are complete: key, fill and sky. `lights` is the caller's memory. */
-void studio_light(struct render_request *request, struct scene_light lights[STUDIO_LIGHTS]);
+/* Lights a request whose camera and settings are complete: key, fill and sky. `lights` is the caller's memory. even:
+ * the background is the same in all directions. */
+void studio_light(struct render_request *request, bool even, struct scene_light lights[STUDIO_LIGHTS]);
+/* The kd of a level ground that is as bright as the even background, seen along `view`: it shows only its shadow. */
+double studio_ground(const struct settings *settings, struct vec3 view);
 
 #endif

@@ -524,12 +524,16 @@ static bool refuse_for_action(const struct setting *option, int action, struct e
                      (int)shown_name(option).length, option->option, actions[action].why);
 }
 
-/* Options that change a picture without being settings. A dialect counts as a file that is read. */
+/* Options that change a picture without being settings. A dialect and a sky count as files that are read. */
 static struct digest digest_option(const struct setting *option, const struct options *options, struct digest digest) {
     const char *field = (const char *)options + option->offset;
     if (option->kind == SETTING_SIZE || option->kind == SETTING_FRAMES) /* numbers without padding */
         return digest_bytes(field, option->kind == SETTING_SIZE ? 2 * option->size : option->size, digest);
-    assert(option->size <= sizeof(uint64_t) && option->kind != SETTING_TEXT);
+    if (option->kind == SETTING_TEXT) {
+        const char *text = *(const char *const *)field;
+        return digest_bytes(text ? text : "", text ? strlen(text) + 1 : 0, digest);
+    }
+    assert(option->size <= sizeof(uint64_t));
     return setting_digest(option, options, digest);
 }
 

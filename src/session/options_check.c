@@ -2,6 +2,7 @@
 #include "session/options_check.h"
 #include "session/options_internal.h"
 
+#include "formats/model.h"
 #include "image/picture_file.h"
 
 #include <string.h>
@@ -24,6 +25,14 @@ static bool check_together(const struct options *options, struct error *error) {
             return error_set(error, ERROR_USAGE, "the name of a script is empty");
         if (strcmp(options->scripts[i], "-") == 0)
             return error_set(error, ERROR_USAGE, "scripts are not read from standard input; give the name of a file");
+        bool for_model = options->script.camera || options->script.up != MODEL_UP_AUTO;
+        if (for_model && !merge && !model_is_named(options->scripts[i]))
+            return error_set(error, ERROR_USAGE,
+                             options->script.camera
+                                 ? "--camera is for models, but %.600s is a script: the field eye of its gr.render is "
+                                   "its camera"
+                                 : "--up is for models, but %.600s is a script: the field up of its gr.render is up",
+                             options->scripts[i]);
     }
     /* Files that would have one name, or none. */
     if (options->targets_prefix && options->first_pass_prefix &&

@@ -15,6 +15,13 @@
     X(SCRIPT_ORDER_SEPARATE, "separate")
 enum script_order { SCRIPT_ORDERS(LIST_MEMBER) };
 
+/* The axis of a model that points up. */
+#define MODEL_UPS(X)                                                                                                   \
+    X(MODEL_UP_AUTO, "auto")                                                                                           \
+    X(MODEL_UP_Y, "y")                                                                                                 \
+    X(MODEL_UP_Z, "z")
+enum model_up { MODEL_UPS(LIST_MEMBER) };
+
 struct script_define {
     const char *name, *value; /* -D name=value */
 };
@@ -23,6 +30,9 @@ struct script_options {
     enum script_order transform_order;
     bool lenient;
     const char *dialect; /* --dialect: a name or a file, or NULL */
+    const char *sky;     /* --sky: a picture file, or NULL */
+    const char *camera;  /* --camera: its name or number in the model, or NULL */
+    enum model_up up;    /* --up, of models */
     uint64_t seed;       /* math.random starts from it */
     const struct script_define *defines;
     int define_count;

@@ -104,7 +104,8 @@ enum shape_area shape_area(const struct shape *shape);
 bool shape_is_closed(const struct shape *shape);
 /* The position of the whole shape relative to the outside at any of its points: CONVEXITY_BEHIND for convex ones. */
 enum hit_convexity shape_convexity(const struct shape *shape);
-/* Why it is not closed, as the end of a sentence; NULL if it is closed. For a mesh, mesh_open_edge gives details. */
+/* Why it is not closed, as the end of a sentence; NULL if it is closed. Of a mesh, mesh_describe_open_edges says more.
+ */
 const char *shape_why_open(const struct shape *shape);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first
  * in the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */

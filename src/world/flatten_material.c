@@ -46,9 +46,14 @@ static const struct material light_gray = {
     .phong = {.kd = {0.85, 0.85, 0.85}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
+/* Where shapes without a material are meant to have none. */
+static bool is_plain_meant(const struct flattening *f) {
+    return f->scene->studio || f->scene->is_model;
+}
+
 /* Of a shape without a material. */
 static const struct material *plain_of(const struct flattening *f) {
-    return f->scene->studio ? &light_gray : &plain_gray;
+    return is_plain_meant(f) ? &light_gray : &plain_gray;
 }
 
 static bool same(const struct material_entry *a, const struct material_entry *b) {
@@ -117,7 +122,10 @@ static const struct material *covered(struct flattening *f, const struct texture
     struct material *material = derived(f, MATERIAL_IMAGE, base);
     struct texture_image mapped = *image;
     mapped.mapping = MAPPING_UV;
-    return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) ? material : NULL;
+    return material && material_cover(material, INPUT_KD, &mapped, f->arena, f->error) &&
+                   material_cut_by_alpha(material, &mapped, f->arena, f->error)
+               ? material
+               : NULL;
 }
 
 /* Likewise its bump or normal map. */
@@ -205,9 +213,8 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     *count = by_slot ? node->slot_count : 1;
     const struct texture_image *texture = node->texture;
     const struct bump *bump = node->bump;
-    /* Under the studio light plain gray is what was meant. */
     for (uint32_t i = 0; i < *count; i++) {
-        if (!bases[i] && !f->scene->studio)
+        if (!bases[i] && !is_plain_meant(f))
             warn_once(f, node,
                       by_slot ? "has faces without a material, which are shown in plain gray"
                               : "has no material and is shown in plain gray");

@@ -47,6 +47,30 @@ claims.claim('every fourth letter of the library is a closed solid', function()
     end
 end)
 
+claims.claim('every letter of Latin-1 and Windows-1252 that has ink has a shape', function()
+    local names = '€‚ƒ„…†‡ˆ‰Š‹ŒŽ‘’“”•–—˜™š›œžŸ'
+    for code = 33, 255 do
+        if code < 127 or code > 160 then names = names .. utf8.char(code) end
+    end
+    for letter in names:gmatch(utf8.charpattern) do
+        local strokes, width = font.strokes(letter)
+        assert(#strokes > 0 and width >= 0, letter)
+    end
+    -- an accent stands in the middle of its letter, above it; a capital's is higher
+    local function middle(letter, above)
+        local low, high = math.huge, -math.huge
+        for _, points in ipairs(font.strokes(letter)) do
+            for _, p in ipairs(points) do
+                if p[2] > above then low, high = math.min(low, p[1]), math.max(high, p[1]) end
+            end
+        end
+        return (low + high) / 2
+    end
+    for letter, above in pairs { ['Ä'] = 6.5, ['Ô'] = 6.5, ['ü'] = 4.5, ['î'] = 4.5, ['ñ'] = 4.5 } do
+        near(middle(letter, above), select(2, font.strokes(letter)) / 2, 1e-9, letter)
+    end
+end)
+
 claims.claim('lines are set below each other and aligned', function()
     local left, right = text.letters('abc\nde'), text.letters('abc\nde', { align = 'right' })
     local middle = text.letters('abc\nde', { align = 'centre' })

@@ -7,7 +7,7 @@ function __gray_complete
     printf '%s\n' $answer[2..]
     switch $answer[1]
         case scenes
-            __fish_complete_path "$word" | string match -r '^.*(?:\.lua|/)(?:\t.*)?$'
+            __fish_complete_path "$word" | string match -r '^.*(?:\.(?:lua|glb|gltf|obj|ply|stl)(?:\.gz)?|/)(?:\t.*)?$'
         case files
             __fish_complete_path "$word"
         case folders

@@ -108,10 +108,10 @@ TEST(font_kerning_and_missing_letters_are_reported) {
     CHECK(lay_out(font.data, font.size, "AV", &arena, &pair, &error));
     CHECK(lay_out(font.data, font.size, "A", &arena, &single, &error));
     CHECK_NEAR(pair.glyphs[1].x, single.width - 0.08, 1e-12);
-    CHECK(lay_out(font.data, font.size, "A\xe2\x82\xac\xf0\x9f\x98\x80 \xc3\xa9", &arena, &pair, &error));
+    CHECK(lay_out(font.data, font.size, "A\xcf\x88\xf0\x9f\x98\x80 \xc3\xa9", &arena, &pair, &error));
     CHECK_EQ_INT(pair.count, 5);
     CHECK(!pair.glyphs[0].missing && pair.glyphs[1].missing && pair.glyphs[2].missing && !pair.glyphs[4].missing);
-    CHECK_EQ_INT(pair.glyphs[1].code, 0x20ac);
+    CHECK_EQ_INT(pair.glyphs[1].code, 0x3c8);
     CHECK_EQ_INT(pair.glyphs[2].code, 0x1f600);
     CHECK_EQ_INT(pair.glyphs[3].contour_count, 0);
     CHECK_EQ_INT(pair.glyphs[4].code, 0xe9);

@@ -43,16 +43,17 @@ static void check_left(const struct left *cases, size_t count) {
     }
 }
 
-#define FLAT "an index of vn that does not exist: its face is flat"
-#define BARE "an index of vt that does not exist: its face has no texture coordinates"
+#define NO_NORMAL "an index of vn that does not exist: its face is flat"
+#define NO_COORDINATES "an index of vt that does not exist: its face has no texture coordinates"
 
 TEST(obj_elements_that_are_wrong_are_left_out_with_one_warning) {
     static const struct left cases[] = {
-        {"t.obj", SQUARES "vn 0 0 1\nf 1//1 2//1 3//1 4//2\nf 5//1 6//1 7//1 8//1\n", 4, ":10: " FLAT},
+        {"t.obj", SQUARES "vn 0 0 1\nf 1//1 2//1 3//1 4//2\nf 5//1 6//1 7//1 8//1\n", 4, ":10: " NO_NORMAL},
         {"t.obj", SQUARES "vn 0 0 1\nf 1//1 2//3 3//2\nf 5//-1 6//-2 7//0\n", 2,
-         ":10: " FLAT " (4 times, the first here)"},
-        {"t.obj", SQUARES "f 5//-1 6 7\nf 1//9 2//9 3//1\nvn 0 0 1\n", 2, ":9: " FLAT " (3 times, the first here)"},
-        {"t.obj", SQUARES "f 1/99999999999999999999 2 3\nf 5/1 6/2 7\nvt 0\nvt 0\n", 2, ":9: " BARE},
+         ":10: " NO_NORMAL " (4 times, the first here)"},
+        {"t.obj", SQUARES "f 5//-1 6 7\nf 1//9 2//9 3//1\nvn 0 0 1\n", 2,
+         ":9: " NO_NORMAL " (3 times, the first here)"},
+        {"t.obj", SQUARES "f 1/99999999999999999999 2 3\nf 5/1 6/2 7\nvt 0\nvt 0\n", 2, ":9: " NO_COORDINATES},
         {"t.obj", SQUARES "vn nan 0 0\nvn 0 0 1\nf 1//1 2//2 3//2\n", 1,
          ":9: vn needs 3 finite numbers: faces that use it are flat"},
         {"t.obj", SQUARES "vn 0 1\nvn 0 0 x\nvn 0 0 1e31\nvn 1.#QNAN 0 0\nf 1//1 2//2 3//2\n", 1,

@@ -44,6 +44,8 @@ static struct hit middle(void) {
                         .second = {3.5 / 16, 0.25, {1, 0, 0}, {0, 1, 0}}};
 }
 
+static struct vec3 vertex_colour = {1, 1, 1};
+
 /* inputs, bsdf: what a hit in the middle has. */
 static bool surface_of_file(const char *name, const char *material, struct surface_inputs *inputs, struct bsdf *bsdf) {
     struct assets assets = {0};
@@ -62,6 +64,8 @@ static bool surface_of_file(const char *name, const char *material, struct surfa
         struct hit hit = middle();
         hit.view = (struct vec3){0, 0, 1};
         hit.front = true;
+        hit.has_colour = true;
+        hit.colour = vertex_colour;
         material_inputs_at(node->slots[i], &hit, inputs);
         material_eval(node->slots[i], &hit, NULL, NULL, bsdf);
         found = true;
@@ -75,6 +79,22 @@ static bool surface_of_file(const char *name, const char *material, struct surfa
 static bool inputs_of_file(const char *name, const char *material, struct surface_inputs *inputs) {
     struct bsdf bsdf;
     return surface_of_file(name, material, inputs, &bsdf);
+}
+
+TEST(colours_of_vertices_multiply_the_picture_of_a_material_and_its_kd) {
+    write_even("colour 1.png", 51, 102, 255);
+    test_write_text(in_folder("c.mtl"), "newmtl picture\nKd 1 1 .5\nmap_Kd colour 1.png\nnewmtl plain\nKd .2 1 1\n");
+    test_write_text(in_folder("c.obj"), "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nvt 0 0\nmtllib c.mtl\n"
+                                        "usemtl picture\nf 1/1 2/1 3/1\nusemtl plain\nf 1 2 3\n");
+    struct surface_inputs inputs = {0};
+    vertex_colour.x = 0.5;
+    if (inputs_of_file("c.obj", "picture", &inputs)) {
+        CHECK_NEAR(inputs.kd.x, 0.5 * 0.2, 1e-12);
+        CHECK_NEAR(inputs.kd.y, 0.4, 1e-12);
+        CHECK_NEAR(inputs.kd.z, 0.5, 1e-12);
+    }
+    if (inputs_of_file("c.obj", "plain", &inputs))
+        CHECK_NEAR(inputs.kd.x, 0.1, 1e-12);
 }
 
 TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {

@@ -765,3 +765,30 @@ TEST(textures_of_one_number_are_that_number_in_every_input) {
                 " roughness = gr.multiply_texture(.5, .5), emission = gr.multiply_texture({.125, .25, 0}, 1),"
                 " opacity = gr.multiply_texture(1, .5)}");
 }
+
+/* A TGA of two pixels, `bytes` each, top row first. */
+static void write_pair(const char *name, int type, int bytes, const void *pixels) {
+    uint8_t file[18 + 8] = {0, 0, (uint8_t)type, [12] = 2, [14] = 1, [16] = (uint8_t)(8 * bytes), [17] = 32};
+    memcpy(file + 18, pixels, (size_t)bytes * 2);
+    test_write_file(test_path(name), file, 18 + (size_t)bytes * 2);
+}
+
+/* The filter takes one texel: between two of them colours are weighted by alpha. */
+TEST(the_alpha_of_a_texture_may_be_the_opacity_of_the_surface) {
+    write_pair("cut.tga", 2, 4, "\x20\x40\xff\xff\x20\xf0\x10\x40");
+    write_pair("colour.tga", 2, 3, "\x20\x40\xff\x20\xf0\x10");
+    write_pair("opacity.tga", 3, 1, "\xff\x40");
+#define CUT "gr.texture{file = 'cut.tga', filter = 'nearest', alpha = true}"
+#define COLOUR "gr.texture{file = 'colour.tga', filter = 'nearest'}"
+#define OPACITY "gr.texture{file = 'opacity.tga', filter = 'nearest'}"
+    check_equal("gr.material{kd = " CUT ", ks = {1, 1, 1}}",
+                "gr.material{kd = " COLOUR ", ks = {1, 1, 1}, opacity = " OPACITY "}");
+    check_equal("gr.image_material(gr.material{kd = {.5, 1, 1}}, " CUT ")",
+                "gr.image_material{material = gr.image_material(gr.material{kd = {.5, 1, 1}}, " COLOUR "),"
+                " image = " OPACITY ", channel = 'opacity'}");
+    check_equal("gr.openpbr_material{base_color = " CUT "}",
+                "gr.openpbr_material{base_color = " COLOUR ", geometry_opacity = " OPACITY "}");
+    /* The opacity of one is alpha, and other inputs read the colour alone. */
+    check_equal("gr.material{kd = {1, 0, 0}, opacity = " CUT ", emission = " CUT "}",
+                "gr.material{kd = {1, 0, 0}, opacity = " OPACITY ", emission = " COLOUR "}");
+}

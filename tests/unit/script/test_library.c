@@ -3,6 +3,8 @@
  */
 #include "tests/harness.h"
 
+#include "formats/font.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,6 +75,31 @@ TEST(library_polygons_are_cut_into_triangles_and_drawn_out_into_closed_solids) {
 
 TEST(library_text_has_the_areas_of_its_pen_and_is_closed_letter_by_letter) {
     claims_hold("claims_text");
+}
+
+TEST(letters_that_a_font_lacks_are_named_in_one_warning_for_each_text) {
+    struct test_result result = test_gray_scene("local text = require 'text'\n"
+                                                "text.letters 'A\xcf\x88 \xcf\x89\\n\xcf\x88'\n"
+                                                "text.letters '\xc3\x84\xc3\x9f\xe2\x82\xac'\n",
+                                                "--check scene.lua", NULL);
+    CHECK(strstr(result.err, "scene.lua:2: text.letters: warning: the built-in font has no letter for "
+                             "\"\xcf\x88\", \"\xcf\x89\"\n"));
+    CHECK(!strstr(result.err, "scene.lua:3:"));
+    test_free_result(&result);
+    if (!FONTS_READABLE)
+        test_lacks("FreeType");
+    size_t size;
+    char *font = test_read_file("data/fonts/gray-round.ttf", &size);
+    test_write_file(test_path("round.ttf"), font, size);
+    free(font);
+    result = test_gray_scene("gr.glyphs('round.ttf', '\xcf\x88\xcf\x88')\n"
+                             "gr.glyphs('round.ttf', '\xc3\x84\xc2\xa0\xce\xb1\xce\xb2\xce\xb3\xce\xb4\xce\xb5"
+                             "\xce\xb6\xce\xb7\xce\xb8\xce\xb9\xce\xba')\n",
+                             "--check scene.lua", NULL);
+    CHECK(strstr(result.err, "scene.lua:1: warning: gr.glyphs: round.ttf has no letter for \"\xcf\x88\" "));
+    CHECK(strstr(result.err, "round.ttf has no letter for \"\xce\xb1\", ") &&
+          strstr(result.err, "\"\xce\xb8\" and 2 others"));
+    test_free_result(&result);
 }
 
 /* Every Lua block of the page, as a separate scene; an example may name the font in the same folder. */

@@ -22,6 +22,19 @@ static const struct corner corners[] = {
     {"assert(math.ldexp(1, 20000) == math.huge and math.ldexp(1, -20000) == 0 and math.ldexp(3, 2) == 12)", NULL},
     {"math.randomseed(1e300) math.randomseed(1.5) math.randomseed(3) math.randomseed()", NULL},
     {"assert(string.format('%d %5.1f%%', 3.0, 2) == '3   2.0%')", NULL},
+    /* fractions of positions and counts are cut, toward zero; those of values stay */
+    {"assert(('abcdef'):sub(1, 7 / 2) == 'abc' and ('abcdef'):sub(-2.5) == 'ef' and ('ab'):rep(5 / 2, '-') == 'ab-ab')",
+     NULL},
+    {"assert(string.char(65.7, 66.2) == 'AB' and select('#', ('ABC'):byte(1.9, 2.9)) == 2 and ('XX'):find('X', 2.9) == "
+     "2)",
+     NULL},
+    {"assert(select(2.5, 1, 2, 3) == 2 and table.concat({1, 2, 3}, ',', 1.5, 2.7) == '1,2' and unpack({7, 8}, 2.5) == "
+     "8)",
+     NULL},
+    {"local t = {1, 2} table.insert(t, 2.5, 9) table.insert(t, 0.5) assert(t[4] == 0.5 and table.remove(t, 2.5) == 9)",
+     NULL},
+    {"('a'):sub({})", "scene.lua:2: bad argument #1 to 'sub' (number expected, got table)"},
+    {"('a'):rep(0 / 0)", "scene.lua:2: bad argument #1 to 'rep' (number has no integer representation)"},
     /* errors of replaced functions name the line and the function, as those of Lua do */
     {"math.random(0, -1)", "scene.lua:2: bad argument #1 to 'random' (interval is empty)"},
     {"string.format('%.2f', {})", "scene.lua:2: bad argument #2 to 'format' (number expected, got table)"},
@@ -50,6 +63,14 @@ static const struct corner corners[] = {
     {"coroutine.wrap(module)('three') assert(package.loaded.three)", NULL},
     {"assert(table.foreach({a = 1}, function() return 5 end) == 5)", NULL},
     {"assert(table.foreachi({1, 2}, function(i) if i == 2 then return 6 end end) == 6)", NULL},
+    /* scenes of courses */
+    {"gr.mesh('m', 'flag') gr.mesh('flag', 'torso') gr.joint('knee') gr.joint('hip', {-10, 0, 10})", NULL},
+    {"gr.mesh('m', 'nothing')", "cannot find 'nothing'"},
+    {"gr.mesh('m', 'flag.ply')", "cannot find 'flag.ply'"},
+    {"local up, v = {0, 0, 1}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}} gr.mesh('m', v, {up, up, up}, {{0, 1, 2}})", NULL},
+    {"gr.mesh('m', {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}}, {{0, 1, 2}})", "normals ends with number 0"},
+    {"require('readobj') local v, f = readobj('elsewhere/pole.obj') assert(#v == 3 and #f == 1)", NULL},
+    {"require('readobj') local v, f = readobj('pole.obj') assert(#v == 3 and #f == 1)", NULL},
     /* handles and other values */
     {"gr.sphere(io.stdout)", "a userdata"},
     {"gr.sphere(coroutine.create(print))", "a coroutine"},
@@ -123,6 +144,8 @@ static const struct corner corners[] = {
      NULL},
     {"assert(loadfile('plain.lua', 't', {}))()", NULL},
     {"dofile('hash.lua') dofile('hash_only.lua') dofile('empty.lua') dofile('mark.lua')", NULL},
+    {"dofile('wide.lua')", "wide.lua:1: this is UTF-16 text; save it as UTF-8"},
+    {"require('wide_plain')", "wide_plain.lua:1: this is UTF-16 text; save it as UTF-8"},
     {"gr.image_material(glass, 'pic' .. 1.0 .. '.png')", NULL},
     {"gr.image_material(glass, '/missing.png')", "missing.png"},
     {"gr.image_material(glass, ('x'):rep(5000))", "xxx"},
@@ -145,6 +168,8 @@ static void put(const char *name, const char *text, size_t size) {
 static void write_files(void) {
     write_white_png("pic1.png", 8, 8);
     put("flag.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\nf 1 2 3\n", 36);
+    CHECK_EQ_INT(mkdir(test_path("meshes"), 0777), 0);
+    put("meshes/pole.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 32);
     put("bad.lua", "x = = 1", 7);
     put("thrower.lua", "local x = nil; return x.y", 25);
     put("good.lua", "return 5", 8);
@@ -153,6 +178,14 @@ static void write_files(void) {
     put("hash_only.lua", "#", 1);
     put("empty.lua", "", 0);
     put("mark.lua", "\xEF\xBB\xBFx = 2", 8);
+    put("wide.lua",
+        "\xFF\xFEx\0=\0"
+        "2\0",
+        8);
+    put("wide_plain.lua",
+        "\0x\0=\0"
+        "2",
+        6);
 }
 
 static void check(const struct corner *corner, const struct script_options *options) {
