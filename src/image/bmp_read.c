@@ -104,8 +104,8 @@ static void read_row(const struct reader *r, struct image *image, uint32_t y, si
     for (uint32_t x = 0; x < r->width; x++) {
         uint8_t *out = texel(r, image, x, y);
         if (r->bits <= 8) {
-            uint32_t first = x * r->bits;
-            memcpy(out, r->palette[row[first / 8] >> (8 - r->bits - first % 8) & ((1u << r->bits) - 1)], 4);
+            uint32_t first = x * r->bits, byte = row[first / 8];
+            memcpy(out, r->palette[byte >> (8 - r->bits - first % 8) & ((1u << r->bits) - 1)], 4);
         } else if (r->bits == 24) {
             out[0] = row[3 * x + 2], out[1] = row[3 * x + 1], out[2] = row[3 * x], out[3] = 255;
         } else {
