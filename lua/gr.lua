@@ -149,21 +149,21 @@ function gr.nh_box(name, corner, size) end
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
+---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
----@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
----@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
----@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
----@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
----@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
----@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh of polygons, flat or with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -181,18 +181,11 @@ function gr.mesh(material, verts, faces) end
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
----@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
----@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
----@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
----@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
----@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
----@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
 ---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
----@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
 ---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
@@ -207,21 +200,21 @@ function gr.model(file) end
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
+---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
----@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
----@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
----@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
----@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
----@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
----@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.mesh: every mesh is fast.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -236,21 +229,21 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
+---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
----@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
----@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
----@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
----@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
----@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
----@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---A mesh with vertex normals.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -267,21 +260,21 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field name? string name (a string; default 'mesh'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field file? string file (the name of a file; optional): An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
+---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
+---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
+---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
+---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
+---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
+---@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 ---@field verts? gr.triple[] verts (a table of points {x, y, z}; optional): The vertices.
 ---@field normals? gr.triple[] normals (a table of points {x, y, z}; default none: flat): Vertex normals, of any length.
 ---@field faces? integer[][] faces (a table of tuples of indices; optional): Polygons: tuples of indices into verts, from 0.
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
----@field weld? boolean|number weld (true or false or a number, >= 0; default false): Whether vertices at the same position become one; a number: those closer than this.
----@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
----@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
----@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field face_materials? number|number[] face_materials (a number or a table of numbers; default material for all): With faces: the index into materials of each face, from 1.
----@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
----@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
----@field variant? string variant (a string; default the file's default): The name of a variant of the materials in the file (glTF).
 
 ---The same as gr.vn_mesh.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.

@@ -18,36 +18,27 @@ enum {
     MESH_NAME,
     MESH_MATERIAL,
     MESH_FILE,
-    MESH_VERTS,
-    MESH_NORMALS,
-    MESH_FACES,
-    MESH_FACE_NORMALS,
-    MESH_UVS,
-    MESH_FACE_UVS,
     MESH_SMOOTH,
     MESH_WELD,
     MESH_FLIP,
     MESH_CULL,
     MESH_MATERIALS,
-    MESH_FACE_MATERIALS,
     MESH_TIME,
     MESH_ANIMATION,
-    MESH_VARIANT
+    MESH_VARIANT,
+    MESH_VERTS, /* gr.model has those before it */
+    MESH_NORMALS,
+    MESH_FACES,
+    MESH_FACE_NORMALS,
+    MESH_UVS,
+    MESH_FACE_UVS,
+    MESH_FACE_MATERIALS
 };
 static const struct script_parameter mesh_parameters[] = {
     [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
     [MESH_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
     [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL,
                    "An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces."},
-    [MESH_VERTS] = {"verts", KIND_POINTS, OPTIONAL, ANY, NULL, NULL, "The vertices."},
-    [MESH_NORMALS] = {"normals", KIND_POINTS, OPTIONAL, ANY, NULL, "none: flat", "Vertex normals, of any length."},
-    [MESH_FACES] = {"faces", KIND_FACES, OPTIONAL, ANY, NULL, NULL, "Polygons: tuples of indices into verts, from 0."},
-    [MESH_FACE_NORMALS] = {"face_normals", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
-                           "For each face a tuple of indices into normals, from 0."},
-    [MESH_UVS] = {"uvs", KIND_PAIRS, OPTIONAL, ANY, NULL, "none",
-                  "Texture coordinates, {u, v}; v = 0 is the lower edge of an image."},
-    [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
-                       "For each face a tuple of indices into uvs, from 0."},
     [MESH_SMOOTH] =
         {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "the given normals",
          "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
@@ -58,14 +49,23 @@ static const struct script_parameter mesh_parameters[] = {
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
     [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
                         "Materials by the names of the parts in the file; with face_materials, a list."},
-    [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
-                             "With faces: the index into materials of each face, from 1."},
     [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
                    "The moment of the file's animation (glTF)."},
     [MESH_ANIMATION] = {"animation", KIND_TEXT, OPTIONAL, ANY, NULL, "the first one",
                         "The name of an animation in the file, or its number from 1."},
     [MESH_VARIANT] = {"variant", KIND_TEXT, OPTIONAL, ANY, NULL, "the file's default",
                       "The name of a variant of the materials in the file (glTF)."},
+    [MESH_VERTS] = {"verts", KIND_POINTS, OPTIONAL, ANY, NULL, NULL, "The vertices."},
+    [MESH_NORMALS] = {"normals", KIND_POINTS, OPTIONAL, ANY, NULL, "none: flat", "Vertex normals, of any length."},
+    [MESH_FACES] = {"faces", KIND_FACES, OPTIONAL, ANY, NULL, NULL, "Polygons: tuples of indices into verts, from 0."},
+    [MESH_FACE_NORMALS] = {"face_normals", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                           "For each face a tuple of indices into normals, from 0."},
+    [MESH_UVS] = {"uvs", KIND_PAIRS, OPTIONAL, ANY, NULL, "none",
+                  "Texture coordinates, {u, v}; v = 0 is the lower edge of an image."},
+    [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                       "For each face a tuple of indices into uvs, from 0."},
+    [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
+                             "With faces: the index into materials of each face, from 1."},
 };
 
 static void read_options(const struct script_value *args, struct model_options *options) {
@@ -334,6 +334,15 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     return true;
 }
 
+static bool gr_model(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    struct script_value all[COUNT(mesh_parameters)] = {{0}};
+    if (!args[MESH_FILE].given)
+        return error_set(error, ERROR_SCENE, "file is missing");
+    memcpy(all, args, MESH_VERTS * sizeof *args);
+    return gr_mesh(context, all, result, error);
+}
+
 /* gr.glyphs: a font file is mapped for the time of one call. */
 
 enum { GLYPHS_FONT, GLYPHS_TEXT };
@@ -401,8 +410,16 @@ static bool gr_glyphs(struct script_context *context, const struct script_value 
 static const struct script_function mesh_rows[] = {
     GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
        "material verts faces", "name file", "name verts faces", "material file", "name verts normals faces"),
-    GR("model", mesh_parameters, RESULT_NODE, gr_mesh,
-       "The same as gr.mesh of a file: its node, which also has its cameras and lights.", "file"),
+    {"model",
+     OWNER_GR,
+     mesh_parameters,
+     MESH_VERTS,
+     {"file"},
+     RESULT_NODE,
+     gr_model,
+     "The same as gr.mesh of a file: its node, which also has its cameras and lights.",
+     false,
+     NULL},
     GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
        "material verts faces", "name verts faces"),
     GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),

@@ -195,6 +195,7 @@ static inline bool is_needed(const struct script_function *function, int index) 
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
     bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0 || strcmp(p->name, "bounds") == 0;
+    one_of = one_of || (strcmp(function->name, "model") == 0 && strcmp(p->name, "file") == 0);
     one_of = one_of || (strcmp(function->name, "frames") == 0 && strcmp(p->name, "count") == 0);
     bool area_light_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
     return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || area_light_colour;

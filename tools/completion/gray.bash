@@ -8,7 +8,7 @@ _gray() {
         [[ ${line%%$'\t'*} != "$word"* ]] || COMPREPLY+=("${line%%$'\t'*}")
     done
     case ${answer[0]} in
-    scenes) mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -X '!*.@(lua|glb|gltf|obj|ply|stl)?(.gz)' -- "$word"; compgen -d -- "$word") ;;
+    scenes) mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "$word" | grep -E '\.(lua|(glb|gltf|obj|ply|stl)(\.gz)?)$'; compgen -d -- "$word") ;;
     files) mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "$word") ;;
     folders) mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -d -- "$word") ;;
     esac

@@ -374,6 +374,8 @@ TEST(every_wrong_named_field_is_named) {
         for (int p = function->owner == OWNER_NODE; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE], buffer[64];
             for (int w = 0; (with = wrong_text(&function->parameters[p], w, buffer, sizeof buffer)); w++) {
+                if (strcmp(function->name, "model") == 0 && strcmp(with, "{}") == 0)
+                    continue; /* no materials for the parts of a file are right */
                 table_call(function, p, with, call);
                 expect_named(function, &function->parameters[p], call);
             }
