@@ -158,6 +158,15 @@ static bool name_of(struct gltf *g, const json_t *object, const json_t *node, co
     return *out != NULL;
 }
 
+static bool keep(struct gltf *g, struct list *list, const void *item, size_t size) {
+    void *room = list_room(list, 1, size);
+    if (!room)
+        return error_no_memory(g->error, g->path);
+    memcpy(room, item, size);
+    list->count++;
+    return true;
+}
+
 /* Whether the numbers make a camera. */
 static bool lens_of(const json_t *source, struct model_camera *camera) {
     const char *type = json_string_value(json_object_get(source, "type"));
@@ -186,12 +195,7 @@ static bool read_camera(struct gltf *g, const json_t *node, const struct affine 
         gltf_lacks(g, where, "its camera is left out: it is no perspective or orthographic view of finite size");
         return true;
     }
-    struct model_camera *room = list_room(&g->model->cameras, 1, sizeof *room);
-    if (!room)
-        return error_no_memory(g->error, g->path);
-    *room = camera;
-    g->model->cameras.count++;
-    return name_of(g, source, node, &room->name);
+    return name_of(g, source, node, &camera.name) && keep(g, &g->model->cameras, &camera, sizeof camera);
 }
 
 /* Whether the numbers make a light. */
@@ -233,12 +237,7 @@ static bool read_light(struct gltf *g, const json_t *node, const struct affine *
         gltf_lacks(g, where, "its light is left out: it is no directional, point or spot light of finite numbers");
         return true;
     }
-    struct model_light *room = list_room(&g->model->lights, 1, sizeof *room);
-    if (!room)
-        return error_no_memory(g->error, g->path);
-    *room = light;
-    g->model->lights.count++;
-    return name_of(g, source, node, &room->name);
+    return name_of(g, source, node, &light.name) && keep(g, &g->model->lights, &light, sizeof light);
 }
 
 /* --- meshes of nodes --- */
