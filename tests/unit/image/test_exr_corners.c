@@ -29,6 +29,20 @@ static void window(struct bytes *b, const char *name, const int32_t corners[4]) 
         bytes_number(b, (uint32_t)corners[i], 4, false);
 }
 
+/* The attributes of a picture with these windows, one row after the other. */
+static void windows(struct bytes *b, const int32_t data[4], const int32_t display[4]) {
+    window(b, "dataWindow", data);
+    window(b, "displayWindow", display);
+    attribute(b, "lineOrder", "lineOrder", 1);
+    bytes_add(b, "", 1);
+    attribute(b, "pixelAspectRatio", "float", 4);
+    bytes_float(b, 1, false);
+    attribute(b, "screenWindowCenter", "v2f", 8);
+    bytes_number(b, 0, 8, false);
+    attribute(b, "screenWindowWidth", "float", 4);
+    bytes_float(b, 1, false);
+}
+
 /* The header of a file ("Technical Introduction to OpenEXR"): everything that is read before the chunks. */
 static void make_header(struct bytes *b, bool tiled, int compression, const int32_t corners[4]) {
     bytes_add(b, "\x76\x2f\x31\x01\x02\0\0\0", 8);
@@ -44,16 +58,7 @@ static void make_header(struct bytes *b, bool tiled, int compression, const int3
     bytes_add(b, "", 1);
     attribute(b, "compression", "compression", 1);
     bytes_number(b, (uint64_t)compression, 1, false);
-    window(b, "dataWindow", corners);
-    window(b, "displayWindow", (const int32_t[]){0, 0, 9, 9});
-    attribute(b, "lineOrder", "lineOrder", 1);
-    bytes_add(b, "", 1);
-    attribute(b, "pixelAspectRatio", "float", 4);
-    bytes_float(b, 1, false);
-    attribute(b, "screenWindowCenter", "v2f", 8);
-    bytes_number(b, 0, 8, false);
-    attribute(b, "screenWindowWidth", "float", 4);
-    bytes_float(b, 1, false);
+    windows(b, corners, (const int32_t[]){0, 0, 9, 9});
     if (tiled) {
         attribute(b, "tiles", "tiledesc", 9);
         bytes_number(b, 16, 4, false);
@@ -180,16 +185,7 @@ static void make_file(struct bytes *b, const struct layout *l) {
     bytes_add(b, "", 1);
     attribute(b, "compression", "compression", 1);
     bytes_add(b, "", 1);
-    window(b, "dataWindow", l->data);
-    window(b, "displayWindow", l->display);
-    attribute(b, "lineOrder", "lineOrder", 1);
-    bytes_add(b, "", 1);
-    attribute(b, "pixelAspectRatio", "float", 4);
-    bytes_float(b, 1, false);
-    attribute(b, "screenWindowCenter", "v2f", 8);
-    bytes_number(b, 0, 8, false);
-    attribute(b, "screenWindowWidth", "float", 4);
-    bytes_float(b, 1, false);
+    windows(b, l->data, l->display);
     if (l->tile) {
         attribute(b, "tiles", "tiledesc", 9);
         bytes_number(b, (uint64_t)l->tile, 4, false);
