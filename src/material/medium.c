@@ -146,6 +146,10 @@ static uint32_t latest(const struct medium_stack *stack, uint32_t primitive) {
     return i;
 }
 
+bool medium_stack_has(const struct medium_stack *stack, uint32_t primitive) {
+    return latest(stack, primitive) > 0;
+}
+
 void medium_stack_leave(struct medium_stack *stack, uint32_t primitive) {
     uint32_t end = latest(stack, primitive);
     if (end == 0)

@@ -46,6 +46,9 @@ void medium_stack_enter(struct medium_stack *stack, const struct medium *medium)
 /* Removes the latest entry of the solid; does nothing if there is none (an open surface, a camera on it). */
 void medium_stack_leave(struct medium_stack *stack, uint32_t primitive);
 
+/* Whether the ray is inside of the solid. */
+bool medium_stack_has(const struct medium_stack *stack, uint32_t primitive);
+
 /* The stack behind the surface. */
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);
 /* The index of refraction on the ray's side over the index behind the surface. */

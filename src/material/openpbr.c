@@ -7,7 +7,12 @@
  * metal and diffuse light separately, each with its own albedo. It uses the mean reflectance of the coat from inside
  * for diffuse light, and the one for the view direction for smooth metal, which is exact for both. specular_weight
  * changes the index for reflection and refraction. transmission_color without a depth tints each passage through the
- * surface. A solid has neither coat nor fuzz on the inside. */
+ * surface.
+ *
+ * From inside of a solid, the layers are behind the surface. What they do not reflect in the direction of the refracted
+ * view leaves through them; the rest is turned back, as by a mirror with the facets of the surface. Each passage has
+ * the square root of the coat's colour. The opaque part of a base that transmits light has no reflecting surface on
+ * this side: light inside is already in it. */
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
@@ -141,7 +146,9 @@ struct layering {
     const struct openpbr *values;
     const struct surface_inputs *inputs;
     struct bsdf *bsdf;
-    struct vec3 left;   /* the fraction of light that arrives at the layer */
+    struct vec3 left;   /* the fraction of light that arrives at the layer; its way back is included */
+    struct vec3 passes; /* the same without the way back, for light that passes the layers to or from the inside */
+    struct vec3 turned; /* from inside: the fraction of light leaving the base that the layers turn back */
     struct vec3 mirror; /* of all smooth layers together */
     struct vec3 view, dpdu;
     double cosine;  /* of the view to the normal */
@@ -187,7 +194,17 @@ static void add_fuzz(struct layering *l) {
         return;
     double albedo = albedo_fuzz(l->cosine, v->fuzz_roughness);
     add_matt(l, LOBE_FUZZ, vec3_scale(vec3_mul(l->left, v->fuzz_colour), v->fuzz_weight), v->fuzz_roughness);
-    l->left = vec3_scale(l->left, 1 - v->fuzz_weight * albedo);
+    l->left = l->passes = vec3_scale(l->left, 1 - v->fuzz_weight * albedo);
+}
+
+static struct vec3 root(struct vec3 c) {
+    return vec3_make(sqrt(fmax(c.x, 0)), sqrt(fmax(c.y, 0)), sqrt(fmax(c.z, 0)));
+}
+
+/* The share of light that passes a coat with this reflectance and colour. */
+static struct vec3 through_coat(const struct openpbr *v, struct vec3 colour, double reflected) {
+    struct vec3 transmits = vec3_scale(colour, 1 - reflected);
+    return vec3_add(vec3_scale(transmits, v->coat_weight), vec3_all(1 - v->coat_weight));
 }
 
 static void add_coat(struct layering *l) {
@@ -208,9 +225,29 @@ static void add_coat(struct layering *l) {
         reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_scale(l->left, v->coat_weight), reflected);
     }
-    struct vec3 transmits = vec3_scale(v->coat_colour, 1 - reflected);
-    transmits = vec3_add(vec3_scale(transmits, v->coat_weight), vec3_all(1 - v->coat_weight));
-    l->left = vec3_mul(l->left, transmits);
+    if (l->inputs->refract > 0)
+        l->passes = vec3_mul(l->left, through_coat(v, root(v->coat_colour), reflected));
+    l->left = vec3_mul(l->left, through_coat(v, v->coat_colour, reflected));
+}
+
+/* The coat and the fuzz as light from inside meets them. Facets of the base spread it; those of the roughness 1 over
+ * all directions, whose mean cosine is 2/3. */
+static void turn_back(struct layering *l, double eta, double roughness) {
+    const struct openpbr *v = l->values;
+    double across = eta * eta * (1 - l->cosine * l->cosine), cosine = across < 1 ? sqrt(1 - across) : 0;
+    double coat_eta = l->outside / (eta * v->coat_ior), reflected = 0, fuzz = 0;
+    cosine += roughness * (2.0 / 3 - cosine);
+    if (v->coat_weight > 0)
+        reflected = v->coat_roughness < smooth_roughness || coat_eta == 1
+                        ? dielectric_fresnel(cosine, coat_eta)
+                        : albedo_reflection(cosine, v->coat_roughness, coat_eta);
+    if (v->fuzz_weight > 0)
+        fuzz = v->fuzz_weight * albedo_fuzz(cosine, v->fuzz_roughness);
+    struct vec3 colour = root(v->coat_colour), passes = through_coat(v, colour, reflected);
+    struct vec3 back = vec3_mul(passes, through_coat(v, colour, 0));
+    l->passes = vec3_scale(passes, 1 - fuzz);
+    l->turned = vec3_scale(v->coat_colour, v->coat_weight * reflected);
+    l->turned = vec3_add(l->turned, vec3_scale(vec3_mul(back, v->fuzz_colour), fuzz));
 }
 
 /* Light from a layer with this albedo that the coat reflects back to it; the coat covers the fraction k of the
@@ -229,11 +266,22 @@ static struct vec3 darken(const struct layering *l, struct vec3 colour, struct v
 static double roughness_below(const struct layering *l) {
     double own = l->inputs->roughness, coat = l->values->coat_roughness;
     own = own > 0 ? own < 1 ? own : 1 : 0;
-    if (!(l->coated > 0) || !(coat > 0))
+    if (!(l->values->coat_weight > 0) || !(coat > 0))
         return own;
     double both = own * own * own * own + 2 * coat * coat * coat * coat;
     both = both < 1 ? sqrt(sqrt(both)) : 1;
-    return own + l->coated * (both - own);
+    return own + l->values->coat_weight * (both - own);
+}
+
+/* Facets that reflect as metal; light that hits several of them is included. */
+static void add_metal_facets(struct layering *l, const struct bsdf_facets *facets, struct vec3 weight) {
+    struct vec3 mean = bsdf_metal_fresnel_average(facets);
+    double once = 1 - bsdf_facets_lack(facets, l->view, false), average = 1 - facets->lack;
+    add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
+    struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
+                            mean.y * mean.y * average / (1 - mean.y * facets->lack),
+                            mean.z * mean.z * average / (1 - mean.z * facets->lack)};
+    add(l, LOBE_FACETS_MULTIPLE, vec3_mul(weight, multiple), 1 - once);
 }
 
 static void add_metal(struct layering *l, double roughness) {
@@ -249,12 +297,7 @@ static void add_metal(struct layering *l, double roughness) {
         l->mirror = vec3_add(l->mirror, vec3_mul(weight, bsdf_metal_fresnel(facets, l->cosine)));
         return;
     }
-    double once = 1 - bsdf_facets_lack(facets, l->view, false), average = 1 - facets->lack;
-    add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
-    struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
-                            mean.y * mean.y * average / (1 - mean.y * facets->lack),
-                            mean.z * mean.z * average / (1 - mean.z * facets->lack)};
-    add(l, LOBE_FACETS_MULTIPLE, vec3_mul(weight, multiple), 1 - once);
+    add_metal_facets(l, facets, weight);
 }
 
 static void add_diffuse(struct layering *l, struct vec3 left) {
@@ -299,42 +342,62 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
     add(l, LOBE_FACETS_THROUGH, tint, lack * facets->through);
 }
 
+/* Rough boundaries transmit light to the other side; `all` is the light for their reflection. */
+static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, struct vec3 all, struct vec3 through,
+                              double reflected) {
+    /* What single facets lose leaves after several of them, to this side or the other. */
+    double lack = bsdf_facets_lack(facets, l->view, false), single = 1 - reflected - lack;
+    add(l, LOBE_GLASS, through, fmax(single, min_glass_share));
+    add(l, LOBE_FACETS_MULTIPLE, all, lack * (1 - facets->through));
+    add(l, LOBE_FACETS_THROUGH, through, lack * facets->through);
+    if (is_black(l->turned))
+        return;
+    struct bsdf_facets *turning = &l->bsdf->facets[l->facets++];
+    *turning = *facets;
+    bsdf_facets_metal(turning, vec3_all(1), vec3_all(1));
+    add_metal_facets(l, turning, vec3_scale(vec3_mul(all, l->turned), fmax(single, 0) + lack * facets->through));
+}
+
 /* The fraction of the surface that transmits light, and the rest, which is diffuse under a glossy layer. */
 static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
     const struct openpbr *v = l->values;
     struct vec3 all = vec3_scale(l->left, 1 - v->base_metalness);
     double clear = l->inputs->refract;
-    struct vec3 through = vec3_scale(all, clear);
-    bool deep = v->deep && !v->thin_walled;
-    struct vec3 tinted = deep ? through : vec3_mul(through, v->transmission_colour);
     if (is_black(all))
         return;
     /* A thin pane lets light through without a change of direction. */
     if (v->thin_walled && clear > 0) {
-        add_pane(l, hit, through, eta, roughness);
+        add_pane(l, hit, vec3_scale(all, clear), eta, roughness);
         all = vec3_scale(all, 1 - clear);
         clear = 0;
     }
+    double opaque = 1 - clear;
+    struct vec3 clear_part = vec3_scale(all, clear);
+    /* Light inside is in the opaque part already. */
+    if (l->inside) {
+        if (opaque > 0)
+            add_diffuse(l, vec3_scale(all, opaque));
+        opaque = 0;
+        all = clear_part;
+    }
+    struct vec3 through = vec3_scale(vec3_scale(l->passes, 1 - v->base_metalness), clear);
+    if (!v->deep)
+        through = vec3_mul(through, v->transmission_colour);
     double reflected = dielectric_fresnel(l->cosine, eta);
     if (roughness < smooth_roughness || eta == 1) {
         l->mirror = vec3_add_scaled(l->mirror, vec3_mul(all, l->inputs->ks), reflected);
+        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(clear_part, l->turned), 1 - reflected);
         if (clear > 0)
-            add_smooth_passage(l, hit, vec3_scale(tinted, 1 - reflected));
+            add_smooth_passage(l, hit, vec3_scale(through, 1 - reflected));
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
         (clear > 0 ? bsdf_facets_glass : bsdf_facets_boundary)(facets, eta);
         reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
-        if (clear > 0) {
-            /* What single facets lose leaves after several of them, to this side or the other. */
-            double lack = bsdf_facets_lack(facets, l->view, false);
-            add(l, LOBE_GLASS, tinted, fmax(1 - reflected - lack, min_glass_share));
-            add(l, LOBE_FACETS_MULTIPLE, through, lack * (1 - facets->through));
-            add(l, LOBE_FACETS_THROUGH, tinted, lack * facets->through);
-        }
+        if (clear > 0)
+            add_rough_passage(l, facets, clear_part, through, reflected);
     }
     /* Under the reflection is the diffuse base. */
-    double opaque = v->thin_walled ? 1 : 1 - clear;
     if (opaque > 0)
         add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
 }
@@ -357,11 +420,11 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
     bool is_solid = inputs->refract > 0 && !values.thin_walled;
     struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .view = hit->view, .dpdu = hit->dpdu};
-    l.left = vec3_all(1);
-    l.mirror = vec3_all(0);
+    l.left = l.passes = vec3_all(1);
+    l.mirror = l.turned = vec3_all(0);
     l.cosine = vec3_dot(bsdf->side, hit->view);
     l.cosine = l.cosine < 1 ? l.cosine : 1;
-    l.inside = is_solid && !hit->front;
+    l.inside = !values.thin_walled && !hit->front && (is_solid || medium_stack_has(media, hit->primitive));
     l.outside = medium_stack_ior(media);
     bsdf->lit = bsdf->side;
     bsdf->dark = false;
@@ -382,6 +445,8 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     bsdf->emission = vec3_mul(inputs->emission, l.left);
     double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
     double roughness = roughness_below(&l);
+    if (l.inside && is_solid)
+        turn_back(&l, eta, roughness);
     add_metal(&l, roughness);
     add_dielectric(&l, hit, eta, roughness);
     add(&l, LOBE_MIRROR, l.mirror, 1);

@@ -1,0 +1,218 @@
+/* Balls of layered materials in light that is 1 from everywhere: white ones are invisible. Paths are followed by the
+ * BSDF alone, in and out of the ball, without a limit that they reach. */
+#include "tests/harness.h"
+
+#include "material/material_eval.h"
+#include "material/openpbr.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { TENTHS = 10, LONGEST = 3000, CELLS = 4 };
+
+struct ball {
+    struct openpbr numbers;
+    struct material material;
+    bool striped; /* `refract` is 1 in half of the stripes and 0 in the others */
+};
+
+static void ball_init(struct ball *ball) {
+    *ball = (struct ball){.numbers = openpbr_defaults(), .material = {.kind = MATERIAL_OPENPBR, .depth = 1}};
+    ball->material.openpbr = &ball->numbers;
+    ball->material.phong.kd = ball->material.phong.ks = vec3_all(1);
+    ball->material.phong.refract = 1;
+}
+
+/* The surface at a point of the ball of radius 1, seen by a ray. */
+static struct bsdf describe(struct ball *ball, struct vec3 n, struct vec3 ray, const struct medium_stack *media) {
+    const struct material_context context = {.total_reflection = true};
+    struct hit hit = {.view = vec3_negate(ray), .front = vec3_dot(ray, n) < 0, .primitive = 4, .dpdu = {-n.y, n.x, 0}};
+    struct bsdf bsdf;
+    hit.normal = hit.normal_geometric = n;
+    if (ball->striped)
+        ball->material.phong.refract = fmod(8 * n.z + 8, 2) < 1;
+    material_eval(&ball->material, &hit, media, &context, &bsdf);
+    return bsdf;
+}
+
+/* One of CELLS x CELLS directions, chosen by its weight, which multiplies `light`. False: all are black. */
+static bool step(const struct bsdf *bsdf, struct vec3 wo, struct test_random *random, struct bsdf_sample *out,
+                 double *light) {
+    struct bsdf_sample samples[CELLS * CELLS];
+    double sums[CELLS * CELLS], sum = 0;
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        double x = (i % CELLS + test_uniform(random, 0, 1)) / CELLS, y = test_uniform(random, 0, 1);
+        struct sample2 u = {x, ((double)(i / CELLS) + y) / CELLS};
+        if (bsdf_sample(bsdf, BSDF_ALL, BSDF_IMPORTANCE, wo, u, &samples[i]))
+            sum += samples[i].weight.y;
+        sums[i] = sum;
+    }
+    double at = test_uniform(random, 0, sum);
+    int chosen = 0;
+    while (chosen < CELLS * CELLS - 1 && sums[chosen] <= at)
+        chosen++;
+    *out = samples[chosen];
+    *light *= sum / (CELLS * CELLS);
+    return sum > 0;
+}
+
+/* The light that a ray sees which hits the ball beside its middle. Refraction scales radiance on the way in and back on
+ * the way out. */
+static double path_light(struct ball *ball, double beside, struct test_random *random) {
+    struct medium_stack media = {.count = 0};
+    struct vec3 ray = {0, 0, -1}, n = {beside, 0, sqrt(1 - beside * beside)};
+    double light = 1;
+    for (int k = 0; k < LONGEST; k++) {
+        struct bsdf bsdf = describe(ball, n, ray, &media);
+        struct bsdf_sample sample;
+        if (!step(&bsdf, vec3_negate(ray), random, &sample, &light))
+            return 0;
+        if (sample.flags & BSDF_TRANSMITS)
+            medium_stack_cross(&media, &bsdf.boundary);
+        ray = sample.direction;
+        if (vec3_dot(ray, n) > 0)
+            return light;
+        n = vec3_normalize(vec3_add_scaled(n, ray, -2 * vec3_dot(ray, n)));
+    }
+    return 0;
+}
+
+struct brightness {
+    double tenth[TENTHS], tenth_error[TENTHS];
+    double mean, error; /* over the disc that is seen */
+};
+
+static struct brightness ball_brightness(struct ball *ball, uint64_t seed, int paths) {
+    struct test_random random = {seed};
+    struct brightness out = {.mean = 0};
+    for (int i = 0; i < TENTHS; i++) {
+        double sum = 0, sum2 = 0, part = (2 * i + 1) / (double)(TENTHS * TENTHS);
+        for (int k = 0; k < paths; k++) {
+            double within = (k + test_uniform(&random, 0, 1)) / paths;
+            double x = path_light(ball, sqrt(i * i + (2 * i + 1) * within) / TENTHS, &random);
+            sum += x;
+            sum2 += x * x;
+        }
+        out.tenth[i] = sum / paths;
+        out.tenth_error[i] = sqrt(fmax(sum2 / paths - out.tenth[i] * out.tenth[i], 0) / paths);
+        out.mean += part * out.tenth[i];
+        out.error += part * part * out.tenth_error[i] * out.tenth_error[i];
+    }
+    out.error = sqrt(out.error);
+    return out;
+}
+
+static void check_ball(const char *name, struct ball *ball, int paths, uint64_t seed) {
+    struct brightness b = ball_brightness(ball, seed, paths);
+    for (int i = 0; i < TENTHS; i++)
+        if (!(fabs(b.tenth[i] - 1) < 0.005 + 4 * b.tenth_error[i]))
+            test_fail(__FILE__, __LINE__, "%s, tenth %d: %.5f +- %.5f", name, i + 1, b.tenth[i], b.tenth_error[i]);
+    if (!(fabs(b.mean - 1) < 0.002 + 4 * b.error))
+        test_fail(__FILE__, __LINE__, "%s: %.5f +- %.5f", name, b.mean, b.error);
+}
+
+/* --- single layers --- */
+
+TEST_TIMES(clear_balls_with_rough_coats_or_fuzz_are_invisible_in_uniform_light, 60) {
+    for (uint64_t seed = 1; seed <= (times > 1 ? 3 : 1); seed++) {
+        for (int k = 0; k < 6; k++) {
+            static const char *const names[] = {"rough coat", "polished coat", "half of a rough coat",
+                                                "rough both", "fuzz",          "all"};
+            static const double coat[] = {1, 1, 0.5, 1, 0, 0.7}, roughness[] = {0, 0.4, 0, 0.4, 0, 0.1};
+            static const double coat_roughness[] = {0.5, 0, 0.7, 0.3, 0, 0.4};
+            struct ball ball;
+            ball_init(&ball);
+            ball.numbers.coat_weight = coat[k];
+            ball.numbers.coat_roughness = coat_roughness[k];
+            ball.numbers.fuzz_weight = k == 4 ? 1 : k == 5 ? 0.4 : 0;
+            ball.material.phong.roughness = roughness[k];
+            check_ball(names[k], &ball, 50 * times, seed);
+        }
+    }
+}
+
+TEST_TIMES(balls_that_transmit_half_of_the_light_are_invisible_in_uniform_light, 30) {
+    struct texture half = texture_number(0.5);
+    for (int k = 0; k < 5; k++) {
+        static const char *const names[] = {"half", "half by a texture", "stripes", "stripes below a coat", "a tenth"};
+        struct ball ball;
+        ball_init(&ball);
+        ball.material.phong.refract = k == 4 ? 0.1 : 0.5;
+        ball.material.inputs[INPUT_REFRACT].authored = k == 1 ? &half : NULL;
+        ball.striped = k == 2 || k == 3;
+        ball.numbers.coat_weight = k == 3;
+        ball.numbers.coat_roughness = 0.3;
+        check_ball(names[k], &ball, 50 * times, 1);
+    }
+}
+
+/* --- from inside --- */
+
+/* The weights of the lobes that transmit, without the factors of facets. */
+static struct vec3 passing(const struct bsdf *bsdf) {
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRANSMITS)
+            sum = vec3_add(sum, bsdf->lobes[i].weight);
+    return sum;
+}
+
+TEST(polished_layers_pass_the_same_light_in_and_out) {
+    for (double sine = 0.05; sine < 1; sine += 0.1) {
+        struct ball ball;
+        ball_init(&ball);
+        ball.numbers.coat_weight = 0.8;
+        ball.numbers.coat_colour = vec3_make(0.9, 0.5, 0.2);
+        ball.numbers.fuzz_weight = 0.5;
+        ball.numbers.base_metalness = 0.1;
+        ball.numbers.transmission_colour = vec3_make(0.5, 1, 0.7);
+        struct medium_stack media = {.count = 0};
+        struct vec3 n = {0, 0, 1}, ray = {sine, 0, -sqrt(1 - sine * sine)};
+        struct bsdf in = describe(&ball, n, ray, &media);
+        medium_stack_cross(&media, &in.boundary);
+        struct bsdf out = describe(&ball, n, vec3_negate(in.through), &media);
+        struct vec3 a = passing(&in), b = passing(&out);
+        CHECK(a.x > 0.01 && a.x > a.z);
+        CHECK_NEAR(out.through.x, -sine, 1e-14);
+        CHECK_NEAR(a.x, b.x, 1e-14);
+        CHECK_NEAR(a.y, b.y, 1e-14);
+        CHECK_NEAR(a.z, b.z, 1e-14);
+    }
+}
+
+/* The share of uniform light from one side that passes. */
+static double passed(struct ball *ball, bool front, int views) {
+    double sum = 0;
+    for (int i = 0; i < views; i++) {
+        struct test_random random = {(uint64_t)i + 1};
+        double cosine = sqrt((i + 0.5) / views);
+        struct medium_stack media = {.count = 0};
+        struct vec3 n = {0, 0, 1}, ray = {sqrt(1 - cosine * cosine), 0, front ? -cosine : cosine};
+        if (!front)
+            medium_stack_enter(&media, &(struct medium){.primitive = 4, .ior = ball->numbers.specular_ior});
+        struct bsdf bsdf = describe(ball, n, ray, &media);
+        for (int k = 0; k < 400; k++) {
+            struct sample2 u = {(k % 20 + test_uniform(&random, 0, 1)) / 20,
+                                test_uniform(&random, k / 20, k / 20 + 1) / 20};
+            struct bsdf_sample sample;
+            if (bsdf_sample(&bsdf, BSDF_ALL, BSDF_IMPORTANCE, vec3_negate(ray), u, &sample))
+                sum += sample.flags & BSDF_TRANSMITS ? sample.weight.y : 0;
+        }
+    }
+    return sum / (400.0 * views);
+}
+
+/* Of light that is the same in all directions, the square of the index times as much passes to the inside. */
+TEST(rough_layers_pass_the_same_light_in_and_out_within_three_percent) {
+    for (int k = 0; k < 8; k++) {
+        struct ball ball;
+        ball_init(&ball);
+        ball.numbers.coat_weight = 1;
+        ball.numbers.coat_roughness = k & 1 ? 0.5 : 0;
+        ball.numbers.fuzz_weight = k & 2 ? 0.5 : 0;
+        ball.material.phong.roughness = k & 4 ? 0.7 : 0.3;
+        double in = passed(&ball, true, 100), out = passed(&ball, false, 100);
+        CHECK(in > 0.6);
+        CHECK_NEAR(2.25 * out / in, 1, 0.03);
+    }
+}
