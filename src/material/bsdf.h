@@ -72,9 +72,11 @@ struct bsdf_facets {
     struct facet_distribution distribution;
     double eta; /* index on the ray's side over that behind; 1 for metals */
     struct vec3 f0, edge;
+    double reflected; /* of a boundary: by one facet, of light from the view */
     /* Light that is scattered by more than one facet (rough_lobes_internal.h). */
     double roughness;         /* for an isotropic surface */
     double lack, lack_behind; /* 1 - mean albedo, on the ray's side and behind */
+    double lack_seen;         /* 1 - albedo for the view */
     double through;           /* the share of that light that is transmitted */
 };
 

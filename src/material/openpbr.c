@@ -222,7 +222,8 @@ static void add_coat(struct layering *l) {
     } else if (eta != 1) {
         struct bsdf_facets *facets = add_facets(l, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
         bsdf_facets_boundary(facets, eta);
-        reflected = bsdf_facets_reflected(facets, l->view);
+        bsdf_facets_see(facets, l->view);
+        reflected = facets->reflected;
         add(l, LOBE_GLOSS, vec3_scale(l->left, v->coat_weight), reflected);
     }
     if (l->inputs->refract > 0)
@@ -274,9 +275,10 @@ static double roughness_below(const struct layering *l) {
 }
 
 /* Facets that reflect as metal; light that hits several of them is included. */
-static void add_metal_facets(struct layering *l, const struct bsdf_facets *facets, struct vec3 weight) {
+static void add_metal_facets(struct layering *l, struct bsdf_facets *facets, struct vec3 weight) {
     struct vec3 mean = bsdf_metal_fresnel_average(facets);
-    double once = 1 - bsdf_facets_lack(facets, l->view, false), average = 1 - facets->lack;
+    bsdf_facets_see(facets, l->view);
+    double once = 1 - facets->lack_seen, average = 1 - facets->lack;
     add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
     struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
                             mean.y * mean.y * average / (1 - mean.y * facets->lack),
@@ -335,18 +337,26 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
     }
     struct bsdf_facets *facets = add_facets(l, l->values->tangent, roughness, l->values->specular_anisotropy);
     bsdf_facets_pane(facets, eta);
-    double lack = bsdf_facets_lack(facets, l->view, false);
+    bsdf_facets_see(facets, l->view);
+    double lack = facets->lack_seen;
     add(l, LOBE_GLOSS, reflects, share);
     add(l, LOBE_PANE, tint, 1 - share);
     add(l, LOBE_FACETS_MULTIPLE, left, lack * (1 - facets->through));
     add(l, LOBE_FACETS_THROUGH, tint, lack * facets->through);
 }
 
-/* Rough boundaries transmit light to the other side; `all` is the light for their reflection. */
-static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, struct vec3 all, struct vec3 through,
-                              double reflected) {
+/* The light that the part which transmits receives, for what it transmits. */
+static struct vec3 let_through(const struct layering *l) {
+    const struct openpbr *v = l->values;
+    struct vec3 through = vec3_scale(vec3_scale(l->passes, 1 - v->base_metalness), l->inputs->refract);
+    return v->deep ? through : vec3_mul(through, v->transmission_colour);
+}
+
+/* Rough boundaries transmit light to the other side; `all` is the light for what they reflect. */
+static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, struct vec3 all) {
+    struct vec3 through = let_through(l);
     /* What single facets lose leaves after several of them, to this side or the other. */
-    double lack = bsdf_facets_lack(facets, l->view, false), single = 1 - reflected - lack;
+    double lack = facets->lack_seen, single = 1 - facets->reflected - lack;
     add(l, LOBE_GLASS, through, fmax(single, min_glass_share));
     add(l, LOBE_FACETS_MULTIPLE, all, lack * (1 - facets->through));
     add(l, LOBE_FACETS_THROUGH, through, lack * facets->through);
@@ -371,35 +381,28 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         all = vec3_scale(all, 1 - clear);
         clear = 0;
     }
-    double opaque = 1 - clear;
-    struct vec3 clear_part = vec3_scale(all, clear);
     /* Light inside is in the opaque part already. */
-    if (l->inside) {
-        if (opaque > 0)
-            add_diffuse(l, vec3_scale(all, opaque));
-        opaque = 0;
-        all = clear_part;
-    }
-    struct vec3 through = vec3_scale(vec3_scale(l->passes, 1 - v->base_metalness), clear);
-    if (!v->deep)
-        through = vec3_mul(through, v->transmission_colour);
-    double reflected = dielectric_fresnel(l->cosine, eta);
+    double opaque = 1 - clear, reflected;
+    struct vec3 boundary = l->inside ? vec3_scale(all, clear) : all;
     if (roughness < smooth_roughness || eta == 1) {
-        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(all, l->inputs->ks), reflected);
-        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(clear_part, l->turned), 1 - reflected);
+        reflected = dielectric_fresnel(l->cosine, eta);
+        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(boundary, l->inputs->ks), reflected);
         if (clear > 0)
-            add_smooth_passage(l, hit, vec3_scale(through, 1 - reflected));
+            add_smooth_passage(l, hit, vec3_scale(let_through(l), 1 - reflected));
+        if (l->inside)
+            l->mirror = vec3_add_scaled(l->mirror, vec3_mul(boundary, l->turned), 1 - reflected);
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
         (clear > 0 ? bsdf_facets_glass : bsdf_facets_boundary)(facets, eta);
-        reflected = bsdf_facets_reflected(facets, l->view);
-        add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
+        bsdf_facets_see(facets, l->view);
+        reflected = facets->reflected;
+        add(l, LOBE_GLOSS, vec3_mul(boundary, l->inputs->ks), reflected);
         if (clear > 0)
-            add_rough_passage(l, facets, clear_part, through, reflected);
+            add_rough_passage(l, facets, vec3_scale(all, clear));
     }
     /* Under the reflection is the diffuse base. */
     if (opaque > 0)
-        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
+        add_diffuse(l, vec3_scale(all, l->inside ? opaque : opaque * (1 - reflected)));
 }
 
 /* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would

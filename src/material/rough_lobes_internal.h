@@ -27,10 +27,9 @@ void bsdf_facets_pane(struct bsdf_facets *facets, double eta);
 /* f0: reflectance head on; tint: the reflectance at the cosine 1/7 over that of Schlick's formula. */
 void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint);
 
-/* The share of light from one direction that neither leaves by the first facet nor passes through it; `behind`: from
- * the other side. And the share that facets of a boundary reflect. */
-double bsdf_facets_lack(const struct bsdf_facets *facets, struct vec3 direction, bool behind);
-double bsdf_facets_reflected(const struct bsdf_facets *facets, struct vec3 direction);
+/* Sets the shares of light from the view: what facets of a boundary reflect, and what neither leaves by the first facet
+ * nor passes through it (not for boundaries of opaque surfaces). Before the lobes are evaluated. */
+void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view);
 
 /* The reflectance of metal at a facet for this cosine to the view, and its mean over a hemisphere, weighted with the
  * cosine. */

@@ -389,6 +389,7 @@ static double f_of(enum lobe_kind kind, bool fresnel, double alpha, double n, st
         view.bsdf.geometric_side = view.bsdf.normal = view.bsdf.lit = view.bsdf.side = vec3_make(0, 0, -1);
     view.bsdf.fresnel_of_facets = fresnel;
     add(&view, kind, vec3_all(1), 0.7);
+    bsdf_facets_see(&view.bsdf.facets[0], wo);
     return bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, wo, wi).x / fabs(wi.z);
 }
 

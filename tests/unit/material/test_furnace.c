@@ -1,14 +1,16 @@
 /* Balls of layered materials in light that is 1 from everywhere: white ones are invisible. Paths are followed by the
  * BSDF alone, in and out of the ball, without a limit that they reach. */
 #include "tests/harness.h"
+#include "tests/stage.h"
+#include "tests/unit/path_estimate.h"
 
 #include "material/material_eval.h"
+#include "material/material_inputs.h"
 #include "material/openpbr.h"
 
 #include <math.h>
-#include <stdio.h>
 
-enum { TENTHS = 10, LONGEST = 3000, CELLS = 4 };
+enum { TENTHS = 10, LONGEST = 3000, CHOICES = 21, STRIDE = 13 };
 
 struct ball {
     struct openpbr numbers;
@@ -35,24 +37,24 @@ static struct bsdf describe(struct ball *ball, struct vec3 n, struct vec3 ray, c
     return bsdf;
 }
 
-/* One of CELLS x CELLS directions, chosen by its weight, which multiplies `light`. False: all are black. */
+/* One of several directions, which are those of a lattice, chosen by its weight; `light` is multiplied by their mean.
+ * False: all are black. */
 static bool step(const struct bsdf *bsdf, struct vec3 wo, struct test_random *random, struct bsdf_sample *out,
                  double *light) {
-    struct bsdf_sample samples[CELLS * CELLS];
-    double sums[CELLS * CELLS], sum = 0;
-    for (int i = 0; i < CELLS * CELLS; i++) {
-        double x = (i % CELLS + test_uniform(random, 0, 1)) / CELLS, y = test_uniform(random, 0, 1);
-        struct sample2 u = {x, ((double)(i / CELLS) + y) / CELLS};
+    struct bsdf_sample samples[CHOICES];
+    double sums[CHOICES], sum = 0, dx = test_uniform(random, 0, 1), dy = test_uniform(random, 0, 1);
+    for (int i = 0; i < CHOICES; i++) {
+        struct sample2 u = {(i + dx) / CHOICES, fmod((double)(i * STRIDE) / CHOICES + dy, 1)};
         if (bsdf_sample(bsdf, BSDF_ALL, BSDF_IMPORTANCE, wo, u, &samples[i]))
             sum += samples[i].weight.y;
         sums[i] = sum;
     }
     double at = test_uniform(random, 0, sum);
     int chosen = 0;
-    while (chosen < CELLS * CELLS - 1 && sums[chosen] <= at)
+    while (chosen < CHOICES - 1 && sums[chosen] <= at)
         chosen++;
     *out = samples[chosen];
-    *light *= sum / (CELLS * CELLS);
+    *light *= sum / CHOICES;
     return sum > 0;
 }
 
@@ -143,6 +145,99 @@ TEST_TIMES(balls_that_transmit_half_of_the_light_are_invisible_in_uniform_light,
         ball.numbers.coat_weight = k == 3;
         ball.numbers.coat_roughness = 0.3;
         check_ball(names[k], &ball, 50 * times, 1);
+    }
+}
+
+/* --- all layers --- */
+
+/* In [0, 1]; each end has a sixth of the numbers. */
+static double random_share(struct test_random *random) {
+    return fmin(fmax(test_uniform(random, -0.25, 1.25), 0), 1);
+}
+
+/* specular_weight below 1 is a factor of metals, which absorb the rest. */
+static void random_material(struct ball *ball, struct test_random *random) {
+    ball_init(ball);
+    struct openpbr *v = &ball->numbers;
+    ball->material.phong.refract = random_share(random);
+    ball->material.phong.roughness = random_share(random);
+    double *const shares[] = {&v->base_metalness, &v->base_diffuse_roughness, &v->specular_anisotropy, &v->coat_weight,
+                              &v->coat_roughness, &v->coat_anisotropy,        &v->coat_darkening,      &v->fuzz_weight,
+                              &v->fuzz_roughness};
+    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++)
+        *shares[i] = random_share(random);
+    v->base_metalness = test_uniform(random, 0, 1) < 0.5 ? v->base_metalness : 0;
+    v->specular_weight = v->base_metalness > 0 ? 1 : random_share(random);
+    v->specular_ior = test_uniform(random, 1.05, 2.5);
+    v->coat_ior = test_uniform(random, 1.05, 2.5);
+}
+
+TEST_TIMES(balls_of_random_white_materials_are_invisible_in_uniform_light, 20) {
+    double mean = 0;
+    int count = 10 * times, seeds = times > 1 ? 3 : 1, paths = times > 1 ? 150 : 40;
+    struct test_random random = {20};
+    for (int k = 0; k < count; k++) {
+        struct ball ball;
+        random_material(&ball, &random);
+        struct brightness sum = {.mean = 0};
+        for (int seed = 1; seed <= seeds; seed++) {
+            struct brightness b = ball_brightness(&ball, (uint64_t)seed, paths);
+            for (int i = 0; i < TENTHS; i++) {
+                sum.tenth[i] += b.tenth[i] / seeds;
+                sum.tenth_error[i] += b.tenth_error[i] / seeds;
+            }
+            sum.mean += b.mean / seeds;
+            sum.error += b.error / seeds;
+        }
+        double root = sqrt(seeds);
+        mean += sum.mean / count;
+        if (!(fabs(sum.mean - 1) < 0.01 + 4 * sum.error / root))
+            test_fail(__FILE__, __LINE__, "material %d: %.4f +- %.4f", k, sum.mean, sum.error / root);
+        for (int i = 0; i < TENTHS; i++)
+            if (!(fabs(sum.tenth[i] - 1) < 0.04 + 4 * sum.tenth_error[i] / root))
+                test_fail(__FILE__, __LINE__, "material %d, tenth %d: %.4f +- %.4f", k, i + 1, sum.tenth[i],
+                          sum.tenth_error[i] / root);
+    }
+    CHECK_NEAR(mean, 1, times > 1 ? 0.002 : 0.01);
+}
+
+static struct vec3 random_colour(struct test_random *random) {
+    double r = test_uniform(random, 0, 1), g = test_uniform(random, 0, 1);
+    return vec3_make(r, g, test_uniform(random, 0, 1));
+}
+
+/* Under a sky that grows brighter to the top, beside a large lamp. */
+TEST_TIMES(balls_of_random_materials_look_the_same_with_and_without_sampled_lights, 50) {
+    static const double stops[2][4] = {{-0.5, 0.1, 0.2, 0.3}, {1, 1, 0.8, 0.6}};
+    const struct effort effort = {ESTIMATE_SIZE_MAX, times > 1 ? 100 : 12, 1};
+    struct test_random random = {times > 1 ? 21 : 22};
+    for (int k = 0; k < 4 * times; k++) {
+        struct ball ball;
+        random_material(&ball, &random);
+        struct openpbr *v = &ball.numbers;
+        ball.material.phong.kd = random_colour(&random);
+        ball.material.phong.ks = random_colour(&random);
+        v->transmission_colour = random_colour(&random);
+        v->coat_colour = random_colour(&random);
+        v->fuzz_colour = random_colour(&random);
+        struct stage s;
+        stage_begin(&s, 1);
+        s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
+        struct material *surface = stage_glass(&s, 0, 0, 1), *lamp = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+        *surface = ball.material;
+        lamp->phong.emission = vec3_all(2);
+        (void)stage_sphere(&s, s.root, surface);
+        struct node *node = stage_sphere(&s, s.root, lamp);
+        stage_scale(&s, node, 1.5, 1.5, 1.5);
+        stage_move(&s, node, 2.5, 2, 1);
+        s.camera.fov = 10;
+        struct estimate by[2];
+        for (int i = 0; i < 2; i++) {
+            s.settings.path_strategy = i == 0 ? PATH_STRATEGY_MIS : PATH_STRATEGY_BSDF;
+            by[i] = estimate_render_twice(&s, &effort, 12, k + 1 + 500 * i);
+        }
+        estimate_check_equal("random materials: both and BSDFs alone", by[0], by[1], k, times > 1 ? 0.01 : 0.1);
+        stage_end(&s);
     }
 }
 
