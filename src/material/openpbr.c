@@ -124,6 +124,8 @@ static void read_textures(const struct material *material, const struct hit *hit
         {INPUT_FUZZ_COLOUR, true, offsetof(struct openpbr, fuzz_colour)},
         {INPUT_FUZZ_ROUGHNESS, false, offsetof(struct openpbr, fuzz_roughness)},
     };
+    if (material->plain)
+        return;
     /* Each input that has a texture is read at the hit. */
     struct texture_reader reader;
     texture_reader_init(&reader, hit, material->textures, NULL);
