@@ -125,6 +125,8 @@ bool material_has_holes(const struct material *material); /* its opacity may be 
 bool material_is_transparent(const struct material *material, double *ior);
 /* Of the base: absorption inside, per unit of length. */
 struct vec3 material_absorption(const struct material *material);
+/* Of the base: of light that passes the surface. */
+struct vec3 material_tint(const struct material *material);
 /* Of the base: its average emission, and a bound (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
 struct vec3 material_emission_bound(const struct material *material);

@@ -130,6 +130,17 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
     memcpy(to->entries, from->entries, from->count * sizeof *from->entries);
 }
 
+static bool vectors_equal(struct vec3 a, struct vec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
+    static const struct medium air = {.ior = 1, .tint = {1, 1, 1}};
+    const struct medium *x = a->count ? &a->entries[a->count - 1] : &air,
+                        *y = b->count ? &b->entries[b->count - 1] : &air;
+    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint);
+}
+
 void medium_stack_enter(struct medium_stack *stack, const struct medium *medium) {
     if (stack->count == MEDIUM_STACK_LIMIT) {
         memmove(stack->entries, stack->entries + 1, (MEDIUM_STACK_LIMIT - 1) * sizeof *stack->entries);

@@ -22,6 +22,7 @@ struct medium {
     uint32_t primitive; /* the solid: number of its primitive */
     double ior;
     struct vec3 absorption; /* the logarithm of light decreases by this per unit */
+    struct vec3 tint;       /* of light that passes the surface of the solid */
 };
 
 struct medium_stack {
@@ -36,6 +37,8 @@ struct medium_boundary {
     bool thin;            /* a wall with the same medium on both sides: nothing is entered or left */
 };
 
+/* Whether nothing shows a surface between the current media of two stacks. */
+bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b);
 static inline double medium_stack_ior(const struct medium_stack *stack) {
     return stack->count ? stack->entries[stack->count - 1].ior : 1;
 }

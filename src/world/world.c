@@ -6,6 +6,7 @@
 #include "material/material_eval.h"
 #include "world/flatten_internal.h"
 #include "world/flatten_material_internal.h"
+#include "world/joint.h"
 #include "world/mesh_lights_internal.h"
 #include "world/world.h"
 #include "world/world_cache.h"
@@ -356,12 +357,9 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 }
 
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
-    uint32_t primitive;
-    struct crossing crossing;
-    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
-        return false;
-    world_describe(world, ray, primitive, &crossing, hit);
-    return true;
+    struct joint joint;
+    return world_nearest_surface(world, ray, scratch, hit) &&
+           (!world_touches(world, hit) || world_join(world, ray, scratch, hit, &joint));
 }
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
@@ -687,7 +685,7 @@ static bool make_materials(struct flattening *f) {
         return false;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *material = &world->materials[i];
-        struct medium medium = {.absorption = material_absorption(material)};
+        struct medium medium = {.absorption = material_absorption(material), .tint = material_tint(material)};
         world->material_has_image[i] = material_has_image(material);
         world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
         world->material_medium[i] = MEDIUM_NONE;
@@ -751,6 +749,9 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!reused &&
         !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
         return false;
+    flattening.arena = arena;
+    if (!touching_find(&world->touching, &flattening))
+        return false;
     return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
            mesh_group_build(&world->group, world, arena, pool, error);
 }
@@ -781,6 +782,7 @@ void world_destroy(struct world *world) {
     world->links = NULL;
     scene_accel_destroy(&world->accel);
     mesh_group_destroy(&world->group);
+    touching_destroy(&world->touching);
 }
 
 size_t world_primitive_memory(const struct world *world) {

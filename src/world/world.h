@@ -12,6 +12,7 @@
 #include "scene/node.h"
 #include "world/mesh_group.h"
 #include "world/scene_accel.h"
+#include "world/touching.h"
 
 /* The map from a moving node to the world: after its own motion a fixed transform, then the next moving ancestor. */
 struct moving_link {
@@ -88,6 +89,7 @@ struct world {
     struct sky sky;
     struct scene_accel accel;
     struct mesh_group group;    /* single rays search it and its `rest` in place of accel.tree */
+    struct touching touching;
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     bool classic;               /* as requested */
     uint32_t scratch_need;
@@ -189,8 +191,8 @@ static inline struct ray primitive_ray(const struct world *world, uint32_t primi
     return out;
 }
 
-/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening
- * order. */
+/* Nearest hit in the ray's open interval, fully described. Of surfaces that coincide the one that is seen (joint.h); if
+ * their t are equal, that of the primitive that comes first in flattening order. */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
 /* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,

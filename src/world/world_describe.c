@@ -243,3 +243,13 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     if (hit->footprint > 0 && world->material_has_image[material])
         hit->pattern_scale = pattern_scale(map, leaf, hit->normal_geometric);
 }
+
+bool world_nearest_surface(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                           struct hit *hit) {
+    uint32_t primitive;
+    struct crossing crossing;
+    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
+        return false;
+    world_describe(world, ray, primitive, &crossing, hit);
+    return true;
+}

@@ -7,6 +7,9 @@
 /* Describes a result of world_nearest_crossing. */
 void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
                     const struct crossing *crossing, struct hit *hit);
+/* The nearest hit, of any one of the surfaces that coincide there: world_join may follow. */
+bool world_nearest_surface(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                           struct hit *hit);
 /* The u and v that the shape of a hit supplies. False: it has none. */
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* What is the same for every hit of a triangle of a primitive whose space is the world's. */
