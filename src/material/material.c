@@ -142,15 +142,20 @@ bool material_is_transparent(const struct material *material, double *ior) {
     return material->fresnel || numbers->refract > 0;
 }
 
-struct vec3 material_absorption(const struct material *material) {
-    return numbers_of(material)->absorption;
+bool material_passes(const struct material *material) {
+    return material->fresnel || numbers_of(material)->refract > 0 || material_texture(material, INPUT_REFRACT);
 }
 
-struct vec3 material_tint(const struct material *material) {
+struct medium material_medium(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    if (material->openpbr)
-        return material->openpbr->deep ? vec3_all(1) : material->openpbr->transmission_colour;
-    return material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    const struct openpbr *openpbr = material->openpbr;
+    struct medium medium = {.ior = numbers->has_ior ? numbers->ior : 1, .absorption = numbers->absorption};
+    medium.tint = material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    if (openpbr) {
+        medium.ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
+        medium.tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+    }
+    return medium;
 }
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
@@ -293,10 +298,9 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->passes = true;
     bsdf->behind = joint ? joint->behind : NULL;
     bsdf->roughness = vec3_max_abs(inputs->kd) > 0 ? 2 : inputs->roughness;
-    bsdf->boundary.medium.primitive = hit->primitive;
-    bsdf->boundary.medium.ior = inputs->has_ior ? inputs->ior : 1;
-    bsdf->boundary.medium.absorption = inputs->absorption;
-    bsdf->boundary.medium.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
+    bsdf->boundary.solid = hit->solid;
+    bsdf->boundary.ior = inputs->has_ior ? inputs->ior : 1;
+    bsdf->boundary.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = false;
     bsdf->eta = joint ? joint->eta : medium_stack_eta(media ? media : &air, &bsdf->boundary);

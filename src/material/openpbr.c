@@ -372,8 +372,9 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     bsdf->transmits = false;
     bsdf->glossy_samples = inputs->glossy_samples;
     double ior = openpbr_ior(values.specular_ior, values.specular_weight);
-    bsdf->boundary.medium = (struct medium){hit->primitive, ior, inputs->absorption,
-                                            values.deep ? vec3_all(1) : values.transmission_colour};
+    bsdf->boundary.solid = hit->solid;
+    bsdf->boundary.ior = ior;
+    bsdf->boundary.tint = values.deep ? vec3_all(1) : values.transmission_colour;
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = !is_solid;
     if (is_solid)

@@ -355,7 +355,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
 
 static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
     bool through =
-        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
+        world->material_has_medium[hit->material] || primitive_prototype(world, hit->primitive)->holes;
     out->t = through ? INFINITY : hit->t;
     out->primitive = hit->primitive;
     out->material = hit->material;

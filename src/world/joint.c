@@ -147,7 +147,7 @@ static void set_boundary(const struct junction *junction, const struct face *cho
     joint->boundary.tint = vec3_all(1);
     for (int i = 0; i < junction->count; i++)
         if (&junction->faces[i] != chosen)
-            joint->boundary.tint = vec3_mul(joint->boundary.tint, junction->faces[i].boundary.medium.tint);
+            joint->boundary.tint = vec3_mul(joint->boundary.tint, junction->faces[i].boundary.tint);
     joint->boundary.eta = medium_stack_ior(&joint->before) / medium_stack_ior(&joint->behind);
     joint->boundary.behind = &joint->behind;
 }
@@ -184,6 +184,7 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
         if (!joint->passed) {
             joint->ray = *ray;
             joint->ray.media = &joint->before;
+            joint->before.media = &world->media;
             joint->before.count = 0;
             if (ray->media)
                 medium_stack_copy(&joint->before, ray->media);

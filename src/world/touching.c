@@ -169,11 +169,9 @@ static void add_shape(struct finder *f, struct make *make, const struct transfor
 }
 
 static bool is_transparent(const struct world *world, uint32_t material, uint32_t slots) {
-    for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++) {
-        const struct material *m = &world->materials[i];
-        if (m->fresnel || m->phong.refract > 0 || material_texture(m, INPUT_REFRACT))
+    for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
+        if (material_passes(&world->materials[i]))
             return true;
-    }
     return false;
 }
 
@@ -471,6 +469,7 @@ bool touching_find(struct touching *touching, struct flattening *flattening) {
 
 void touching_destroy(struct touching *touching) {
     box_tree_destroy(&touching->tree);
+    *touching = (struct touching){0};
 }
 
 /* --- queries --- */
