@@ -254,6 +254,26 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
     CHECK_NEAR(mirrored[1], 4, 1e-5);
 }
 
+/* A sky of radiance 1000 above the horizon, which divides the pixel, and black below. */
+TEST(half_a_pixel_of_bright_light_beside_black_is_white_after_exposure_with_resolve_bright) {
+    static const double stops[4][4] = {{-1, 0, 0, 0}, {0, 0, 0, 0}, {0, 1000, 1000, 1000}, {1, 1000, 1000, 1000}};
+    struct stage s;
+    stage_begin(&s, 1);
+    s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
+    s.settings.integrator = INTEGRATOR_PATH;
+    s.settings.path_samples = 1024;
+    CHECK(stage_render(&s, 1, 1));
+    CHECK_NEAR(stage_pixel(&s, 0, 0).x, 500, 5);
+    s.settings.resolve = RESOLVE_BRIGHT;
+    for (double exposure = 0; exposure > -20; exposure -= 5) {
+        s.settings.tone.exposure = exposure;
+        double white = pow(2, -exposure), mapped = 0.5 * 1000 / (white + 1000);
+        CHECK(stage_render(&s, 1, 1));
+        CHECK_NEAR(stage_pixel(&s, 0, 0).x / (white * mapped / (1 - mapped)), 1, 0.02);
+    }
+    stage_end(&s);
+}
+
 /* On a line of sight, in front of a bright sky; light that falls through it reaches the floor. */
 TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_shadow) {
     double lit[2];
