@@ -1,0 +1,39 @@
+/* Small files of every kind that gray reads, written by a generator that knows what is right for each. */
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The next line of a text, which is cut there; NULL at its end. */
+static char *next_line(char **text) {
+    char *line = *text, *end = strchr(line, '\n');
+    if (!end)
+        return NULL;
+    *end = '\0';
+    *text = end + 1;
+    return line;
+}
+
+/* The lines of the generator and the warnings of gray are in the order of the files. */
+TEST(small_files_of_every_kind_have_their_triangles_their_colours_and_one_warning_each) {
+    char *script = realpath("tests/scripts/generated_files.lua", NULL), command[4400];
+    (void)snprintf(command, sizeof command, "-j 1 --allow-write . %s", script);
+    struct test_result result = test_gray(test_folder(), command);
+    CHECK_EQ_INT(result.status, 0);
+    char *out = result.out, *err = result.err, *due, *warning = NULL;
+    while ((due = next_line(&out))) {
+        char file[64], *words = strchr(due, '\t');
+        if (!words) {
+            CHECK(atoi(due) >= 200);
+            continue;
+        }
+        (void)snprintf(file, sizeof file, "warning: gr.mesh: %.*s:", (int)(words - due), due);
+        warning = next_line(&err);
+        if (!warning || !strstr(warning, file) || !strstr(warning, words + 1))
+            test_fail(__FILE__, __LINE__, "%s, not %s", warning ? warning : "no warning", due);
+    }
+    CHECK_TEXT(err, ""); /* none is left */
+    test_free_result(&result);
+    free(script);
+}
