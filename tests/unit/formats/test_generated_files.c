@@ -15,11 +15,25 @@ static char *next_line(char **text) {
     return line;
 }
 
+static struct test_result run(const char *name) {
+    char path[200], command[4400];
+    (void)snprintf(path, sizeof path, "tests/scripts/%s.lua", name);
+    char *script = realpath(path, NULL);
+    (void)snprintf(command, sizeof command, "-j 1 --allow-write . %s", script);
+    free(script);
+    return test_gray(test_folder(), command);
+}
+
+TEST(pictures_of_extensions_are_their_factors_at_each_point) {
+    struct test_result result = run("layer_maps");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    test_free_result(&result);
+}
+
 /* The lines of the generator and the warnings of gray are in the order of the files. */
 TEST(small_files_of_every_kind_have_their_triangles_their_colours_and_one_warning_each) {
-    char *script = realpath("tests/scripts/generated_files.lua", NULL), command[4400];
-    (void)snprintf(command, sizeof command, "-j 1 --allow-write . %s", script);
-    struct test_result result = test_gray(test_folder(), command);
+    struct test_result result = run("generated_files");
     CHECK_EQ_INT(result.status, 0);
     char *out = result.out, *err = result.err, *due, *warning = NULL;
     while ((due = next_line(&out))) {
@@ -35,5 +49,4 @@ TEST(small_files_of_every_kind_have_their_triangles_their_colours_and_one_warnin
     }
     CHECK_TEXT(err, ""); /* none is left */
     test_free_result(&result);
-    free(script);
 }
