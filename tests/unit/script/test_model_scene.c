@@ -130,7 +130,7 @@ TEST(a_model_of_the_command_line_has_its_own_camera_and_lights) {
 }
 
 /* A triangle that rises by 4 within a second, and sinks within another. */
-TEST(the_fitted_camera_of_an_animated_model_stands_still) {
+TEST(the_fitted_camera_of_an_animated_model_does_not_move) {
     test_write_text(
         test_path("up.gltf"),
         "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
