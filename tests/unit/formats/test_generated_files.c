@@ -49,4 +49,8 @@ TEST(small_files_of_every_kind_have_their_triangles_their_colours_and_one_warnin
     }
     CHECK_TEXT(err, ""); /* none is left */
     test_free_result(&result);
+    /* Each is a scene, too. */
+    test_shell("$gray -q --size 16x9 --spp 1 --denoise=none *.obj *.ply *.stl *.gltf *.glb 2>/dev/null;"
+               " echo $?; ls *.obj *.ply *.stl *.gltf *.glb | wc -l; ls *.png | wc -l",
+               0, "0\n244\n244\n");
 }
