@@ -229,8 +229,6 @@ bool film_has_alpha(struct film_record record) {
 }
 
 float film_alpha(const struct film *film, size_t at) {
-    if (!film_has_alpha(film->record))
-        return 1;
     if (film->record.marks)
         return film->floats[at * film->record.floats + 3];
     const struct path_pixel pixel = path_film_load(film, at);

@@ -37,8 +37,7 @@ unsigned path_film_parts(struct film_record record);
 struct path_pixel path_film_load(const struct film *film, size_t at);
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
 
-/* Whether a film, also one of the integrator whitted, has the alpha of its pixels, and that of a pixel (1 without it).
- */
+/* Whether a film, also one of the integrator whitted, has the alpha of its pixels; that of a pixel of such a film. */
 bool film_has_alpha(struct film_record record);
 float film_alpha(const struct film *film, size_t at);
 
