@@ -357,7 +357,8 @@ static bool read_instances(struct gltf *g, const json_t *attributes, struct inst
             continue;
         if (!gltf_accessor(g, accessor, &a))
             return false;
-        if (!a.data || a.components != width || a.sparse_count || (out->count && a.count != out->count))
+        bool other_count = (out->parts[0] || out->parts[1]) && a.count != out->count; /* also beside a count of 0 */
+        if (!a.data || a.components != width || a.sparse_count || other_count)
             return gltf_fail(g, where, "accessors[%u] does not have the %s of its instances", accessor, keys[k]);
         /* A node takes as much memory as some vertices. */
         if (!gltf_produce(g, 8 * a.count, where))

@@ -207,6 +207,23 @@ TEST(gltf_instances_share_the_mesh_of_their_node) {
     bytes_free(&b);
 }
 
+TEST(gltf_instances_have_as_many_scales_as_translations_even_none) {
+    static const double scales[] = {1, 1, 1, 1, 1, 1};
+    struct bytes b = {0};
+    struct model model;
+    struct error error = {0};
+    add_triangle(&b);
+    add_floats(&b, scales, 6);
+    CHECK(
+        !parse_with(&model, &b,
+                    "\"accessors\":[" POSITIONS "," ACCESSOR(36, 5126, 0, "VEC3") "," ACCESSOR(
+                        36, 5126, 2, "VEC3") "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                                             "\"nodes\":[{\"mesh\":0," INSTANCING("\"TRANSLATION\":1,\"SCALE\":2") "}]",
+                    NULL, &error));
+    CHECK_TEXT(error.text, "t.gltf: nodes[0]: accessors[2] does not have the SCALE of its instances");
+    bytes_free(&b);
+}
+
 /* The second vertex of the triangle at a time of animation `name`. */
 static struct vec3 moved(const struct bytes *b, const char *name, double time) {
     static const char rest[] =
