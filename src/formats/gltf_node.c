@@ -461,13 +461,18 @@ struct visit {
     struct affine model_from_parent;
 };
 
+/* Every node is on the stack once at most, so that equal children in a long list are an error at once. */
+static bool claim(struct tree *tree, uint32_t node) {
+    char where[64];
+    (void)snprintf(where, sizeof where, "nodes[%u]", node);
+    return !tree->seen[node]++ || gltf_fail(tree->g, where, "it has two parents, or is below itself");
+}
+
 /* Adds one node to the model and its children to the stack. */
 static bool read_node(struct tree *tree, struct visit visit) {
     struct gltf *g = tree->g;
     char where[64];
     (void)snprintf(where, sizeof where, "nodes[%u]", visit.node);
-    if (tree->seen[visit.node]++)
-        return gltf_fail(g, where, "it has two parents, or is below itself");
     const json_t *source = json_array_get(tree->nodes, visit.node);
     struct transform placement, rest = visit.rest;
     const char *name = gltf_name(g, source);
@@ -495,6 +500,8 @@ static bool read_node(struct tree *tree, struct visit visit) {
         uint32_t child = child_of(tree, children, count - 1 - i);
         if (child == MODEL_NONE)
             return gltf_fail(g, where, "a child that does not exist");
+        if (!claim(tree, child))
+            return false;
         below[i] = (struct visit){child, number, rest, model_from_node};
     }
     tree->stack.count += count;
@@ -502,6 +509,8 @@ static bool read_node(struct tree *tree, struct visit visit) {
 }
 
 static bool push_root(struct tree *tree, uint32_t node) {
+    if (!claim(tree, node))
+        return false;
     struct visit *visit = list_room(&tree->stack, 1, sizeof *visit);
     if (!visit)
         return error_no_memory(tree->g->error, tree->g->path);
