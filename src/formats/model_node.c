@@ -21,6 +21,24 @@ static void destroy_model(void *object) {
     mem_free(object);
 }
 
+/* Meshes that the last reading of the file made, too (at another time, say), take no memory again. */
+static void share_meshes(const struct assets *assets, const char *canonical, struct model *model) {
+    const struct asset_object *entry = assets->objects;
+    size_t length = strlen(canonical);
+    while (entry && (entry->destroy != destroy_model || strncmp(entry->key, canonical, length) != 0 ||
+                     entry->key[length] != '|'))
+        entry = entry->next;
+    const struct model *last = entry ? entry->object : NULL;
+    for (size_t i = 0; last && i < model->meshes.count && i < last->meshes.count; i++) {
+        struct model_mesh *mesh = &model_meshes(model)[i];
+        struct mesh *other = model_meshes(last)[i].mesh;
+        if (!mesh_equals(mesh->mesh, other))
+            continue;
+        mesh_release(mesh->mesh);
+        mesh->mesh = mesh_share(other);
+    }
+}
+
 struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                           const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 400];
@@ -48,6 +66,7 @@ struct model *model_asset(struct assets *assets, const char *path, const char *c
         mem_free(model);
         return NULL;
     }
+    share_meshes(assets, canonical, model);
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!assets_keep_mesh(assets, model_meshes(model)[i].mesh, error)) {
             destroy_model(model);
