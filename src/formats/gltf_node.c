@@ -323,7 +323,10 @@ static bool make_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, ui
     }
     mem_free(weights);
     mem_free(joints);
-    return ok;
+    /* The scene has a list of the mesh's materials for each node. */
+    char where[64];
+    (void)snprintf(where, sizeof where, "nodes[%u]", index);
+    return ok && gltf_produce(g, model_meshes(g->model)[*out].slots.count, where);
 }
 
 /* One more node of the model. */

@@ -260,6 +260,25 @@ TEST(gltf_files_cannot_have_primitives_read_more_often_than_their_size_allows) {
     }
 }
 
+TEST(gltf_files_cannot_have_more_materials_of_nodes_than_their_size_allows) {
+    struct bytes b = {0}, rest = {0};
+    struct model model;
+    struct error error = {0};
+    add_triangle(&b);
+    bytes_print(&rest, "\"accessors\":[" POSITIONS "],\"materials\":[");
+    add_repeated(&rest, "{}", 1000);
+    bytes_print(&rest, "],\"meshes\":[{\"primitives\":[");
+    for (int i = 0; i < 1000; i++)
+        bytes_print(&rest, "%s{\"attributes\":{\"POSITION\":0},\"material\":%d}", i ? "," : "", i);
+    bytes_print(&rest, "]}],\"nodes\":[");
+    add_repeated(&rest, "{\"mesh\":0}", 3000);
+    bytes_add(&rest, "]", 2);
+    CHECK(!parse_with(&model, &b, (const char *)rest.data, NULL, &error));
+    CHECK(strstr(error.text, "t.gltf: nodes[") && strstr(error.text, ": more vertices than a file"));
+    bytes_free(&b);
+    bytes_free(&rest);
+}
+
 /* The second vertex of the triangle at a time of animation `name`. */
 static struct vec3 moved(const struct bytes *b, const char *name, double time) {
     static const char rest[] =
