@@ -671,6 +671,7 @@ void model_destroy(struct model *model) {
     list_destroy(&model->cameras);
     list_destroy(&model->lights);
     list_destroy(&model->animations);
+    file_set_destroy(&model->broken);
     arena_destroy(&model->arena);
     *model = (struct model){0};
 }

@@ -85,13 +85,21 @@ static bool is_usable(const struct model_texture *map) {
 /* A picture that cannot be read has no effect, as if it were missing; only a lack of memory is an error. */
 static bool check_picture(struct scene *scene, struct model *model, struct model_texture *map, struct error *error) {
     struct error reason = {0};
-    if (!map->path || assets_image(scene->assets, map->path, &reason))
+    struct file_identity identity;
+    if (!map->path)
         return true;
-    if (reason.kind != ERROR_SCENE || reason.limit) {
-        *error = reason;
-        return false;
+    bool known = file_identity_of(map->path, &identity);
+    if (!known || !file_set_has(&model->broken, identity)) {
+        if (assets_image(scene->assets, map->path, &reason))
+            return true;
+        if (reason.kind != ERROR_SCENE || reason.limit) {
+            *error = reason;
+            return false;
+        }
+        model_warn(model, "%s (the picture has no effect)", reason.text);
+        if (known && !file_set_add(&model->broken, identity))
+            return error_no_memory(error, model->path);
     }
-    model_warn(model, "%s (the picture has no effect)", reason.text);
     map->path = NULL;
     return true;
 }

@@ -429,6 +429,29 @@ TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
     assets_destroy(&assets);
 }
 
+TEST(a_broken_picture_of_many_materials_is_tried_once) {
+    test_write_text(in_folder("broken.png"), "\x89PNG");
+    test_write_text(in_folder("b.mtl"),
+                    "newmtl a\nmap_Kd broken.png\nnewmtl b\nmap_Kd ./broken.png\nmap_Ks broken.png\n");
+    test_write_text(in_folder("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\n"
+                                        "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "b"};
+    bool fresh;
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("b.obj"), "b", &(struct model_options){0}, &fresh, &error);
+    CHECK(model && model_add_nodes(&scene, model, &placing, &error));
+    CHECK_TEXT(error.text, "");
+    if (model) {
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK_EQ_INT(model->broken.count, 1);
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
 #ifdef HAVE_JANSSON
 TEST(meshes_that_no_skin_or_morph_changes_are_shared_by_all_times_of_a_file) {
     test_write_text(in_folder("times.gltf"),
