@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/path_policy.h"
 #include "formats/list.h"
 #include "image/image.h"
@@ -31,6 +32,15 @@ struct model_texture {
     enum image_filter filter;
 };
 
+/* A picture that multiplies an input of the layers. */
+struct model_layer_map {
+    struct model_texture map;
+    enum material_input input;
+    char channel; /* 'r', 'g', 'a', or 'c': the colour */
+    double factor;
+};
+enum { MODEL_LAYER_MAPS = 6 };
+
 /* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {
     const char *name;
@@ -51,10 +61,11 @@ struct model_material {
      * gloss; both take the place of the numbers. */
     struct model_texture map_gloss;
     struct vec3 gloss_colour;
+    struct model_layer_map layer_maps[MODEL_LAYER_MAPS];
+    uint32_t layer_map_count;
 };
-#define MODEL_MAPS(m)                                                                                                  \
-    &(m)->map_kd, &(m)->map_ks, &(m)->map_ke, &(m)->map_d, &(m)->map_bump, &(m)->map_normal, &(m)->map_metal,          \
-        &(m)->map_gloss
+/* The maps of a material, one after the other; NULL behind the last. */
+struct model_texture *model_map(struct model_material *m, size_t index);
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
@@ -139,7 +150,8 @@ struct model {
     struct list cameras, lights, animations; /* struct model_camera, model_light, model_animation */
     const char *warnings[MODEL_WARNINGS];
     int warning_count;
-    bool refused; /* model_find: the last name leads out of the readable folders */
+    bool refused;           /* model_find: the last name leads out of the readable folders */
+    struct file_set broken; /* pictures that could not be read: thousands of materials may name one */
 };
 
 /* The maximum number of vertices, and of corners, of a mesh: some numbers of 32 bits have other meanings. */

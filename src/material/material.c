@@ -142,8 +142,20 @@ bool material_is_transparent(const struct material *material, double *ior) {
     return material->fresnel || numbers->refract > 0;
 }
 
-struct vec3 material_absorption(const struct material *material) {
-    return numbers_of(material)->absorption;
+bool material_passes(const struct material *material) {
+    return material->fresnel || numbers_of(material)->refract > 0 || material_texture(material, INPUT_REFRACT);
+}
+
+struct medium material_medium(const struct material *material) {
+    const struct phong *numbers = numbers_of(material);
+    const struct openpbr *openpbr = material->openpbr;
+    struct medium medium = {.ior = numbers->has_ior ? numbers->ior : 1, .absorption = numbers->absorption};
+    medium.tint = material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    if (openpbr) {
+        medium.ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
+        medium.tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+    }
+    return medium;
 }
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
@@ -263,7 +275,7 @@ static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight,
     lobe->share = 0;
 }
 
-static void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
+static inline void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
     bsdf->normal = inputs->normal;
     bsdf->lit = inputs->two_sided && !hit->front ? vec3_negate(inputs->normal) : inputs->normal;
     bsdf->dark = !hit->front && !inputs->two_sided;
@@ -274,21 +286,24 @@ static void set_frame(const struct hit *hit, const struct surface_inputs *inputs
 }
 
 /* The relative index, whether light is transmitted, and Fresnel's share of both amounts. */
-static void set_boundary(const struct hit *hit, const struct medium_stack *media, struct surface_inputs *inputs,
-                         struct bsdf *bsdf) {
+static void set_boundary(const struct hit *hit, const struct medium_stack *media, const struct bsdf_joint *joint,
+                         struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
     bsdf->eta = 1;
     bsdf->fresnel = -1;
     bsdf->fresnel_of_facets = inputs->fresnel && inputs->roughness > 0;
-    bsdf->transmits = false;
+    bsdf->transmits = bsdf->passes = false;
     if (!inputs->fresnel && inputs->refract == 0)
         return;
-    bsdf->boundary.medium.primitive = hit->primitive;
-    bsdf->boundary.medium.ior = inputs->has_ior ? inputs->ior : 1;
-    bsdf->boundary.medium.absorption = inputs->absorption;
+    bsdf->passes = true;
+    bsdf->behind = joint ? joint->behind : NULL;
+    bsdf->roughness = vec3_max_abs(inputs->kd) > 0 ? 2 : inputs->roughness;
+    bsdf->boundary.solid = hit->solid;
+    bsdf->boundary.ior = inputs->has_ior ? inputs->ior : 1;
+    bsdf->boundary.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = false;
-    bsdf->eta = medium_stack_eta(media ? media : &air, &bsdf->boundary);
+    bsdf->eta = joint ? joint->eta : medium_stack_eta(media ? media : &air, &bsdf->boundary);
     bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
     if (inputs->fresnel) {
         inputs->reflect = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), bsdf->eta);
@@ -343,8 +358,15 @@ static void eval_matte(const struct phong *numbers, const struct hit *hit, const
     out->alpha = numbers->roughness * numbers->roughness;
     out->glossy_samples = numbers->glossy_samples;
     out->fresnel = -1;
-    out->fresnel_of_facets = out->transmits = false;
+    out->fresnel_of_facets = out->transmits = out->passes = false;
     out->turns_back = context->total_reflection;
+}
+
+/* The other surfaces of a joint tint what passes. */
+static void tint_passing(const struct bsdf_joint *joint, struct bsdf *bsdf) {
+    for (int i = 0; joint && i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRANSMITS)
+            bsdf->lobes[i].weight = vec3_mul(bsdf->lobes[i].weight, joint->tint);
 }
 
 void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
@@ -372,10 +394,11 @@ void material_eval(const struct material *material, const struct hit *hit, const
     if (!(inputs.opacity > 0))
         return;
     if (material->openpbr) {
-        openpbr_eval(material, hit, media, &inputs, out);
+        openpbr_eval(material, hit, media, context->joint, &inputs, out);
         out->ambient = context->ambient_plain ? vec3_all(1) : inputs.kd;
-        return;
+    } else {
+        set_boundary(hit, media, context->joint, &inputs, out);
+        set_lobes(&inputs, context, out);
     }
-    set_boundary(hit, media, &inputs, out);
-    set_lobes(&inputs, context, out);
+    tint_passing(context->joint, out);
 }

@@ -12,7 +12,8 @@ struct material_context {
     bool ambient_plain;          /* the ambient colour is not multiplied by kd */
     bool total_reflection;       /* at total reflection, refracted light is reflected; else it is lost */
     bool no_black_highlight;     /* matte surfaces do not have a highlight with weight 0 */
-    material_observer *observer; /* called for every link of `authored`, or NULL */
+    const struct bsdf_joint *joint; /* or NULL: no other surface is there */
+    material_observer *observer;    /* called for every link of `authored`, or NULL */
     void *observer_context;
     const struct material *authored; /* if observer is set: the material of the scene that `material` was made from */
 };

@@ -416,7 +416,7 @@ static double relative_index(const struct layering *l) {
 }
 
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
-                  const struct surface_inputs *inputs, struct bsdf *bsdf) {
+                  const struct bsdf_joint *joint, const struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
     struct openpbr values = *material->openpbr;
     read_textures(material, hit, &values);
@@ -429,7 +429,7 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     l.mirror = l.turned = vec3_all(0);
     l.cosine = vec3_dot(bsdf->side, hit->view);
     l.cosine = l.cosine < 1 ? l.cosine : 1;
-    l.inside = !values.thin_walled && !hit->front && (is_solid || medium_stack_has(media, hit->primitive));
+    l.inside = !values.thin_walled && !hit->front && (is_solid || medium_stack_has(media, hit->solid));
     l.outside = medium_stack_ior(media);
     bsdf->lit = bsdf->side;
     bsdf->dark = false;
@@ -440,16 +440,21 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     bsdf->transmits = false;
     bsdf->glossy_samples = inputs->glossy_samples;
     double ior = openpbr_ior(values.specular_ior, values.specular_weight);
-    bsdf->boundary.medium = (struct medium){hit->primitive, ior, inputs->absorption};
+    bsdf->boundary.solid = hit->solid;
+    bsdf->boundary.ior = ior;
+    bsdf->boundary.tint = values.deep ? vec3_all(1) : values.transmission_colour;
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = !is_solid;
     if (is_solid)
-        bsdf->eta = medium_stack_eta(media, &bsdf->boundary);
+        bsdf->eta = joint ? joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
     add_coat(&l);
     bsdf->emission = vec3_mul(inputs->emission, l.left);
     double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
     double roughness = roughness_below(&l);
+    bsdf->passes = inputs->refract > 0 && values.base_metalness < 1;
+    bsdf->behind = joint ? joint->behind : NULL;
+    bsdf->roughness = inputs->refract < 1 ? 2 : roughness;
     if (l.inside && is_solid)
         turn_back(&l, eta, roughness);
     add_metal(&l, roughness);

@@ -15,6 +15,7 @@ enum { TENTHS = 10, LONGEST = 3000, CHOICES = 21, STRIDE = 13 };
 struct ball {
     struct openpbr numbers;
     struct material material;
+    struct medium medium;
     bool striped; /* `refract` is 1 in half of the stripes and 0 in the others */
 };
 
@@ -23,6 +24,13 @@ static void ball_init(struct ball *ball) {
     ball->material.openpbr = &ball->numbers;
     ball->material.phong.kd = ball->material.phong.ks = vec3_all(1);
     ball->material.phong.refract = 1;
+}
+
+/* The inside of the ball. */
+static const struct solid solid = {4, 0};
+static struct media inside_of(struct ball *ball) {
+    ball->medium.ior = openpbr_ior(ball->numbers.specular_ior, ball->numbers.specular_weight);
+    return (struct media){&solid, &ball->medium};
 }
 
 /* The surface at a point of the ball of radius 1, seen by a ray. */
@@ -61,7 +69,8 @@ static bool step(const struct bsdf *bsdf, struct vec3 wo, struct test_random *ra
 /* The light that a ray sees which hits the ball beside its middle. Refraction scales radiance on the way in and back on
  * the way out. */
 static double path_light(struct ball *ball, double beside, struct test_random *random) {
-    struct medium_stack media = {.count = 0};
+    struct media inside = inside_of(ball);
+    struct medium_stack media = {.media = &inside};
     struct vec3 ray = {0, 0, -1}, n = {beside, 0, sqrt(1 - beside * beside)};
     double light = 1;
     for (int k = 0; k < LONGEST; k++) {
@@ -261,7 +270,8 @@ TEST(polished_layers_pass_the_same_light_in_and_out) {
         ball.numbers.fuzz_weight = 0.5;
         ball.numbers.base_metalness = 0.1;
         ball.numbers.transmission_colour = vec3_make(0.5, 1, 0.7);
-        struct medium_stack media = {.count = 0};
+        struct media inside = inside_of(&ball);
+        struct medium_stack media = {.media = &inside};
         struct vec3 n = {0, 0, 1}, ray = {sine, 0, -sqrt(1 - sine * sine)};
         struct bsdf in = describe(&ball, n, ray, &media);
         medium_stack_cross(&media, &in.boundary);
@@ -281,10 +291,11 @@ static double passed(struct ball *ball, bool front, int views) {
     for (int i = 0; i < views; i++) {
         struct test_random random = {(uint64_t)i + 1};
         double cosine = sqrt((i + 0.5) / views);
-        struct medium_stack media = {.count = 0};
+        struct media inside = inside_of(ball);
+        struct medium_stack media = {.media = &inside};
         struct vec3 n = {0, 0, 1}, ray = {sqrt(1 - cosine * cosine), 0, front ? -cosine : cosine};
         if (!front)
-            medium_stack_enter(&media, &(struct medium){.primitive = 4, .ior = ball->numbers.specular_ior});
+            medium_stack_enter(&media, 0);
         struct bsdf bsdf = describe(ball, n, ray, &media);
         for (int k = 0; k < 400; k++) {
             struct sample2 u = {(k % 20 + test_uniform(&random, 0, 1)) / 20,
