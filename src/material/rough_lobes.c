@@ -57,8 +57,8 @@ static double stretch_towards(const struct bsdf_facets *facets, struct vec3 dire
     return albedo_stretch(fabs(vec3_dot(direction, d->normal)), cos_double, d->alpha_along, d->alpha_across);
 }
 
-/* A fit to the means over directions of the sums of stretched_boundary, for indices from 1.2 to 2.5 within 3 percent of
- * the lack. eta = index on the side of the direction / index behind; 1: facets that reflect all. */
+/* A fit to the means over directions of the sums of stretched_boundary, for indices from 1.2 to 2.5: within 3 percent of
+ * lacks above .05, .3 percent of the light below. eta = index on the side of the direction / index behind; 1: facets that reflect all. */
 static double boundary_stretch(const struct facet_distribution *d, double eta) {
     double rest = 1 - d->alpha_along, ratio = d->alpha_across / d->alpha_along;
     double amount = (1 - ratio) * (1 - ratio) * (1 + ratio / 2);
