@@ -123,6 +123,9 @@ bool material_has_function(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
 /* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);
+/* Whether light may pass through the surface into another medium; holes and thin walls have the same one on both
+ * sides. */
+bool material_divides_media(const struct material *material);
 /* Of the base: absorption inside, per unit of length. */
 struct vec3 material_absorption(const struct material *material);
 /* Of the base: its average emission, and a bound (texture_estimate). */

@@ -14,6 +14,7 @@ struct material_context {
     bool no_black_highlight;     /* matte surfaces do not have a highlight with weight 0 */
     material_observer *observer; /* called for every link of `authored`, or NULL */
     void *observer_context;
+    bool thin;                       /* the surface is a wall without thickness, with the same medium on both sides */
     const struct material *authored; /* if observer is set: the material of the scene that `material` was made from */
 };
 

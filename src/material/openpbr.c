@@ -347,11 +347,12 @@ static double relative_index(const struct layering *l) {
     return bare + l->coated * (below - bare);
 }
 
-void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media, bool thin,
                   const struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
     struct openpbr values = *material->openpbr;
     read_textures(material, hit, &values);
+    values.thin_walled = values.thin_walled || thin;
     media = media ? media : &air;
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;

@@ -125,7 +125,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         if (world_nearest(s->world, &back, scratch, &ground))
             return;
     }
-    const struct material_context context = {
+    struct material_context context = {
         .specular = s->settings->specular, .ambient_plain = s->settings->ambient_plain, .total_reflection = true};
     const uint8_t *lit = target->emitter.light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
@@ -137,6 +137,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))
             path.left = vec3_mul(path.left, effect.transmittance);
+        context.thin = primitive_is_sheet(s->world, hit.primitive);
         material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
