@@ -133,20 +133,49 @@ static bool any_material(const struct flattening *f, const struct prototype *pro
     return !csg && any_slot(f, prototype->material, prototype->slot_count, is);
 }
 
+/* Whether a box is wholly in a leaf, which its corners tell of convex ones; of others it is not known. */
+static bool holds_box(const struct csg_leaf *leaf, const struct box *box) {
+    enum hit_convexity convexity = shape_convexity(&leaf->shape);
+    bool holds = convexity == CONVEXITY_BEHIND || convexity == CONVEXITY_PLANAR;
+    for (int i = 0; i < 8 && holds; i++) {
+        struct vec3 corner = vec3_make(i & 1 ? box->min.x : box->max.x, i & 2 ? box->min.y : box->max.y,
+                                       i & 4 ? box->min.z : box->max.z);
+        holds = vec3_finite(corner) &&
+                shape_contains(&leaf->shape, affine_point(&leaf->csg_from_leaf.inverse, corner), NULL);
+    }
+    return holds;
+}
+
+/* Whether a clipped solid is certainly whole: in the intersection of convex solids. */
+static bool is_whole(const struct csg *csg) {
+    uint32_t shown = csg->program[csg->solid_length].leaf;
+    struct box solid = box_empty();
+    bool whole = !csg->open;
+    for (uint32_t i = 0; i < shown; i++) {
+        struct box box = shape_bounds_under(&csg->leaves[i].shape, &csg->leaves[i].csg_from_leaf.forward);
+        solid = box_join(solid, box);
+    }
+    for (uint32_t i = csg->solid_length; whole && i < csg->program_length; i++) {
+        const struct csg_token *token = &csg->program[i];
+        whole = token->operation == CSG_LEAF ? holds_box(&csg->leaves[token->leaf], &solid)
+                                             : token->operation == CSG_INTERSECTION;
+    }
+    return whole;
+}
+
 /* A transparent surface that encloses nothing is a thin wall, unless the node says otherwise; solids with small holes
  * enclose nearly all that they seem to. */
 static bool find_walls(struct flattening *f, enum node_walls walls, struct prototype *prototype) {
     const double smallest_opening = 0.05; /* of a sheet, as a share of its area */
     const struct mesh *mesh = geometry_mesh(&prototype->geometry);
+    const struct csg *csg = prototype->geometry.csg;
     bool by_shape = walls == WALLS_BY_SHAPE && !f->unqueried && !geometry_is_closed(&prototype->geometry);
     if ((walls != WALLS_THIN && !by_shape) || !any_material(f, prototype, material_divides_media))
         return true;
-    if (by_shape && mesh) {
-        double opening;
-        if (!mesh_opening(mesh, &opening))
-            return error_no_memory(f->error, "the edges of a mesh");
-        by_shape = opening > smallest_opening;
-    }
+    double opening = 1;
+    if (by_shape && mesh && !mesh_opening(mesh, &opening))
+        return error_no_memory(f->error, "the edges of a mesh");
+    by_shape = by_shape && opening > smallest_opening && !(csg && is_whole(csg));
     prototype->is_sheet = by_shape || walls == WALLS_THIN;
     prototype->by_shape = by_shape;
     f->world->has_sheets = f->world->has_sheets || prototype->is_sheet;

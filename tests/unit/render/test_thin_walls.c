@@ -165,6 +165,27 @@ TEST(what_a_clip_leaves_of_glass_is_a_thin_wall) {
     stage_end(&s);
 }
 
+/* A half-space and a ball around the clipped ball, and a ball that its bounds stick out of. */
+TEST(what_a_clip_leaves_whole_refracts) {
+    static const double radii[] = {0, 6, 4};
+    for (int i = 0; i < 3; i++) {
+        struct stage s;
+        begin_ball(&s);
+        struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
+        struct node *around = scene_node(&s.scene, NODE_GEOMETRY, "around", &s.error);
+        ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 3}};
+        ball->material = stage_glass(&s, 0, 1, 1.5);
+        around->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, radii[i]}};
+        if (i == 0)
+            around->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), 4)};
+        struct node *clipped =
+            scene_combine(&s.scene, "clipped", NODE_CLIPPED, (struct node *[]){ball, around}, 2, &s.error);
+        CHECK(node_add_child(&s.scene, s.root, clipped, &s.error));
+        CHECK_EQ_INT(shows_the_same(&s, ball, WALLS_BY_SHAPE), i == 2);
+        stage_end(&s);
+    }
+}
+
 TEST(whitted_refracts_at_open_surfaces_as_before) {
     struct stage s;
     begin_ball(&s);
