@@ -159,7 +159,7 @@ static uint32_t step(struct boundary *boundary, uint32_t vertex) {
 
 /* Twice the vector area of one walk from the vertex, until it is there again, or until it can go no further: a straight
  * line closes it then. */
-static struct vec3 walk(const struct mesh *mesh, struct boundary *boundary, uint32_t begin) {
+static struct vec3 follow_boundary(const struct mesh *mesh, struct boundary *boundary, uint32_t begin) {
     struct vec3 base = position(mesh, begin), sum = {0, 0, 0}, before = sum;
     for (uint32_t at = begin; (at = step(boundary, at)) != NONE && at != begin;) {
         struct vec3 here = vec3_sub(position(mesh, at), base);
@@ -237,7 +237,7 @@ static double opening_of(const struct mesh *mesh, struct boundary *boundary, uin
         while (boundary->ends[i][LEAVES] != NONE) {
             uint32_t begin = boundary->ends[i][LEAVES];
             struct opening *opening = &openings[part_of(lower, begin)];
-            struct vec3 loop = walk(mesh, boundary, begin);
+            struct vec3 loop = follow_boundary(mesh, boundary, begin);
             opening->sum = vec3_add(opening->sum, loop);
             opening->lengths += vec3_length(loop);
         }
@@ -273,19 +273,13 @@ static bool find_opening(const struct mesh *mesh, const struct edge_uses *edges,
     return has_memory;
 }
 
-bool mesh_opening(const struct mesh *mesh, double *share) {
-    struct mesh_accel *known = mesh->accel;
+bool mesh_find_opening(const struct mesh *mesh, double *share) {
     struct edge_uses edges;
-    bool has_memory = true;
-    if (!known->opening_is_known && !mesh->closed) {
-        has_memory = edge_uses_make(mesh, &edges);
-        for (uint32_t v = 0; has_memory && v < mesh->vertex_count; v++)
-            sort_words(edges.uses + edges.start[v], edges.start[v + 1] - edges.start[v]);
-        has_memory = has_memory && find_opening(mesh, &edges, &known->opening);
-        edge_uses_free(&edges);
-    }
-    known->opening_is_known = has_memory;
-    *share = known->opening;
+    bool has_memory = edge_uses_make(mesh, &edges);
+    for (uint32_t v = 0; has_memory && v < mesh->vertex_count; v++)
+        sort_words(edges.uses + edges.start[v], edges.start[v + 1] - edges.start[v]);
+    has_memory = has_memory && find_opening(mesh, &edges, share);
+    edge_uses_free(&edges);
     return has_memory;
 }
 

@@ -137,7 +137,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))
             path.left = vec3_mul(path.left, effect.transmittance);
-        context.thin = primitive_is_sheet(s->world, hit.primitive);
+        context.thin = primitive_is_thin(s->world, hit.primitive);
         material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */

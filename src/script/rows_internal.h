@@ -41,7 +41,7 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_FIRST };
 static inline enum node_walls walls_of(const struct script_value *thin_walled) {
     return !thin_walled->given ? WALLS_BY_SHAPE : thin_walled->boolean ? WALLS_THIN : WALLS_OF_SOLID;
 }
-static inline void give_look(const struct script_value *args, struct node *node) {
+static inline void set_shape_fields(const struct script_value *args, struct node *node) {
     node->material = args[SHAPE_MATERIAL].material;
     node->walls = walls_of(&args[SHAPE_THIN_WALLED]);
 }

@@ -176,9 +176,9 @@ static bool find_walls(struct flattening *f, enum node_walls walls, struct proto
     if (by_shape && mesh && !mesh_opening(mesh, &opening))
         return error_no_memory(f->error, "the edges of a mesh");
     by_shape = by_shape && opening > smallest_opening && !(csg && is_whole(csg));
-    prototype->is_sheet = by_shape || walls == WALLS_THIN;
+    prototype->is_thin = by_shape || walls == WALLS_THIN;
     prototype->by_shape = by_shape;
-    f->world->has_sheets = f->world->has_sheets || prototype->is_sheet;
+    f->world->has_thin_walls = f->world->has_thin_walls || prototype->is_thin;
     return true;
 }
 

@@ -397,7 +397,7 @@ void medium_stack_at(const struct world *world, const struct inside_query *query
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
         uint32_t material = prototype->geometry.csg ? prototype->geometry.csg->leaves[0].material : prototype->material;
-        if (prototype->is_sheet || world->material_medium[material] == MEDIUM_NONE)
+        if (prototype->is_thin || world->material_medium[material] == MEDIUM_NONE)
             continue;
         struct medium medium = world->media[world->material_medium[material]];
         medium.primitive = inside[i];

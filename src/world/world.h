@@ -36,7 +36,7 @@ struct prototype {
     bool is_later_part;  /* not the first of them */
     enum hit_convexity convexity; /* unused for CSG, like material */
     bool holes;                   /* some of its materials have an opacity texture */
-    bool is_sheet;                /* a thin wall, for paths and photons; `by_shape`: because it is open */
+    bool is_thin;                 /* a thin wall, for paths and photons; `by_shape`: because it is open */
     bool by_shape;
 };
 
@@ -92,7 +92,7 @@ struct world {
     struct mesh_group group;    /* single rays search it and its `rest` in place of accel.tree */
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     bool classic;               /* as requested */
-    bool has_sheets;            /* of prototypes */
+    bool has_thin_walls;        /* of prototypes */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
@@ -165,8 +165,8 @@ static inline bool primitive_moves(const struct world *world, uint32_t primitive
     return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
 }
 /* Its surface is a thin wall, for paths and photons. */
-static inline bool primitive_is_sheet(const struct world *world, uint32_t primitive) {
-    return world->has_sheets && primitive_prototype(world, primitive)->is_sheet;
+static inline bool primitive_is_thin(const struct world *world, uint32_t primitive) {
+    return world->has_thin_walls && primitive_prototype(world, primitive)->is_thin;
 }
 /* The node that a primitive came from. */
 static inline const struct node *primitive_node(const struct world *world, uint32_t primitive) {

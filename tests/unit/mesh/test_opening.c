@@ -86,7 +86,7 @@ static void tube(struct maker *m, int n, double radius, double low, double high,
     }
 }
 
-TEST(both_ends_of_a_tube_count_in_any_place_and_size) {
+TEST(both_ends_of_a_tube_count_at_any_position_and_size) {
     for (int n = 3; n < 40; n += 9) {
         struct maker m = {0};
         double height = 0.3 * n, side = 2 * sin(M_PI / n);

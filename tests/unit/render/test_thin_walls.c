@@ -165,21 +165,21 @@ TEST(what_a_clip_leaves_of_glass_is_a_thin_wall) {
     stage_end(&s);
 }
 
-/* A half-space and a ball around the clipped ball, and a ball that its bounds stick out of. */
+/* By a half-space and a ball that contain it, and by a ball that its bounds stick out of. */
 TEST(what_a_clip_leaves_whole_refracts) {
     static const double radii[] = {0, 6, 4};
     for (int i = 0; i < 3; i++) {
         struct stage s;
         begin_ball(&s);
         struct node *ball = scene_node(&s.scene, NODE_GEOMETRY, "ball", &s.error);
-        struct node *around = scene_node(&s.scene, NODE_GEOMETRY, "around", &s.error);
+        struct node *clipping = scene_node(&s.scene, NODE_GEOMETRY, "clipping", &s.error);
         ball->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 3}};
         ball->material = stage_glass(&s, 0, 1, 1.5);
-        around->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, radii[i]}};
+        clipping->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, radii[i]}};
         if (i == 0)
-            around->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), 4)};
+            clipping->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), 4)};
         struct node *clipped =
-            scene_combine(&s.scene, "clipped", NODE_CLIPPED, (struct node *[]){ball, around}, 2, &s.error);
+            scene_combine(&s.scene, "clipped", NODE_CLIPPED, (struct node *[]){ball, clipping}, 2, &s.error);
         CHECK(node_add_child(&s.scene, s.root, clipped, &s.error));
         CHECK_EQ_INT(shows_the_same(&s, ball, WALLS_BY_SHAPE), i == 2);
         stage_end(&s);
@@ -222,9 +222,9 @@ TEST(photons_pass_an_open_surface_straight_on_with_its_tint_once) {
         CHECK(photons_make(&maps[clear], &scene, s.pool, &statistics, &s.error));
         for (uint32_t i = 0; i < maps[clear].count; i++) {
             const float *at = maps[clear].spots[i].at, *power = maps[clear].lights[i].power;
-            struct vec3 place = vec3_add_scaled(
+            struct vec3 position = vec3_add_scaled(
                 maps[clear].origin, vec3_make((double)at[0], (double)at[1], (double)at[2]), maps[clear].unit);
-            farthest = fmax(farthest, hypot(place.x, place.z));
+            farthest = fmax(farthest, hypot(position.x, position.z));
             sums[clear] = vec3_add_scaled(sums[clear], vec3_make((double)power[0], (double)power[1], (double)power[2]),
                                           maps[clear].power_unit);
         }
