@@ -1883,6 +1883,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field resolve? 'mean'|'bright' resolve ('mean'|'bright'; default --resolve): How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
@@ -1967,6 +1968,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field resolve? 'mean'|'bright' resolve ('mean'|'bright'; default --resolve): How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
@@ -2163,6 +2165,7 @@ function node:translate(x, y, z) end
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field resolve? 'mean'|'bright' resolve ('mean'|'bright'; default --resolve): How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.

@@ -70,9 +70,10 @@ for k = 0, 7 do
 end
 local half = gr.difference('open lemon', cut, gr.union('wedges', table.unpack(wedges)):set_material(flesh))
 
+local air = 0.001 -- below the glasses: without a gap the table would be seen in them
 local scene = gr.node('still life')
-scene:add_child(bottle:translate(-0.75, 0, -0.5))
-scene:add_child(tumbler:translate(0.75, 0, 0.25))
+scene:add_child(bottle:translate(-0.75, air, -0.5))
+scene:add_child(tumbler:translate(0.75, air, 0.25))
 scene:add_child(lemon(peel):rotate('y', 35):translate(1.75, 0.36, -0.9))
 scene:add_child(half:rotate('z', 55):rotate('y', -60):translate(-0.15, 0.30, 1.15))
 scene:add_child(gr.box {min = {-6, -0.3, -2.6}, max = {6, 0, 4}, material = table_top})

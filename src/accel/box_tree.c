@@ -516,3 +516,33 @@ bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, 
 #endif
     return box_tree_traversal_any_base(traversal, t_max, item);
 }
+
+/* --- boxes that meet a box --- */
+
+void box_tree_meeting_begin(struct box_tree_meeting *meeting, const struct box_tree *tree, const struct box *box) {
+    meeting->tree = tree;
+    meeting->box = *box;
+    meeting->child[0] = 0;
+    meeting->top = tree->item_count > 0 ? 1 : 0;
+}
+
+bool box_tree_meeting_next(struct box_tree_meeting *meeting, uint32_t *item) {
+    const struct box *b = &meeting->box;
+    while (meeting->top > 0) {
+        uint32_t next = meeting->child[--meeting->top];
+        if (next & BOX_TREE_ITEM) {
+            *item = next & ~BOX_TREE_ITEM;
+            return true;
+        }
+        const struct box_tree_node *node = &meeting->tree->nodes[next];
+        for (int i = 0; i < BOX_TREE_WIDTH; i++) {
+            bool apart = node->child[i] == BOX_TREE_NONE;
+            for (int axis = 0; axis < 3; axis++)
+                apart = apart || node->planes[axis][0][i] > vec3_get(b->max, axis) ||
+                        node->planes[axis][1][i] < vec3_get(b->min, axis);
+            if (!apart)
+                meeting->child[meeting->top++] = node->child[i];
+        }
+    }
+    return false;
+}

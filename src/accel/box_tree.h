@@ -88,6 +88,16 @@ static inline bool box_tree_traversal_next(struct box_tree_traversal *traversal,
 /* The same without order, for any-hit queries. */
 bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 
+/* Items whose box meets a box, in any order. */
+struct box_tree_meeting {
+    const struct box_tree *tree;
+    struct box box;
+    int top;
+    uint32_t child[BOX_TREE_STACK];
+};
+void box_tree_meeting_begin(struct box_tree_meeting *meeting, const struct box_tree *tree, const struct box *box);
+bool box_tree_meeting_next(struct box_tree_meeting *meeting, uint32_t *item);
+
 /* Both functions for each instruction set. */
 bool box_tree_traversal_down_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 bool box_tree_traversal_any_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);

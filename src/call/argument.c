@@ -109,11 +109,17 @@ static double read_number(struct script_context *c, int index, const struct argu
 }
 
 static double read_whole(struct script_context *c, int index, const struct argument_path *argument_path) {
+    const struct script_parameter *p = argument_path->parameter;
     double x = read_number(c, index, argument_path);
     char words[128];
-    if (x != floor(x))
+    if (x == floor(x))
+        return x;
+    /* A size of a picture in a scene of another program. */
+    bool is_dropped = c->sandbox.is_positional && p->unit && strcmp(p->unit, "pixels") == 0;
+    if (!is_dropped)
         sandbox_raise(&c->sandbox, "%s must be a whole number", argument_path_text(argument_path, words));
-    return x;
+    context_warn_once(c, WARNED_FRACTION, "%s is %.15g: fractions of pixels are dropped", p->name, x);
+    return floor(x);
 }
 
 /* The `count` numbers of the table at `index` (absolute). argument_path->i is set for a table inside a list. */

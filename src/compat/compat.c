@@ -1,5 +1,5 @@
-/* Functions of Lua 5.0 and 5.1 that 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
- * "Changes since the previous version"). Not possible: the implicit table `arg` of vararg functions. */
+/* What Lua 5.0 and 5.1 have and 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
+ * "Changes since the previous version"). */
 #include "compat/compat.h"
 
 #include "math/elementary.h"
@@ -129,6 +129,23 @@ static int string_format(lua_State *L) {
     return run_original(L);
 }
 
+/* The global `arg` in a function with `...`: the table of these arguments, with their number as n. It is made anew for
+ * each use. Index 1: the globals; index 2: a name that they lack. */
+static int further_arguments(lua_State *L) {
+    lua_Debug caller;
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
+    if (strcmp(name, "arg") != 0 || !lua_getstack(L, 1, &caller) || !lua_getinfo(L, "uS", &caller) ||
+        !caller.isvararg || strcmp(caller.what, "Lua") != 0)
+        return 0;
+    int count = 0;
+    lua_newtable(L);
+    while (lua_getlocal(L, &caller, -(count + 1)))
+        lua_rawseti(L, 3, ++count);
+    lua_pushinteger(L, count);
+    lua_setfield(L, 3, "n");
+    return 1;
+}
+
 /* What Lua calls (compat.lua). */
 
 static int scene_globals(lua_State *L) {
@@ -153,6 +170,13 @@ void compat_open(lua_State *L) {
     luaL_setfuncs(L, maths, 0);
     embedded_run(L, compat_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, compat_lua);
+    lua_pop(L, 1);
+
+    lua_pushglobaltable(L);
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, further_arguments);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
     lua_pop(L, 1);
 
     lua_pushinteger(L, 0);

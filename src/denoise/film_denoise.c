@@ -10,7 +10,7 @@ static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
     const struct film *film = context;
     for (uint32_t x = 0; x < film->width; x++) {
         struct path_pixel pixel = path_film_load(film, (size_t)y * film->width + x);
-        double weight = pixel.weights[0] + pixel.weights[1];
+        double divisor = pixel.divisors[0] + pixel.divisors[1];
         for (int half = 0; half < 2; half++) {
             int from = pixel.weights[half] != 0 ? half : 1 - half; /* with one sample there is only one half */
             struct vec3 colour = path_pixel_half(&pixel, from);
@@ -26,7 +26,7 @@ static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
         row[x].variance[0] = (float)variance.x;
         row[x].variance[1] = (float)variance.y;
         row[x].variance[2] = (float)variance.z;
-        row[x].share = weight != 0 ? (float)(pixel.weights[0] / weight) : 0.5F;
+        row[x].share = divisor != 0 ? (float)(pixel.divisors[0] / divisor) : 0.5F;
     }
 }
 

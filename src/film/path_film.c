@@ -15,9 +15,12 @@ enum {
     FEATURE_FLOATS = 2 * PATH_FEATURES,
     LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
     ALPHA_FLOATS = 2,                         /* seen_through: the sum and its remainder */
+    BRIGHT_FLOATS = 4,                        /* the divisors of the halves, each with its remainder */
 };
-/* After RECORD_FLOATS: the features, then the layers of light, then the sum for alpha, then the line. */
-_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + (int)ALPHA_FLOATS + 1 <=
+/* After RECORD_FLOATS: the features, then the layers of light, then the sum for alpha, then the divisors, then the
+ * line. */
+_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + (int)ALPHA_FLOATS + (int)BRIGHT_FLOATS +
+                       1 <=
                    (int)FILM_RECORD_FLOATS,
                "a tile cannot carry the record of a path-traced pixel");
 
@@ -26,6 +29,7 @@ struct film_record path_film_record(unsigned parts) {
     floats += parts & PATH_PART_FEATURES ? FEATURE_FLOATS : 0;
     floats += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
     floats += parts & PATH_PART_ALPHA ? ALPHA_FLOATS : 0;
+    floats += parts & PATH_PART_BRIGHT ? BRIGHT_FLOATS : 0;
     floats += parts & PATH_PART_LINE ? 1 : 0;
     return (struct film_record){.floats = floats, .marks = 0};
 }
@@ -69,7 +73,7 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
     struct path_pixel pixel = {.samples = (uint32_t)record[RECORD_SAMPLES]};
     for (int half = 0; half < 2; half++) {
         pixel.sums[half] = load_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half);
-        pixel.weights[half] = (double)record[RECORD_WEIGHTS + half];
+        pixel.weights[half] = pixel.divisors[half] = (double)record[RECORD_WEIGHTS + half];
     }
     pixel.squares = vec3_make((double)squares[0], (double)squares[1], (double)squares[2]);
     unsigned parts = path_film_parts(film->record);
@@ -83,6 +87,9 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
     more += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
     if (parts & PATH_PART_ALPHA)
         pixel.seen_through = (double)more[0] + (double)more[1];
+    more += parts & PATH_PART_ALPHA ? ALPHA_FLOATS : 0;
+    for (int half = 0; half < 2 && parts & PATH_PART_BRIGHT; half++)
+        pixel.divisors[half] = (double)more[2 * half] + (double)more[2 * half + 1];
     if (parts & PATH_PART_LINE)
         pixel.line = record[film->record.floats - 1];
     return pixel;
@@ -99,6 +106,11 @@ static void store_sum(float *sum, float *rest, struct vec3 value) {
     struct vec3 near = nearest_floats(value);
     store_colour(sum, near);
     store_colour(rest, vec3_sub(value, near));
+}
+
+static void store_number(float out[2], double value) {
+    out[0] = (float)value;
+    out[1] = (float)(value - (double)out[0]);
 }
 
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel) {
@@ -118,10 +130,11 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
     for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
         store_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i, pixel->light[i]);
     more += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
-    if (parts & PATH_PART_ALPHA) {
-        more[0] = (float)pixel->seen_through;
-        more[1] = (float)(pixel->seen_through - (double)more[0]);
-    }
+    if (parts & PATH_PART_ALPHA)
+        store_number(more, pixel->seen_through);
+    more += parts & PATH_PART_ALPHA ? ALPHA_FLOATS : 0;
+    for (int half = 0; half < 2 && parts & PATH_PART_BRIGHT; half++)
+        store_number(more + 2 * half, pixel->divisors[half]);
     if (parts & PATH_PART_LINE)
         record[film->record.floats - 1] = pixel->line;
     store_colour(film->pixels[at].rgb, path_pixel_below_line(pixel, path_pixel_mean(pixel)));
@@ -133,8 +146,15 @@ static struct vec3 rounded_sums(struct vec3 sum) {
     return vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
 }
 
-void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight) {
+/* By how much a sample counts less. */
+static double share_of(const struct path_pixel *pixel, struct vec3 c) {
+    return pixel->bright > 0 ? 1 / (1 + pixel->bright * fabs(0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z)) : 1;
+}
+
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct vec3 radiance,
+                          double weight) {
     float *features = pixel->features[pixel->samples % 2];
+    weight *= share_of(pixel, radiance);
     for (int i = 0; i < PATH_FEATURES; i++)
         features[i] = (float)in_range((double)features[i] + weight * (double)parts->features[i]);
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
@@ -143,11 +163,13 @@ void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *par
 
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight) {
     unsigned half = pixel->samples % 2;
-    struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
+    double counted = weight * share_of(pixel, radiance);
+    struct vec3 value = vec3_scale(radiance, counted), sum = vec3_add(pixel->sums[half], value);
     pixel->sums[half] = rounded_sums(sum);
     pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
-    pixel->seen_through = rounded_sum(pixel->seen_through + weight * seen_through);
+    pixel->seen_through = rounded_sum(pixel->seen_through + counted * seen_through);
     pixel->weights[half] += weight;
+    pixel->divisors[half] = pixel->bright > 0 ? rounded_sum(pixel->divisors[half] + counted) : pixel->weights[half];
     pixel->samples++;
 }
 
@@ -158,12 +180,12 @@ static struct vec3 over(struct vec3 sum, double weight) {
 }
 
 struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
-    struct vec3 mean = over(vec3_add(pixel->sums[0], pixel->sums[1]), pixel->weights[0] + pixel->weights[1]);
+    struct vec3 mean = over(vec3_add(pixel->sums[0], pixel->sums[1]), pixel->divisors[0] + pixel->divisors[1]);
     return vec3_make(in_range(mean.x), in_range(mean.y), in_range(mean.z));
 }
 
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
-    return over(pixel->sums[half], pixel->weights[half]);
+    return over(pixel->sums[half], pixel->divisors[half]);
 }
 
 struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour) {
@@ -171,12 +193,12 @@ struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 co
 }
 
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature) {
-    double weight = pixel->weights[half];
+    double weight = pixel->divisors[half];
     return weight == 0 ? 0 : (double)pixel->features[half][feature] / weight;
 }
 
 struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group) {
-    return over(pixel->light[group], pixel->weights[0] + pixel->weights[1]);
+    return over(pixel->light[group], pixel->divisors[0] + pixel->divisors[1]);
 }
 
 /* The mean of both halves has half of the variance of one half; their difference has twice that variance. */
@@ -187,13 +209,16 @@ struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
     return vec3_scale(vec3_mul(difference, difference), 0.25);
 }
 
+/* With PATH_PART_BRIGHT the mean is x / (1 - x) of a mean x of weighted grey samples, and the derivative of that is the
+ * square of weights / divisors; else they are equal. */
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
+    double count = (double)pixel->samples, divisor = pixel->divisors[0] + pixel->divisors[1];
+    double ratio = divisor == 0 ? 1 : (pixel->weights[0] + pixel->weights[1]) / divisor;
     if (pixel->samples < 2)
         return vec3_all(0);
-    double count = (double)pixel->samples;
-    struct vec3 mean = path_pixel_mean(pixel);
+    struct vec3 mean = vec3_scale(path_pixel_mean(pixel), 1 / ratio);
     struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
-    return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
+    return vec3_scale(vec3_max(variance, vec3_all(0)), ratio * ratio * ratio * ratio / (count - 1));
 }
 
 /* The record of the integrator whitted has it after the first pass (whitted_record). */
@@ -204,12 +229,10 @@ bool film_has_alpha(struct film_record record) {
 }
 
 float film_alpha(const struct film *film, size_t at) {
-    if (!film_has_alpha(film->record))
-        return 1;
     if (film->record.marks)
         return film->floats[at * film->record.floats + 3];
     const struct path_pixel pixel = path_film_load(film, at);
-    double seen = over(vec3_all(pixel.seen_through), pixel.weights[0] + pixel.weights[1]).x;
+    double seen = over(vec3_all(pixel.seen_through), pixel.divisors[0] + pixel.divisors[1]).x;
     double open = (seen > 1 ? 1 : seen > 0 ? seen : 0) * (1 - (double)pixel.line);
     return (float)(1 - open);
 }

@@ -16,6 +16,9 @@
 struct path_pixel {
     struct vec3 sums[2]; /* of the halves: weighted radiance */
     double weights[2];   /* of the halves: sums of the weights of the samples */
+    double divisors[2];  /* of the halves: what all sums are divided by: the weights, each with `bright` times
+                            1 / (1 + bright luminance) of its sample, as the sums have them */
+    double bright;       /* 2^exposure with RESOLVE_BRIGHT, else 0; set by the caller that adds samples */
     struct vec3 squares; /* of the weighted radiance of all samples */
     uint32_t samples;    /* sample number k belongs to half k % 2 */
     /* Only in records with these parts (enum path_part). */
@@ -34,14 +37,14 @@ unsigned path_film_parts(struct film_record record);
 struct path_pixel path_film_load(const struct film *film, size_t at);
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
 
-/* Whether a film, also one of the integrator whitted, has the alpha of its pixels, and that of a pixel (1 without it).
- */
+/* Whether a film, also one of the integrator whitted, has the alpha of its pixels; that of a pixel of such a film. */
 bool film_has_alpha(struct film_record record);
 float film_alpha(const struct film *film, size_t at);
 
 /* Adds sample number pixel->samples. weight: that of the reconstruction filter, 1 or -1. The parts of the sample are
  * added before it. */
-void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct vec3 radiance,
+                          double weight);
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight);
 
 /* The mean of all samples, and the mean of one half (black if it has no samples); and a colour with the line of the

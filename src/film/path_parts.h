@@ -13,7 +13,8 @@ enum path_part {
     PATH_PART_LIGHT = 2,
     PATH_PART_LINE = 4,
     PATH_PART_ALPHA = 8,
-    PATH_PARTS = 15
+    PATH_PART_BRIGHT = 16, /* the sums of weights of RESOLVE_BRIGHT */
+    PATH_PARTS = 31
 };
 
 /* Features of the first surface on a line of sight that scatters or emits light; mirrors and smooth glass in front

@@ -4,7 +4,7 @@
  *
  * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of
  * glTF has the index 1.5 and does not darken the layers below it. A transmitting surface without a volume is a thin
- * wall. Sheen is fuzz. Textures of extensions are not read. Unlit materials are classic ones. */
+ * wall. Sheen is fuzz. Unlit materials are classic ones. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_data_internal.h"
@@ -158,20 +158,13 @@ static struct vec3 unit_colour(const double colour[3]) {
     return vec3_make(unit(colour[0]), unit(colour[1]), unit(colour[2]));
 }
 
-/* Pictures of extensions would change the surface from point to point; only the factors are read. */
 static void warn_of_pictures(struct gltf *g, const json_t *extensions, const char *where) {
-    static const char *const keys[][2] = {
-        {"KHR_materials_specular", "specularTexture"},         {"KHR_materials_specular", "specularColorTexture"},
-        {"KHR_materials_transmission", "transmissionTexture"}, {"KHR_materials_volume", "thicknessTexture"},
-        {"KHR_materials_clearcoat", "clearcoatTexture"},       {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
-        {"KHR_materials_clearcoat", "clearcoatNormalTexture"}, {"KHR_materials_sheen", "sheenColorTexture"},
-        {"KHR_materials_sheen", "sheenRoughnessTexture"}};
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (!json_object_get(json_object_get(extensions, keys[i][0]), keys[i][1]))
-            continue;
-        gltf_lacks(g, where, "pictures of extensions are not read (%s of %s)", keys[i][1], keys[i][0]);
-        return;
-    }
+    static const char *const keys[][2] = {{"KHR_materials_volume", "thicknessTexture"},
+                                          {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
+                                          {"KHR_materials_sheen", "sheenColorTexture"}};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (json_object_get(json_object_get(extensions, keys[i][0]), keys[i][1]))
+            gltf_lacks(g, where, "the %s of %s is not read", keys[i][1], keys[i][0]);
 }
 
 /* A factor of an extension, between 0 and 1. */
@@ -217,6 +210,36 @@ static bool read_gloss(struct gltf *g, const json_t *gloss, struct model_materia
     return read_map(g, gloss, "specularGlossinessTexture", &m->map_gloss, where);
 }
 
+/* The pictures of extensions whose factors are not 0. */
+static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct model_material *m, const char *where) {
+    const struct openpbr *layers = &m->layers;
+    const double transmission = m->transmission > 0;
+    const struct {
+        const char *extension, *key;
+        enum material_input input;
+        char channel;
+        double factor; /* 0: the layer is not there; the colour and the transmission have theirs already */
+    } rows[MODEL_LAYER_MAPS] = {
+        {"KHR_materials_specular", "specularTexture", INPUT_SPECULAR_WEIGHT, 'a', layers->specular_weight},
+        {"KHR_materials_specular", "specularColorTexture", INPUT_KS, 'c', 1},
+        {"KHR_materials_transmission", "transmissionTexture", INPUT_REFRACT, 'r', transmission},
+        {"KHR_materials_clearcoat", "clearcoatTexture", INPUT_COAT_WEIGHT, 'r', layers->coat_weight},
+        {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", INPUT_COAT_ROUGHNESS, 'g', layers->coat_roughness},
+        {"KHR_materials_sheen", "sheenRoughnessTexture", INPUT_FUZZ_ROUGHNESS, 'a', layers->fuzz_roughness}};
+    for (size_t i = 0; i < MODEL_LAYER_MAPS; i++) {
+        const json_t *extension = json_object_get(extensions, rows[i].extension);
+        if (rows[i].factor == 0 || !json_object_get(extension, rows[i].key))
+            continue;
+        struct model_layer_map *map = &m->layer_maps[m->layer_map_count++];
+        map->input = rows[i].input;
+        map->channel = rows[i].channel;
+        map->factor = rows[i].factor;
+        if (!read_map(g, extension, rows[i].key, &map->map, where))
+            return false;
+    }
+    return true;
+}
+
 static bool read_layers(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
     const json_t *extensions = json_object_get(source, "extensions");
     const json_t *rough = json_object_get(source, "pbrMetallicRoughness");
@@ -246,6 +269,7 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     const json_t *gloss = json_object_get(extensions, "KHR_materials_pbrSpecularGlossiness");
     return read_volume(g, volume, m, where) && (!gloss || read_gloss(g, gloss, m, where)) &&
            read_sheen(g, json_object_get(extensions, "KHR_materials_sheen"), m, where) &&
+           read_layer_maps(g, extensions, m, where) &&
            (gloss || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where));
 }
 

@@ -135,8 +135,19 @@ struct model_material *model_add_material(struct model *model, struct error *err
                                         .map_normal = none,
                                         .map_metal = none,
                                         .map_gloss = none};
+    for (int i = 0; i < MODEL_LAYER_MAPS; i++)
+        material->layer_maps[i].map = none;
     model->materials.count++;
     return material;
+}
+
+struct model_texture *model_map(struct model_material *m, size_t index) {
+    struct model_texture *const maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,    &m->map_d,
+                                          &m->map_bump, &m->map_normal, &m->map_metal, &m->map_gloss};
+    const size_t count = sizeof maps / sizeof *maps;
+    if (index < count)
+        return maps[index];
+    return index - count < m->layer_map_count ? &m->layer_maps[index - count].map : NULL;
 }
 
 struct model_node *model_add_node(struct model *model, struct error *error) {
@@ -405,14 +416,15 @@ static bool texture_in_range(const struct model_texture *map) {
            number_in_range(map->strength);
 }
 
-static bool material_in_range(const struct model_material *m) {
+static bool material_in_range(struct model_material *m) {
+    const struct model_texture *map;
+    for (size_t k = 0; (map = model_map(m, k)); k++)
+        if (!texture_in_range(map))
+            return false;
     return vec3_within(m->ka, NUMBER_LIMIT) && vec3_within(m->kd, NUMBER_LIMIT) && vec3_within(m->ks, NUMBER_LIMIT) &&
            vec3_within(m->ke, NUMBER_LIMIT) && vec3_within(m->filter, NUMBER_LIMIT) && number_in_range(m->shininess) &&
            vec3_within(m->absorption, NUMBER_LIMIT) && number_in_range(m->layers.specular_ior) &&
-           number_in_range(m->ior) && texture_in_range(&m->map_kd) && texture_in_range(&m->map_ks) &&
-           texture_in_range(&m->map_ke) && texture_in_range(&m->map_d) && texture_in_range(&m->map_bump) &&
-           texture_in_range(&m->map_normal) && texture_in_range(&m->map_metal) && texture_in_range(&m->map_gloss) &&
-           vec3_within(m->gloss_colour, NUMBER_LIMIT);
+           number_in_range(m->ior) && vec3_within(m->gloss_colour, NUMBER_LIMIT);
 }
 
 static bool node_in_range(const struct model_node *node) {
@@ -658,11 +670,10 @@ void model_destroy(struct model *model) {
     }
     for (size_t i = 0; i < model->materials.count; i++) {
         struct model_material *m = &model_materials(model)[i];
-        struct model_texture *maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,    &m->map_d,
-                                        &m->map_bump, &m->map_normal, &m->map_metal, &m->map_gloss};
-        for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
-            if (maps[k]->image)
-                image_release(maps[k]->image);
+        const struct model_texture *map;
+        for (size_t k = 0; (map = model_map(m, k)); k++)
+            if (map->image)
+                image_release(map->image);
     }
     list_destroy(&model->meshes);
     list_destroy(&model->materials);

@@ -31,6 +31,15 @@ struct model_texture {
     enum image_filter filter;
 };
 
+/* A picture that multiplies an input of the layers. */
+struct model_layer_map {
+    struct model_texture map;
+    enum material_input input;
+    char channel; /* 'r', 'g', 'a', or 'c': the colour */
+    double factor;
+};
+enum { MODEL_LAYER_MAPS = 6 };
+
 /* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {
     const char *name;
@@ -51,10 +60,11 @@ struct model_material {
      * gloss; both take the place of the numbers. */
     struct model_texture map_gloss;
     struct vec3 gloss_colour;
+    struct model_layer_map layer_maps[MODEL_LAYER_MAPS];
+    uint32_t layer_map_count;
 };
-#define MODEL_MAPS(m)                                                                                                  \
-    &(m)->map_kd, &(m)->map_ks, &(m)->map_ke, &(m)->map_d, &(m)->map_bump, &(m)->map_normal, &(m)->map_metal,          \
-        &(m)->map_gloss
+/* The maps of a material, one after the other; NULL behind the last. */
+struct model_texture *model_map(struct model_material *m, size_t index);
 
 /* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {

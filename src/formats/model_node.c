@@ -24,11 +24,10 @@ static void destroy_model(void *object) {
 struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                           const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 400];
-    int length =
-        snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d|%d %.17g %s|%s", canonical, options->smooth,
-                 options->smooth_angle, options->weld, options->weld_distance, options->flip, options->forgive,
-                 options->animated, options->time, options->animation ? options->animation : "",
-                 options->variant ? options->variant : "");
+    int length = snprintf(key, sizeof key, "%s|%d %.17g %d %.17g %d %d|%d %.17g %s|%s", canonical, options->smooth,
+                          options->smooth_angle, options->weld, options->weld_distance, options->flip, options->forgive,
+                          options->animated, options->time, options->animation ? options->animation : "",
+                          options->variant ? options->variant : "");
     *fresh = false;
     if ((size_t)length >= sizeof key) {
         error_set(error, ERROR_SCENE, "%s: %s is too long", path,
@@ -78,9 +77,9 @@ static bool check_picture(struct scene *scene, struct model *model, struct model
 }
 
 static bool check_pictures(struct scene *scene, struct model *model, struct model_material *m, struct error *error) {
-    struct model_texture *maps[] = {MODEL_MAPS(m)};
-    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
-        if (!check_picture(scene, model, maps[i], error))
+    struct model_texture *map;
+    for (size_t i = 0; (map = model_map(m, i)); i++)
+        if (!check_picture(scene, model, map, error))
             return false;
     /* A cut by the colour's alpha alone, without its picture. */
     if (m->map_d.name && !is_usable(&m->map_d) && m->map_d.cutoff > 1)
@@ -260,6 +259,23 @@ static bool multiply_by_gloss(struct scene *scene, const struct model_material *
            material_multiply(m, INPUT_ROUGHNESS, parts[5], arena, error);
 }
 
+/* One input is multiplied by a channel or the colour of a picture. */
+static bool multiply_by_map(struct scene *scene, const struct model_layer_map *from, struct material *m,
+                            struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, &from->map, &image, &there, error) || !there)
+        return !there;
+    image.alpha = from->channel == 'a' ? ALPHA_ONLY : ALPHA_STRAIGHT;
+    struct arena *arena = &scene->arena;
+    const struct texture *white = texture_keep(arena, texture_number(1), error);
+    const struct texture *part = white ? texture_keep(arena, texture_image(&image, white), error) : NULL;
+    if (part && (from->channel == 'r' || from->channel == 'g'))
+        part = texture_keep(arena, texture_map(part, from->channel == 'r' ? FUNCTION_RED : FUNCTION_GREEN, 0), error);
+    return part && material_multiply_constant(m, from->input, texture_number(from->factor), arena, error) &&
+           material_multiply(m, from->input, part, arena, error);
+}
+
 /* Opacity below 1 is that of a surface with holes. */
 static bool multiply_by_opacity(struct scene *scene, const struct model_material *from, struct material *m,
                                 struct error *error) {
@@ -292,6 +308,8 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.emission = from->map_ke.name ? vec3_all(0) : from->ke;
     bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_gloss(scene, from, layers, m, error) &&
               multiply_by_metal(scene, from, m, error) && multiply_by_opacity(scene, from, m, error);
+    for (uint32_t i = 0; ok && i < from->layer_map_count; i++)
+        ok = multiply_by_map(scene, &from->layer_maps[i], m, error);
     return ok ? with_maps(scene, from, m, error) : NULL;
 }
 
@@ -391,10 +409,10 @@ static const struct material *material_of(struct placer *p, uint32_t index) {
 /* The inputs of such materials are as if no picture were named. */
 static void warn_without_coordinates(const struct placer *p, const struct model_mesh *mesh, uint32_t index) {
     struct model_material *m = &model_materials(p->model)[index];
-    const struct model_texture *maps[] = {MODEL_MAPS(m)};
+    const struct model_texture *map;
     bool any = false;
-    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
-        any = any || is_usable(maps[i]);
+    for (size_t i = 0; (map = model_map(m, i)); i++)
+        any = any || is_usable(map);
     if (any && !mesh_has_uv(mesh->mesh))
         model_warn(p->model, "%s: the pictures of the material '%.200s' have no effect on meshes without coordinates",
                    p->model->path, m->name);

@@ -79,6 +79,7 @@ struct hit {
     uint32_t primitive;   /* index of the primitive */
     uint32_t leaf, part;
     uint32_t material; /* index into the world's materials */
+    uint32_t solid;    /* number of the solid behind the surface (material/medium.h), if light may pass it */
     enum hit_convexity convexity;
     double time;
 };

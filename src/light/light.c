@@ -315,7 +315,8 @@ struct vec3 light_emitted(const struct light *light, const struct ray *ray, cons
             break;
         return light_triangle_radiance(t);
     case LIGHT_SKY:
-        return vec3_mul(sky_colour(light->sky, vec3_normalize(ray->direction), ray->footprint.spread), light->colour);
+        /* As its samples: mip levels would carry light to where their density is low. */
+        return vec3_mul(sky_colour(light->sky, vec3_normalize(ray->direction), 0), light->colour);
     }
     return vec3_all(0);
 }

@@ -7,11 +7,20 @@
 #include "light/sky.h"
 #include "math/sampling.h"
 
+/* A part of a cell: half of it, half of that, and so on. */
+struct sky_part {
+    double share;    /* of the first of its two halves */
+    uint32_t halves; /* the first one; the second one follows. 0: it is not divided */
+    bool by_height;  /* else by longitude */
+};
+
 /* Cells of height y and longitude; in the arena it was built in. */
 struct sky_table {
     uint32_t rows, columns;
     const double *row_until; /* share of the unit interval up to and with a row, from y = 1 down */
     const double *until;     /* rows x columns: the same inside of a row */
+    const struct sky_part *parts;
+    const uint32_t *divided; /* rows x columns: the part that is the whole cell, 0: none. NULL: no cell is divided */
 };
 
 /* NULL: no memory. A sky that is black everywhere gives a table of equal cells. */

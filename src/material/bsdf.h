@@ -103,8 +103,26 @@ struct bsdf {
     struct vec3 through; /* if it transmits: the refracted direction for the view of the hit */
     bool turns_back;     /* at total reflection its share is reflected; else lost */
     struct medium_boundary boundary;
+    const struct medium_stack *behind; /* if light passes other surfaces too: the media behind them all; else NULL */
+    bool passes;                       /* some light enters the solid or passes the thin wall */
+    double roughness;                  /* if it passes: that of the boundary, 2 where some light is diffuse */
     struct bsdf_facets facets[BSDF_FACETS]; /* those that lobes refer to */
 };
+
+/* Other surfaces that coincide with this one, for light that passes them all. */
+struct bsdf_joint {
+    double eta;       /* index before all of them over the index behind */
+    struct vec3 tint; /* the product of the tints of the other ones */
+    const struct medium_stack *behind;
+};
+
+/* The stack behind the surface, and behind all that coincide with it. */
+static inline void bsdf_cross(const struct bsdf *bsdf, struct medium_stack *stack) {
+    if (bsdf->behind)
+        medium_stack_copy(stack, bsdf->behind);
+    else
+        medium_stack_cross(stack, &bsdf->boundary);
+}
 
 /* The transported quantity of the sampled direction. RADIANCE: light comes from there, and refraction scales it by the
  * square of eta (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2). IMPORTANCE:

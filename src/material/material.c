@@ -142,17 +142,27 @@ bool material_is_transparent(const struct material *material, double *ior) {
     return material->fresnel || numbers->refract > 0;
 }
 
-bool material_divides_media(const struct material *material) {
-    const struct phong *numbers = numbers_of(material);
-    if (material->openpbr && material->openpbr->thin_walled)
-        return false;
-    bool passes = material->fresnel || numbers->refract > 0 || material_texture(material, INPUT_REFRACT);
-    bool differs = (numbers->has_ior && numbers->ior != 1) || vec3_max_abs(numbers->absorption) > 0;
-    return passes && (differs || material->openpbr);
+bool material_passes(const struct material *material) {
+    return material->fresnel || numbers_of(material)->refract > 0 || material_texture(material, INPUT_REFRACT);
 }
 
-struct vec3 material_absorption(const struct material *material) {
-    return numbers_of(material)->absorption;
+struct medium material_medium(const struct material *material) {
+    const struct phong *numbers = numbers_of(material);
+    const struct openpbr *openpbr = material->openpbr;
+    struct medium medium = {.ior = numbers->has_ior ? numbers->ior : 1, .absorption = numbers->absorption};
+    medium.tint = material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    if (openpbr) {
+        medium.ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
+        medium.tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+    }
+    return medium;
+}
+
+bool material_divides_media(const struct material *material) {
+    struct medium medium = material_medium(material);
+    bool thin = material->openpbr && material->openpbr->thin_walled;
+    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.absorption) > 0;
+    return !thin && differs && material_passes(material);
 }
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
@@ -273,7 +283,7 @@ static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight,
     lobe->facets = 0;
 }
 
-static void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
+static inline void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
     bsdf->normal = inputs->normal;
     bsdf->lit = inputs->two_sided && !hit->front ? vec3_negate(inputs->normal) : inputs->normal;
     bsdf->dark = !hit->front && !inputs->two_sided;
@@ -294,30 +304,36 @@ static void set_pane(const struct hit *hit, double eta, const struct surface_inp
 }
 
 /* The relative index, whether light is transmitted, and Fresnel's share of both amounts. */
-static void set_boundary(const struct hit *hit, const struct medium_stack *media, bool thin,
-                         struct surface_inputs *inputs, struct bsdf *bsdf) {
+static void set_boundary(const struct hit *hit, const struct medium_stack *media,
+                         const struct material_context *context, struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
+    const struct bsdf_joint *joint = context->joint;
     bsdf->eta = 1;
     bsdf->fresnel = -1;
     bsdf->fresnel_of_facets = inputs->fresnel && inputs->roughness > 0;
-    bsdf->transmits = false;
+    bsdf->transmits = bsdf->passes = false;
     if (!inputs->fresnel && inputs->refract == 0)
         return;
-    bsdf->boundary.medium.primitive = hit->primitive;
-    bsdf->boundary.medium.ior = inputs->has_ior ? inputs->ior : 1;
-    bsdf->boundary.medium.absorption = inputs->absorption;
-    bsdf->boundary.entering = hit->front || thin;
-    bsdf->boundary.thin = thin;
-    double eta = medium_stack_eta(media ? media : &air, &bsdf->boundary);
-    if (thin) {
+    bsdf->passes = true;
+    bsdf->behind = joint ? joint->behind : NULL;
+    bsdf->roughness = vec3_max_abs(inputs->kd) > 0 ? 2 : inputs->roughness;
+    bsdf->boundary.solid = hit->solid;
+    bsdf->boundary.ior = inputs->has_ior ? inputs->ior : 1;
+    bsdf->boundary.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
+    bsdf->boundary.entering = hit->front;
+    bsdf->boundary.thin = context->thin;
+    double eta;
+    media = media ? media : &air;
+    if (context->thin) {
+        eta = medium_stack_ior(media) / bsdf->boundary.ior;
         set_pane(hit, eta, inputs, bsdf);
     } else {
-        bsdf->eta = eta;
+        bsdf->eta = eta = joint ? joint->eta : medium_stack_eta(media, &bsdf->boundary);
         bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
     }
     if (inputs->fresnel) {
         double reflected = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), eta);
-        inputs->reflect = thin ? bsdf_pane_reflectance(reflected) : reflected;
+        inputs->reflect = context->thin ? bsdf_pane_reflectance(reflected) : reflected;
         inputs->refract = 1 - inputs->reflect;
         bsdf->fresnel = inputs->reflect;
     }
@@ -384,8 +400,15 @@ static void eval_matte(const struct phong *numbers, const struct hit *hit, const
     out->alpha = numbers->roughness * numbers->roughness;
     out->glossy_samples = numbers->glossy_samples;
     out->fresnel = -1;
-    out->fresnel_of_facets = out->transmits = false;
+    out->fresnel_of_facets = out->transmits = out->passes = false;
     out->turns_back = context->total_reflection;
+}
+
+/* The other surfaces of a joint tint what passes. */
+static void tint_passing(const struct bsdf_joint *joint, struct bsdf *bsdf) {
+    for (int i = 0; joint && i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRANSMITS)
+            bsdf->lobes[i].weight = vec3_mul(bsdf->lobes[i].weight, joint->tint);
 }
 
 void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
@@ -413,10 +436,11 @@ void material_eval(const struct material *material, const struct hit *hit, const
     if (!(inputs.opacity > 0))
         return;
     if (material->openpbr) {
-        openpbr_eval(material, hit, media, context->thin, &inputs, out);
+        openpbr_eval(material, hit, media, context, &inputs, out);
         out->ambient = context->ambient_plain ? vec3_all(1) : inputs.kd;
-        return;
+    } else {
+        set_boundary(hit, media, context, &inputs, out);
+        set_lobes(&inputs, context, out);
     }
-    set_boundary(hit, media, context->thin, &inputs, out);
-    set_lobes(&inputs, context, out);
+    tint_passing(context->joint, out);
 }

@@ -8,6 +8,7 @@
 
 #include "base/list.h"
 #include "geometry/hit.h"
+#include "material/medium.h"
 #include "material/texture.h"
 #include "settings/settings.h"
 
@@ -123,11 +124,12 @@ bool material_has_function(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
 /* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);
-/* Whether light may pass through the surface into another medium; holes and thin walls have the same one on both
- * sides. */
+/* Whether light may pass the surface of the solid at some points. */
+bool material_passes(const struct material *material);
+/* The inside of a solid, by the numbers of the base. */
+struct medium material_medium(const struct material *material);
+/* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */
 bool material_divides_media(const struct material *material);
-/* Of the base: absorption inside, per unit of length. */
-struct vec3 material_absorption(const struct material *material);
 /* Of the base: its average emission, and a bound (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
 struct vec3 material_emission_bound(const struct material *material);

@@ -21,7 +21,7 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
     if (ray->media && ray->media->count > 0) {
         if (!(ABSORPTION_AFFECTS & kind))
             return false;
-        out->transmittance = absorption_transmittance(&ray->media->entries[ray->media->count - 1], distance);
+        out->transmittance = absorption_transmittance(medium_stack_at(ray->media, ray->media->count - 1), distance);
         return true;
     }
     if (!fog || !(FOG_AFFECTS & kind) || (fog->clear_sky && distance == INFINITY))
@@ -126,31 +126,46 @@ double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 
 }
 
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from) {
+    to->media = from->media;
     to->count = from->count;
-    memcpy(to->entries, from->entries, from->count * sizeof *from->entries);
+    memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
 }
 
-void medium_stack_enter(struct medium_stack *stack, const struct medium *medium) {
+static bool vectors_equal(struct vec3 a, struct vec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
+    static const struct medium air = {.ior = 1, .tint = {1, 1, 1}};
+    const struct medium *x = a->count ? medium_stack_at(a, a->count - 1) : &air,
+                        *y = b->count ? medium_stack_at(b, b->count - 1) : &air;
+    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint);
+}
+
+void medium_stack_enter(struct medium_stack *stack, uint32_t solid) {
     if (stack->count == MEDIUM_STACK_LIMIT) {
-        memmove(stack->entries, stack->entries + 1, (MEDIUM_STACK_LIMIT - 1) * sizeof *stack->entries);
+        memmove(stack->solids, stack->solids + 1, (MEDIUM_STACK_LIMIT - 1) * sizeof *stack->solids);
         stack->count--;
     }
-    stack->entries[stack->count++] = *medium;
+    stack->solids[stack->count++] = solid;
 }
 
-/* One more than the index of the solid's latest entry; 0: it has none. */
-static uint32_t latest(const struct medium_stack *stack, uint32_t primitive) {
+/* One more than the index of the latest entry of the solid's primitive; 0: it has none. */
+static uint32_t latest(const struct medium_stack *stack, uint32_t solid) {
     uint32_t i = stack->count;
-    while (i > 0 && stack->entries[i - 1].primitive != primitive)
+    if (i == 0)
+        return 0;
+    const struct solid *solids = stack->media->solids;
+    while (i > 0 && solids[stack->solids[i - 1]].primitive != solids[solid].primitive)
         i--;
     return i;
 }
 
-void medium_stack_leave(struct medium_stack *stack, uint32_t primitive) {
-    uint32_t end = latest(stack, primitive);
+void medium_stack_leave(struct medium_stack *stack, uint32_t solid) {
+    uint32_t end = latest(stack, solid);
     if (end == 0)
         return;
-    memmove(stack->entries + end - 1, stack->entries + end, (stack->count - end) * sizeof *stack->entries);
+    memmove(stack->solids + end - 1, stack->solids + end, (stack->count - end) * sizeof *stack->solids);
     stack->count--;
 }
 
@@ -158,20 +173,20 @@ void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary
     if (boundary->thin)
         return;
     if (boundary->entering)
-        medium_stack_enter(stack, &boundary->medium);
+        medium_stack_enter(stack, boundary->solid);
     else
-        medium_stack_leave(stack, boundary->medium.primitive);
+        medium_stack_leave(stack, boundary->solid);
 }
 
 double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary) {
     double here = medium_stack_ior(stack);
     if (boundary->entering)
-        return here / boundary->medium.ior;
-    uint32_t end = latest(stack, boundary->medium.primitive);
+        return here / boundary->ior;
+    uint32_t end = latest(stack, boundary->solid);
     /* An open surface seen from behind: the ray is in this medium although it never entered it. */
     if (end == 0)
-        return boundary->medium.ior / here;
+        return boundary->ior / here;
     if (end < stack->count)
         return 1;
-    return here / (end > 1 ? stack->entries[end - 2].ior : 1);
+    return here / (end > 1 ? medium_stack_at(stack, end - 2)->ior : 1);
 }

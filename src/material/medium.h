@@ -17,34 +17,55 @@
 
 enum { MEDIUM_STACK_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.md) */
 
-/* The inside of one solid. */
 struct medium {
-    uint32_t primitive; /* the solid: number of its primitive */
     double ior;
     struct vec3 absorption; /* the logarithm of light decreases by this per unit */
+    struct vec3 tint;       /* of light that passes the surface of the solid */
 };
 
+/* The inside of one solid: number of its primitive, and of its medium. */
+struct solid {
+    uint32_t primitive, medium;
+};
+
+/* All solids that light passes, and their media. */
+struct media {
+    const struct solid *solids;
+    const struct medium *all;
+};
+#define SOLID_NONE UINT32_MAX
+
 struct medium_stack {
+    const struct media *media;
     uint32_t count;
-    struct medium entries[MEDIUM_STACK_LIMIT];
+    uint32_t solids[MEDIUM_STACK_LIMIT]; /* numbers */
 };
 
 /* A surface between two media, at the hit of a ray. */
 struct medium_boundary {
-    struct medium medium; /* on the inner side of the surface */
-    bool entering;        /* the ray comes from the outer side */
-    bool thin;            /* a wall with the same medium on both sides: nothing is entered or left */
+    uint32_t solid;   /* on the inner side of the surface */
+    double ior;       /* of its medium there */
+    struct vec3 tint; /* of light that passes it */
+    bool entering;    /* the ray comes from the outer side */
+    bool thin;        /* a wall with the same medium on both sides: nothing is entered or left */
 };
 
+/* The medium of entry i of the stack. */
+static inline const struct medium *medium_stack_at(const struct medium_stack *stack, uint32_t i) {
+    return &stack->media->all[stack->media->solids[stack->solids[i]].medium];
+}
+/* Whether nothing shows a surface between the current media of two stacks. */
+bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b);
 static inline double medium_stack_ior(const struct medium_stack *stack) {
-    return stack->count ? stack->entries[stack->count - 1].ior : 1;
+    return stack->count ? medium_stack_at(stack, stack->count - 1)->ior : 1;
 }
 
 /* Only the entries in use. */
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from);
-void medium_stack_enter(struct medium_stack *stack, const struct medium *medium);
-/* Removes the latest entry of the solid; does nothing if there is none (an open surface, a camera on it). */
-void medium_stack_leave(struct medium_stack *stack, uint32_t primitive);
+void medium_stack_enter(struct medium_stack *stack, uint32_t solid);
+/* Removes the latest entry of the primitive of the solid; does nothing if there is none (an open surface, a camera on
+ * it). */
+void medium_stack_leave(struct medium_stack *stack, uint32_t solid);
 
 /* The stack behind the surface. */
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);

@@ -35,9 +35,9 @@ double openpbr_ior(double ior, double specular_weight);
  * is one, the share of metal counts as all or nothing. */
 void openpbr_classic(struct material *material);
 
-/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray; thin: the surface is
- * a wall without thickness, also if the material does not say so. */
-void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media, bool thin,
-                  const struct surface_inputs *inputs, struct bsdf *bsdf);
+struct material_context;
+/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
+void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+                  const struct material_context *context, const struct surface_inputs *inputs, struct bsdf *bsdf);
 
 #endif

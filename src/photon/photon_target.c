@@ -500,13 +500,14 @@ static bool find_medium_stacks(struct photon_targets *targets, const struct worl
         struct vec3 centre = target->emitter.centre;
         struct box here = {centre, centre};
         uint32_t count = is_distant(target) ? 0 : world_closed_in(world, &here, NULL, 0);
+        target->media.media = &world->media;
         if (count == 0)
             continue;
         uint32_t *closed = arena_alloc_array(arena, count, sizeof *closed);
         if (!closed)
             return false;
         (void)world_closed_in(world, &here, closed, count);
-        medium_stack_at(world, &(struct inside_query){centre, 0, closed, count}, scratch, &target->media);
+        world_medium_stack(world, &(struct inside_query){centre, 0, closed, count}, scratch, &target->media);
     }
     return !scratch->failed;
 }

@@ -12,6 +12,8 @@
 #include "base/random.h"
 #include "material/material_eval.h"
 #include "photon/photon_target_internal.h"
+#include "world/joint.h"
+#include "world/world_describe.h"
 
 enum { BATCH = 1024 };
 
@@ -90,7 +92,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
         return false;
     path->left = vec3_scale(vec3_mul(path->left, sampled.weight), all / (to[chosen] * survival));
     if (sampled.transmits)
-        medium_stack_cross(&path->media, &bsdf->boundary);
+        bsdf_cross(bsdf, &path->media);
     path->ray = hit_ray(hit, &path->ray, sampled.direction, &path->media);
     path->specular = true;
     return true;
@@ -103,6 +105,18 @@ static void store_photon(const struct photon_start *start, const struct photon_t
     if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
         return;
     *photon = (struct photon){hit->point, power, photon_pack(hit->view), target->number};
+}
+
+/* The photon hits a primitive that touches others. False: it leaves the scene. */
+static bool join_photon(const struct world *world, struct photon_path *path, struct world_scratch *scratch,
+                        struct hit *hit, struct joint *joint) {
+    bool met = world_join(world, &path->ray, scratch, hit, joint);
+    if (joint->passed) {
+        path->ray = joint->ray;
+        medium_stack_copy(&path->media, &joint->before);
+        path->ray.media = &path->media;
+    }
+    return met;
 }
 
 static void trace_photon(struct photon_job *s, const struct photon_target *target, uint32_t index,
@@ -125,23 +139,28 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         if (world_nearest(s->world, &back, scratch, &ground))
             return;
     }
-    struct material_context context = {
-        .specular = s->settings->specular, .ambient_plain = s->settings->ambient_plain, .total_reflection = true};
+    struct joint joint;
     const uint8_t *lit = target->emitter.light->lit;
     for (int bounce = 0; bounce < PHOTON_BOUNCES && !scratch->failed; bounce++) {
         struct hit hit;
         struct bsdf bsdf;
-        if (!world_nearest(s->world, &path.ray, scratch, &hit))
+        joint.joined = JOINED_NOT;
+        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit) ||
+            (world_touches(s->world, &hit) && !join_photon(s->world, &path, scratch, &hit, &joint)))
             return;
         path.length += hit.t;
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))
             path.left = vec3_mul(path.left, effect.transmittance);
-        context.thin = primitive_is_thin(s->world, hit.primitive);
+        const struct material_context context = {.specular = s->settings->specular,
+                                                 .ambient_plain = s->settings->ambient_plain,
+                                                 .total_reflection = true,
+                                                 .thin = primitive_is_thin(s->world, hit.primitive),
+                                                 .joint = joint_boundary(&joint)};
         material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
-            path.ray = hit_ray(&hit, &path.ray, vec3_negate(hit.view), &path.media);
+            path.ray = joint_ray_through_hole(&joint, &hit, &path.ray, &path.media);
             continue;
         }
         struct branching branching = branching_make(&bsdf);

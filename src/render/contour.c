@@ -41,7 +41,7 @@ static struct contour_sample sample_at(const struct renderer *renderer, struct w
     if (!renderer_middle_ray(renderer, x, y, &ray))
         return sample;
     bool met = world_nearest(world, &ray, &worker->scratch, &hit);
-    for (int i = 0; met && i < MEDIA_LIMIT && world->material_medium[hit.material] != MEDIUM_NONE; i++) {
+    for (int i = 0; met && i < MEDIA_LIMIT && world->material_has_medium[hit.material]; i++) {
         ray = hit_ray(&hit, &ray, ray.direction, ray.media);
         met = world_nearest(world, &ray, &worker->scratch, &hit);
     }

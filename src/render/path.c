@@ -2,6 +2,7 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
+#include "math/elementary.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 #include "render/sample_internal.h"
@@ -19,6 +20,8 @@ struct film_record path_tracer_record(const struct settings *settings) {
         parts |= PATH_PART_LINE;
     if (settings->transparent)
         parts |= PATH_PART_ALPHA;
+    if (settings->resolve == RESOLVE_BRIGHT)
+        parts |= PATH_PART_BRIGHT;
     return path_film_record(parts);
 }
 
@@ -92,6 +95,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->roulette_depth = settings->roulette_depth;
     tracer->noise = settings->noise;
     tracer->clamp = settings->clamp;
+    tracer->bright = settings->resolve == RESOLVE_BRIGHT ? el_exp2(settings->tone.exposure) : 0;
     /* Samples are points of a Sobol sequence, whose footprint does not depend on their number. */
     filter_init(&tracer->filter, settings->filter);
     renderer->sampler = SAMPLER_SOBOL;
@@ -146,11 +150,15 @@ static void finish_pixel(struct film *film, const struct worker *worker, int64_t
 }
 
 /* The sums of the pixel before a pass: those of the film, or zero in the first pass. lines: of the part, or NULL. */
-static struct path_pixel begin_pixel(const struct film *film, const struct contour *lines, int64_t x, int64_t y,
-                                     uint32_t begin) {
+static struct path_pixel begin_pixel(const struct path_tracer *tracer, const struct film *film,
+                                     const struct contour *lines, int64_t x, int64_t y, uint32_t begin) {
+    struct path_pixel pixel;
     if (begin > 0)
-        return path_film_load(film, pixel_index(film, x, y));
-    return (struct path_pixel){.line = lines ? (float)contour_coverage(lines, x, y) : 0};
+        pixel = path_film_load(film, pixel_index(film, x, y));
+    else
+        pixel = (struct path_pixel){.line = lines ? (float)contour_coverage(lines, x, y) : 0};
+    pixel.bright = tracer->bright;
+    return pixel;
 }
 
 /* What a part of a tile gets: before: samples of a checkpoint; expected: all samples, 0 if that is not known. */
@@ -171,7 +179,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     uint32_t each = end - begin;
     const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
     uint64_t all = (uint64_t)(part->x1 - part->x0) * each, next = 0;
-    struct path_pixel pixel = begin_pixel(film, lines, part->x0, y, begin);
+    struct path_pixel pixel = begin_pixel(tracer, film, lines, part->x0, y, begin);
     while (next < all) {
         /* A batch is filled across the borders of pixels. */
         for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
@@ -184,13 +192,13 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
             if (batch->parts)
-                path_pixel_add_parts(&pixel, &batch->parts[i], batch->positions[i].weight);
+                path_pixel_add_parts(&pixel, &batch->parts[i], batch->colours[i], batch->positions[i].weight);
             path_pixel_add(&pixel, batch->colours[i], batch->seen_through[i], batch->positions[i].weight);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);
             if (x + 1 < part->x1)
-                pixel = begin_pixel(film, lines, x + 1, y, begin);
+                pixel = begin_pixel(tracer, film, lines, x + 1, y, begin);
         }
     }
     return true;

@@ -54,7 +54,7 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
         shadow.origin = hit_start(hit, vertex->ray, sample->direction);
         medium_stack_copy(crossed, shadow.media);
-        medium_stack_cross(crossed, &vertex->bsdf->boundary);
+        bsdf_cross(vertex->bsdf, crossed);
         shadow.media = crossed;
     }
     shadow.direction = light_target_from(&sample->target, shadow.origin);

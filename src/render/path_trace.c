@@ -9,6 +9,7 @@
 #include "math/range.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
+#include "world/joint.h"
 #include "world/world_describe.h"
 
 #include <string.h>
@@ -341,7 +342,7 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
     path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
     if (transmits) {
-        medium_stack_cross(&path->media, &bsdf->boundary);
+        bsdf_cross(bsdf, &path->media);
         state->refracted_rays++;
     } else {
         state->reflected_rays++;
@@ -351,13 +352,14 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
 
 /* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                         const struct sampler *sampler, const struct hit *hit) {
+                         const struct sampler *sampler, const struct hit *hit, const struct joint *joint) {
     const struct settings *settings = &state->job->settings;
     const struct world *world = state->job->world;
     const struct material_context context = {.specular = settings->specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
+                                             .joint = joint_boundary(joint),
                                              .observer = state->observer ? observe_material : NULL,
                                              .observer_context = state->observer,
                                              .authored = world->authored.materials[hit->material]};
@@ -367,7 +369,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     state->hits++;
     material_eval(&world->materials[hit->material], hit, path->ray.media, &context, &bsdf);
     if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
-        path->ray = hit_ray(hit, &path->ray, vec3_negate(hit->view), &path->media);
+        path->ray = joint_ray_through_hole(joint, hit, &path->ray, &path->media);
         path->kind = RAY_HOLE;
         return path->holes++ < HOLE_LIMIT || end_path(path, PATH_IN_TOO_MANY_HOLES);
     }
@@ -488,20 +490,37 @@ static void observe_end(const struct observed_path *observed, const struct integ
     }
 }
 
-/* hit: the hit of the camera ray, or NULL; it is also the storage for the hits of later rays. */
+/* The ray of the path meets a surface; others may be at the same place. False: they have no effect, and behind them is
+ * nothing. */
+static bool meet_joint(const struct integrator_state *state, struct path *path, struct hit *hit, struct joint *joint) {
+    bool met = world_join(state->job->world, &path->ray, state->scratch, hit, joint);
+    if (joint->passed) {
+        path->ray = joint->ray;
+        medium_stack_copy(&path->media, &joint->before);
+        path->ray.media = &path->media;
+    }
+    return met;
+}
+
+/* hit: the hit of the camera ray, if it has met anything; it is also the storage for the hits of later rays. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
+    const struct world *world = state->job->world;
+    struct joint joint;
     struct observed_path observed;
     observed.count = 0;
     path->stages = NULL;
     for (;;) {
+        joint.joined = JOINED_NOT;
+        if (met && world_touches(world, hit))
+            met = meet_joint(state, path, hit, &joint);
         if (state->observer)
             observe_next(&observed, state, path, met ? hit : NULL);
         /* The way to the hit, then the surface or the sky there. */
         bool goes_on = travel(tracer, state, path, met ? hit : NULL);
         if (goes_on && met) {
             note_arrival(path, 0);
-            goes_on = meet_surface(tracer, state, path, sampler, hit);
+            goes_on = meet_surface(tracer, state, path, sampler, hit, &joint);
         } else if (goes_on) {
             note_arrival(path, 0);
             leave_scene(tracer, state, path);
@@ -512,7 +531,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             observe_hit(&observed, tracer, state, path);
         if (!goes_on || integrator_cancelled(state))
             break;
-        met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
+        met = world_nearest_surface(world, &path->ray, state->scratch, hit);
     }
     /* Limits come last: what is cut off is a property of the whole sample. */
     struct vec3 found = integrator_clamp_light(state, path->light, (double)FLT_MAX);
@@ -552,7 +571,7 @@ struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state
     struct sampler sampler;
     struct hit hit;
     begin(&path, &sampler, state, ray, key);
-    bool met = world_nearest(state->job->world, &path.ray, state->scratch, &hit);
+    bool met = world_nearest_surface(state->job->world, &path.ray, state->scratch, &hit);
     return follow(tracer, state, &path, &sampler, &hit, met);
 }
 

@@ -274,7 +274,7 @@ static void count_tiles(struct renderer *renderer) {
 /* The solids that may contain ray origins, and whether each ray needs its own query. */
 static bool find_eye_medium_stack(struct renderer *renderer, const struct box *origins, bool spread) {
     const struct world *world = renderer->job->world;
-    renderer->closed_count = world->medium_count > 0 ? world_closed_in(world, origins, NULL, 0) : 0;
+    renderer->closed_count = world->first_solid ? world_closed_in(world, origins, NULL, 0) : 0;
     renderer->closed = mem_alloc_zero((size_t)renderer->closed_count + 1, sizeof *renderer->closed);
     if (!renderer->closed)
         return false;
@@ -282,7 +282,7 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
         (void)world_closed_in(world, origins, renderer->closed, renderer->closed_count);
     renderer->medium_stack_by_ray = renderer->closed_count > 0 && spread;
     renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->medium_stack_by_ray;
-    medium_stack_at(world, &(struct inside_query){renderer->camera.eye, 0, renderer->closed, renderer->closed_count},
+    world_medium_stack(world, &(struct inside_query){renderer->camera.eye, 0, renderer->closed, renderer->closed_count},
                     &renderer->workers[0].scratch, &renderer->eye_medium_stack);
     return !renderer->workers[0].scratch.failed;
 }

@@ -28,7 +28,7 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
     ray->footprint.width *= share;
     worker->camera_rays++;
     if (renderer->medium_stack_by_ray) {
-        medium_stack_at(renderer->job->world,
+        world_medium_stack(renderer->job->world,
                         &(struct inside_query){ray->origin, ray->time, renderer->closed, renderer->closed_count},
                         &worker->scratch, &worker->ray_medium_stack);
         worker->state.eye_medium_stack = &worker->ray_medium_stack;

@@ -190,7 +190,7 @@ static void check_materials(const struct check *check) {
 static bool is_opaque_from(const struct world *world, uint32_t first, uint32_t slots) {
     bool opaque = true;
     for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++)
-        opaque = opaque && world->material_medium[i] == MEDIUM_NONE && !material_has_holes(&world->materials[i]);
+        opaque = opaque && !world->material_has_medium[i] && !material_has_holes(&world->materials[i]);
     return opaque;
 }
 

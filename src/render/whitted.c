@@ -157,7 +157,8 @@ struct part {
     struct worker *worker;
     struct whitted_worker *own;
     struct film_rectangle area; /* with the rim, as far as that is in the picture */
-    bool has_first;             /* the first pass is made */
+    bool has_alpha;
+    bool has_first; /* the first pass is made */
 };
 
 static size_t index_of(const struct part *part, int64_t x, int64_t y) {
@@ -388,8 +389,9 @@ static void store(float out[3], struct vec3 colour) {
     out[2] = (float)colour.z;
 }
 
-static void store_alpha(struct film *film, size_t at, double alpha) {
-    if (film_has_alpha(film->record))
+static void store_alpha(const struct part *part, size_t at, double alpha) {
+    struct film *film = part->renderer->job->film;
+    if (part->has_alpha)
         film->floats[at * film->record.floats + 3] = (float)alpha;
 }
 
@@ -408,7 +410,7 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     }
     store(film->pixels[at].rgb, colour);
     store(&film->floats[at * film->record.floats], first_colour);
-    store_alpha(film, at, 1 - through * (1 - line));
+    store_alpha(part, at, 1 - through * (1 - line));
     film->marked[at] = marked;
     part->own->marked += marked;
     struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
@@ -468,7 +470,7 @@ static void finish_late(struct part *part, const struct film_rectangle *rows, bo
                 struct vec3 colour = has_first ? *first_at(part, x, y) : batch->colours[0];
                 store(film->pixels[at].rgb, colour);
                 store(&film->floats[at * film->record.floats], colour);
-                store_alpha(film, at,
+                store_alpha(part, at,
                             1 - (has_first ? part->own->seen_through[index_of(part, x, y)] : batch->seen_through[0]));
                 film->marked[at] = 0;
             }
@@ -496,7 +498,8 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
                         .renderer = renderer,
                         .worker = worker,
                         .own = &whitted->workers[worker->index],
-                        .has_first = !whitted->full || settings->keep_first};
+                        .has_first = !whitted->full || settings->keep_first,
+                        .has_alpha = film_has_alpha(renderer->job->film->record)};
     const struct film_rectangle area =
         film_rectangle_grown(tile, whitted->full ? 0 : 1, renderer->job->width, renderer->job->height);
     part.area = area;

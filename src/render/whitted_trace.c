@@ -3,6 +3,7 @@
 #include "material/medium.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
+#include "world/joint.h"
 #include "world/world_describe.h"
 
 #include <math.h>
@@ -81,7 +82,7 @@ static struct vec3 follow(struct integrator_state *state, const struct surface_p
     struct medium_stack behind;
     if (transmits) {
         medium_stack_copy(&behind, at->ray->media);
-        medium_stack_cross(&behind, &at->bsdf->boundary);
+        bsdf_cross(at->bsdf, &behind);
         onward.media = &behind;
         state->refracted_rays++;
         path.key = sampler_branch(path.key, SAMPLER_REFRACTED);
@@ -105,13 +106,13 @@ static struct vec3 follow_branch(struct integrator_state *state, const struct su
 
 /* The light through the holes of a surface (an opacity texture of leaves): the ray continues
  * unchanged. Bounded, since every hole is a deeper call. */
-static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
-                               double share, const struct path *from) {
+static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct joint *joint,
+                               const struct ray *ray, double share, const struct path *from) {
     enum { HOLE_LIMIT = 200 };
     struct path path = path_on(from, share);
     if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
-    struct ray onward = hit_ray(hit, ray, vec3_negate(hit->view), ray->media);
+    struct ray onward = joint_ray_through_hole(joint, hit, ray, ray->media);
     state->refracted_rays++;
     path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;
@@ -285,12 +286,13 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
 }
 
 static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                             const struct path *path) {
+                             const struct joint *joint, const struct path *path) {
     const struct settings *settings = &state->job->settings;
     const struct world *world = state->job->world;
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
+                                             .joint = joint_boundary(joint),
                                              .observer = state->observer ? observe_material : NULL,
                                              .observer_context = state->observer,
                                              .authored = world->authored.materials[hit->material]};
@@ -301,7 +303,7 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
         return shade(state, &at, path);
-    struct vec3 behind = follow_hole(state, hit, ray, hole, path);
+    struct vec3 behind = follow_hole(state, hit, joint, ray, hole, path);
     if (hole >= 1)
         return behind;
     struct path covered = path_on(path, bsdf.opacity);
@@ -310,7 +312,7 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
 
 /* The radiance of a ray with its hit, or NULL. */
 static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                                     const struct path *path) {
+                                     const struct joint *joint, const struct path *path) {
     const struct world *world = state->job->world;
     bool met = hit != NULL;
     struct light_hit area_light_hit;
@@ -336,7 +338,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     else if (area_light)
         colour = light_emitted(area_light, ray, &area_light_hit);
     else if (met)
-        colour = shade_hit(state, ray, hit, path);
+        colour = shade_hit(state, ray, hit, joint, path);
     else if (state->job->settings.transparent && path->reflections == 0 && path->refractions == 0)
         state->seen_through += path->weight;
     else
@@ -351,21 +353,43 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     return colour;
 }
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
-    struct hit hit;
-    if (integrator_cancelled(state))
-        return vec3_all(0); /* deep paths through glass grow exponentially */
-    bool met = world_nearest(state->job->world, ray, state->scratch, &hit);
-    return incident_radiance(state, ray, met ? &hit : NULL, path);
-}
-
 static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
     bool through =
-        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
+        world->material_has_medium[hit->material] || primitive_prototype(world, hit->primitive)->holes;
     out->t = through ? INFINITY : hit->t;
     out->primitive = hit->primitive;
     out->material = hit->material;
     out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
+}
+
+/* The same for a ray that hits a primitive which touches others. */
+static __attribute__((noinline)) struct vec3 joined_radiance(struct integrator_state *state, const struct ray *ray,
+                                                             struct hit *hit, const struct path *path,
+                                                             struct camera_hit *record) {
+    struct joint joint;
+    bool met = world_join(state->job->world, ray, state->scratch, hit, &joint);
+    if (met && record)
+        record_hit(state->job->world, hit, record);
+    return incident_radiance(state, joint.passed ? &joint.ray : ray, met ? hit : NULL, &joint, path);
+}
+
+/* The radiance of a ray that has met a surface, or NULL. record: where a hit is noted, or NULL. */
+static inline struct vec3 radiance_of(struct integrator_state *state, const struct ray *ray, struct hit *hit,
+                                      const struct path *path, struct camera_hit *record) {
+    static const struct joint single = {.joined = JOINED_NOT};
+    if (hit && world_touches(state->job->world, hit))
+        return joined_radiance(state, ray, hit, path, record);
+    if (hit && record)
+        record_hit(state->job->world, hit, record);
+    return incident_radiance(state, ray, hit, &single, path);
+}
+
+static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+    struct hit hit;
+    if (integrator_cancelled(state))
+        return vec3_all(0); /* deep paths through glass grow exponentially */
+    bool met = world_nearest_surface(state->job->world, ray, state->scratch, &hit);
+    return radiance_of(state, ray, met ? &hit : NULL, path, NULL);
 }
 
 /* The light of a camera ray that starts in the media of the eye. met: its hit, or NULL. ask: it is not known yet. */
@@ -382,13 +406,11 @@ static struct vec3 camera_light(const struct whitted *whitted, struct integrator
     if (integrator_cancelled(state))
         return vec3_all(0);
     if (ask)
-        found = world_nearest(world, &from_eye, state->scratch, &hit);
+        found = world_nearest_surface(world, &from_eye, state->scratch, &hit);
     else if (met)
         world_describe(world, &from_eye, met->primitive, &met->crossing, &hit);
-    if (found && state->camera_hit)
-        record_hit(world, &hit, state->camera_hit);
-    return integrator_clamp_light(state, incident_radiance(state, &from_eye, found ? &hit : NULL, &path),
-                                  (double)FLT_MAX);
+    struct vec3 light = radiance_of(state, &from_eye, found ? &hit : NULL, &path, state->camera_hit);
+    return integrator_clamp_light(state, light, (double)FLT_MAX);
 }
 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,

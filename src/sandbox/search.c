@@ -1,7 +1,7 @@
 /* Files that are not where a scene names them. Scenes of other programs come with their meshes, pictures and modules in
  * folders that those programs know (plane.obj is in Assets/Obj/), so a missing file is looked for by its name below the
  * scene's folder, then below the folder above it. The longest common end of the two paths wins, then the nearest file,
- * then byte order.
+ * then byte order. If there is none, the case of letters does not count: other systems open Cow.OBJ as cow.obj.
  *
  * All names are listed once, at the first file that is missing: level by level, so that the list is in the order of
  * nearness. Folders are opened by path_policy_list, which leaves out what scenes may not read. Links to folders are not
@@ -81,32 +81,48 @@ static bool is_slash(char c) {
     return c == '/' || c == '\\';
 }
 
+static char folded(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
 /* How many parts at the ends of both paths are equal; 0: not even the file names. */
-static int common_end(const char *path, const char *name) {
+static int common_end(const char *path, const char *name, bool any_case) {
     const char *a = path + strlen(path), *b = name + strlen(name);
     int parts = 0;
     for (;; a--, b--) {
         bool a_part_begins = a == path || a[-1] == '/', b_part_begins = b == name || is_slash(b[-1]);
         if (a_part_begins && b_part_begins)
             parts++;
-        if (a == path || b == name || !(a[-1] == b[-1] || (is_slash(a[-1]) && is_slash(b[-1]))))
+        if (a == path || b == name)
+            return parts;
+        bool equal = a[-1] == b[-1] || (any_case && folded(a[-1]) == folded(b[-1]));
+        if (!equal && !(is_slash(a[-1]) && is_slash(b[-1])))
             return parts;
     }
 }
 
+static const char *best_match(const struct file_search *search, const struct path_policy *path_policy, const char *name,
+                              bool any_case) {
+    const char *found = NULL;
+    int best = 0;
+    for (uint32_t i = 0; i < search->count; i++) {
+        int parts = common_end(search->files[i], name, any_case);
+        if (parts > best && path_policy_is_readable(path_policy, search->files[i])) {
+            best = parts;
+            found = search->files[i];
+        }
+    }
+    return found;
+}
+
 bool search_find(struct file_search *search, const struct path_policy *path_policy, const char *folder,
                  const char *name, const char **found) {
-    int best = 0;
     *found = NULL;
     if (!search->listed && !list_files(search, path_policy, folder))
         return false;
-    for (uint32_t i = 0; i < search->count; i++) {
-        int parts = common_end(search->files[i], name);
-        if (parts > best && path_policy_is_readable(path_policy, search->files[i])) {
-            best = parts;
-            *found = search->files[i];
-        }
-    }
+    *found = best_match(search, path_policy, name, false);
+    if (!*found)
+        *found = best_match(search, path_policy, name, true);
     return true;
 }
 

@@ -460,7 +460,8 @@ static void fit_camera(const struct script_context *context, struct script_value
                                     .fov = args[RENDER_FOV].number,
                                     .aspect = width / height,
                                     .target = args[RENDER_TARGET].given ? &args[RENDER_TARGET].vector : NULL};
-    struct framed framed = studio_frame(args[RENDER_NODE].node, &framing);
+    struct node *fitted = script_of(context)->fitted;
+    struct framed framed = studio_frame(fitted ? fitted : args[RENDER_NODE].node, &framing);
     bool has_direction = args[RENDER_VIEW].given || args[RENDER_VIEW_TO].given;
     set_vector(&args[RENDER_EYE], framed.eye);
     if (has_direction)

@@ -30,6 +30,11 @@ static int is_animated(lua_State *L) {
     return 1;
 }
 
+static int fit_to(lua_State *L) {
+    script_of(context_of(L))->fitted = handle_at(L, 1)->pointer;
+    return 0;
+}
+
 /* The kd of the ground, from the direction of view. */
 static int ground(lua_State *L) {
     const struct script *script = script_of(context_of(L));
@@ -101,6 +106,7 @@ void model_scene_run(lua_State *L) {
                                        {"ground", ground},
                                        {"fail", fail},
                                        {"is_animated", is_animated},
+                                       {"fit_to", fit_to},
                                        {"contents", contents},
                                        {"light_in_middle", light_in_middle},
                                        {NULL, NULL}};
@@ -113,7 +119,7 @@ void model_scene_run(lua_State *L) {
     lua_remove(L, -2);
     lua_pushstring(L, path);
     lua_pushstring(L, slash ? slash + 1 : path);
-    lua_createtable(L, 0, 4);
+    lua_createtable(L, 0, 5);
     lua_pushstring(L, options->camera);
     lua_setfield(L, -2, "camera");
     lua_pushboolean(L, options->sky != NULL);
@@ -122,5 +128,9 @@ void model_scene_run(lua_State *L) {
     lua_setfield(L, -2, "checks");
     lua_pushboolean(L, script->host->frame.number > 0);
     lua_setfield(L, -2, "moves");
+    struct frame last = script->host->frame;
+    last.number = last.count;
+    lua_pushnumber(L, frame_time(&last));
+    lua_setfield(L, -2, "seconds");
     lua_call(L, 4, 0);
 }

@@ -3,7 +3,7 @@
 -- of the model's size, so that a scaled or moved model has the same picture.
 local format, gmatch, concat, tonumber = string.format, string.gmatch, table.concat, tonumber
 local sqrt, log, max, min = math.sqrt, math.log, math.max, math.min
-local SAMPLES = 24
+local SAMPLES, POSES = 24, 8
 
 local function size_of(low, high)
     local sum = 0.0
@@ -37,14 +37,23 @@ local function ground_below(gr, floor, view)
     return gr.plane{normal = {0, 1, 0}, distance = floor, material = gr.material{kd = {kd, kd, kd}}}
 end
 
+-- The model at this time, and the group of its poses from the first frame to the last.
+local function animated(gr, file, seconds)
+    local poses = {}
+    for k = 0, POSES do poses[k + 1] = gr.model{file = file, time = seconds * k / POSES} end
+    return gr.model{file = file, time = gr.time}, gr.node{children = poses}
+end
+
 return function(gr, path, file, options)
     local model = gr.model{file = file}
-    if options.moves and is_animated(model) then model = gr.model{file = file, time = gr.time} end
-    local found, low, high = pcall(model.bounds, model)
+    local all = model
+    if options.moves and is_animated(model) then model, all = animated(gr, file, options.seconds) end
+    local found, low, high = pcall(all.bounds, all)
     if not found then fail(path .. ': no face of this file has an area') end
     local radius = size_of(low, high)
     local camera = camera_of(path, model.cameras, options.camera)
     local scene = {node = model}
+    if all ~= model then fit_to(all) end -- a camera without a place of its own stands still
     for name, value in next, camera or {} do
         if name ~= 'name' then scene[name] = value end
     end

@@ -15,6 +15,7 @@ struct script {
     struct error failure;                       /* the message of a script error, made by the message handler */
     bool only_named_pictures, several_pictures; /* struct order_finding */
     bool studio_noticed;
+    struct node *fitted; /* what a camera without a place shows; NULL: the picture's node */
     uint32_t pictures; /* that gr.render has made */
     uint32_t unnamed;  /* pictures without a file name so far */
     struct script_changes changes;

@@ -105,6 +105,12 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
     X(FILTER_GAUSSIAN, "gaussian")                                                                                     \
     X(FILTER_MITCHELL, "mitchell")
 enum filter_kind { FILTERS(LIST_MEMBER) };
+/* How samples become a pixel. BRIGHT: a mean with the weights 1 / (1 + luminance), after exposure, which is the mean of
+ * tone-mapped samples, mapped back. */
+#define RESOLVES(X)                                                                                                    \
+    X(RESOLVE_MEAN, "mean")                                                                                            \
+    X(RESOLVE_BRIGHT, "bright")
+enum resolve { RESOLVES(LIST_MEMBER) };
 /* Adaptive anti-aliasing of Whitted's integrator: which pixels get N x N samples, and where these samples are
  * (whitted.c). GRID: marks by colours only, samples at the centres of N x N cells. ROTATED: also marks by
  * surfaces and thin primitives; samples on a rotated grid, jittered near thin primitives. */
@@ -200,7 +206,7 @@ enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_NAMES AOVS(AOV_NAME_IN_LIST)
 
 /* Part of the keys of tile files: grows when a row is added, removed or moved, or its values change their meaning. */
-enum { SETTINGS_VERSION = 3 };
+enum { SETTINGS_VERSION = 4 };
 
 /* What a setting changes: the samples of a picture; the finished picture, which is made of the samples; or only how it
  * is made. */
@@ -287,6 +293,11 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
       EFFECT_PATH)                                                                                                     \
     X(CHOICE, enum filter_kind, filter, SAMPLES, FILTER_BOX, 0, 0, FILTERS, "--filter", NULL, NULL, "filter", NULL,    \
       RAYS, "Reconstruction filter of a pixel.")                                                                       \
+    X(CHOICE, enum resolve, resolve, SAMPLES, RESOLVE_MEAN, 0, 0, RESOLVES, "--resolve", NULL, NULL, "resolve", NULL,  \
+      RAYS,                                                                                                            \
+      "How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), "     \
+      "after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).", \
+      EFFECT_PATH)                                                                                                     \
     X(DENOISE, enum denoiser, denoise, FINISH, DENOISER_AUTO, 0, 0, DENOISERS, "--denoise", "gray", NULL, "denoise",   \
       NULL, RAYS,                                                                                                      \
       "Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image "  \

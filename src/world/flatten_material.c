@@ -94,7 +94,7 @@ static bool grow(struct flattening *f) {
     return true;
 }
 
-static void warn_once(struct flattening *f, const struct node *node, const char *what) {
+void flatten_warn_once(struct flattening *f, const struct node *node, const char *what) {
     if (!f->warn || !scene_warns(f->scene, node))
         return;
     char text[512], line[160] = "";
@@ -215,17 +215,18 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     const struct bump *bump = node->bump;
     for (uint32_t i = 0; i < *count; i++) {
         if (!bases[i] && !is_plain_meant(f))
-            warn_once(f, node,
-                      by_slot ? "has faces without a material, which are shown in plain gray"
-                              : "has no material and is shown in plain gray");
+            flatten_warn_once(f, node,
+                              by_slot ? "has faces without a material, which are shown in plain gray"
+                                      : "has no material and is shown in plain gray");
         if (bases[i] && bases[i]->depth + (texture != NULL) + (bump != NULL) > MATERIAL_DEPTH)
             return error_set(f->error, ERROR_SCENE, "node '%.100s': more than %d materials are nested", node->name,
                              MATERIAL_DEPTH);
     }
     if ((texture || bump) && node->shape.kind == SHAPE_MESH && !mesh_has_uv(node->shape.mesh)) {
-        warn_once(f, node,
-                  texture ? "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown"
-                          : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
+        flatten_warn_once(f, node,
+                          texture
+                              ? "has a texture, but its mesh has no texture coordinates (vt): the texture is not shown"
+                              : "has a bump map, but its mesh has no texture coordinates (vt): it is not shown");
         texture = NULL;
         bump = NULL;
     }

@@ -13,4 +13,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
  * to them by index from now on. Errors: no memory. */
 bool flatten_textures(struct flattening *f);
 
+/* Warns "node 'NAME' WHAT", with the line of the script, once for each node. */
+void flatten_warn_once(struct flattening *f, const struct node *node, const char *what);
+
 #endif

@@ -6,7 +6,9 @@
 #include "material/material_eval.h"
 #include "world/flatten_internal.h"
 #include "world/flatten_material_internal.h"
+#include "world/joint.h"
 #include "world/mesh_lights_internal.h"
+#include "world/solids_internal.h"
 #include "world/world.h"
 #include "world/world_cache.h"
 #include "world/world_describe.h"
@@ -356,12 +358,9 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
 }
 
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
-    uint32_t primitive;
-    struct crossing crossing;
-    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
-        return false;
-    world_describe(world, ray, primitive, &crossing, hit);
-    return true;
+    struct joint joint;
+    return world_nearest_surface(world, ray, scratch, hit) &&
+           (!world_touches(world, hit) || world_join(world, ray, scratch, hit, &joint));
 }
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
@@ -389,19 +388,17 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     return s.found;
 }
 
-void medium_stack_at(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
-                     struct medium_stack *out) {
+void world_medium_stack(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                        struct medium_stack *out) {
     uint32_t inside[MEDIUM_STACK_LIMIT];
     uint32_t count = world_containing(world, query, scratch, inside, MEDIUM_STACK_LIMIT);
+    out->media = &world->media;
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
         uint32_t material = prototype->geometry.csg ? prototype->geometry.csg->leaves[0].material : prototype->material;
-        if (prototype->is_thin || world->material_medium[material] == MEDIUM_NONE)
-            continue;
-        struct medium medium = world->media[world->material_medium[material]];
-        medium.primitive = inside[i];
-        medium_stack_enter(out, &medium);
+        if (!prototype->is_thin && world->material_has_medium[material])
+            medium_stack_enter(out, world_solid(world, inside[i], material));
     }
 }
 
@@ -675,10 +672,10 @@ static bool make_materials(struct flattening *f) {
     world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
     world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
-    world->material_medium = arena_alloc_array(arena, count, sizeof *world->material_medium);
-    world->media = arena_alloc_array(arena, count, sizeof *world->media);
-    if (!world->materials || !world->material_has_image || !world->material_has_tangents || !world->material_medium ||
-        !world->media)
+    world->material_has_medium = arena_alloc_array(arena, count, sizeof *world->material_has_medium);
+    struct medium *media = arena_alloc_array(arena, count, sizeof *media);
+    if (!world->materials || !world->material_has_image || !world->material_has_tangents ||
+        !world->material_has_medium || !media)
         return error_no_memory(f->error, "the materials of the scene");
     /* Textures are numbered in the flat copies, so these come first. */
     for (uint32_t i = 0; i < count; i++)
@@ -687,18 +684,15 @@ static bool make_materials(struct flattening *f) {
         return false;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *material = &world->materials[i];
-        struct medium medium = {.absorption = material_absorption(material)};
         world->material_has_image[i] = material_has_image(material);
         world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
-        world->material_medium[i] = MEDIUM_NONE;
-        /* Only solids of transparent materials have a medium inside. */
-        if (material_is_transparent(material, &medium.ior)) {
-            world->material_medium[i] = world->medium_count;
-            world->media[world->medium_count++] = medium;
-        }
+        double ior;
+        world->material_has_medium[i] = material_is_transparent(material, &ior);
+        media[i] = material_medium(material);
         struct vec3 emission = material_emission_bound(world->authored.materials[i]);
         world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
     }
+    world->media.all = media;
     return true;
 }
 
@@ -742,7 +736,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
         (input->linear_colours && !sky_decode(&world->sky, error)))
         return false;
     flattening.arena = of_tables;
-    if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening)))
+    if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening) || !solids_make(&flattening)))
         return false;
     add_up_meshes(world, input->scene->assets);
     /* The accelerator comes last, since it needs the boxes; that of the frame before fits if they are equal. */
@@ -750,6 +744,9 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                                world->primitive_count, &world->accel);
     if (!reused &&
         !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
+        return false;
+    flattening.arena = arena;
+    if (!touching_find(&world->touching, &flattening))
         return false;
     return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
            mesh_group_build(&world->group, world, arena, pool, error);
@@ -781,6 +778,7 @@ void world_destroy(struct world *world) {
     world->links = NULL;
     scene_accel_destroy(&world->accel);
     mesh_group_destroy(&world->group);
+    touching_destroy(&world->touching);
 }
 
 size_t world_primitive_memory(const struct world *world) {

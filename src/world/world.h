@@ -12,6 +12,7 @@
 #include "scene/node.h"
 #include "world/mesh_group.h"
 #include "world/scene_accel.h"
+#include "world/touching.h"
 
 /* The map from a moving node to the world: after its own motion a fixed transform, then the next moving ancestor. */
 struct moving_link {
@@ -81,15 +82,17 @@ struct world {
     const struct bump *bumps;
     bool *material_has_image;    /* such materials need the footprint on the surface */
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
-    uint32_t *material_medium;   /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
-    struct medium *media;        /* one for each transparent material; their `primitive` is anything */
-    uint32_t material_count, material_number_count, texture_count, bump_count, medium_count;
-    double emission_bound; /* a bound of the largest component of emission */
+    bool *material_has_medium;   /* solids of the material have one inside: it is transparent */
+    uint32_t material_count, material_number_count, texture_count, bump_count;
+    struct media media;          /* of all solids that light may pass; their media have the numbers of the materials */
+    const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
+    double emission_bound;       /* a bound of the largest component of emission */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
     struct scene_accel accel;
-    struct mesh_group group;    /* single rays search it and its `rest` in place of accel.tree */
+    struct mesh_group group; /* single rays search it and its `rest` in place of accel.tree */
+    struct touching touching;
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     bool classic;               /* as requested */
     bool has_thin_walls;        /* of prototypes */
@@ -98,7 +101,6 @@ struct world {
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
 
-#define MEDIUM_NONE UINT32_MAX
 #define WORLD_NOTHING UINT32_MAX /* instead of a primitive's number */
 enum { WORLD_SHADOW_CACHE = 8 };
 
@@ -196,8 +198,8 @@ static inline struct ray primitive_ray(const struct world *world, uint32_t primi
     return out;
 }
 
-/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening
- * order. */
+/* Nearest hit in the ray's open interval, fully described. Of surfaces that coincide the one that is seen (joint.h); if
+ * their t are equal, that of the primitive that comes first in flattening order. */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
 /* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
@@ -224,7 +226,7 @@ uint32_t world_containing(const struct world *world, const struct inside_query *
                           uint32_t *primitive, uint32_t limit);
 
 /* The media of the transparent solids that contain the point, found by counting crossings. */
-void medium_stack_at(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
-                     struct medium_stack *out);
+void world_medium_stack(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                        struct medium_stack *out);
 
 #endif

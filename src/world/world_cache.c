@@ -113,6 +113,7 @@ void world_keep(struct world *world, struct world_cache *cache) {
     }
     mesh_group_destroy(&world->group);
     scene_accel_destroy(&world->accel);
+    touching_destroy(&world->touching);
     world->lights = NULL;
     tables->world = *world;
     tables->full = true;

@@ -186,6 +186,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
     hit->leaf = 0;
     hit->part = crossing->part;
     hit->material = facet->material;
+    hit->solid = world_solid(world, index, facet->material);
     hit->convexity = CONVEXITY_FACETS;
     hit->time = ray->time;
 }
@@ -226,6 +227,7 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->primitive = index;
     hit->part = crossing->part;
     hit->material = material;
+    hit->solid = world_solid(world, index, material);
     hit->convexity = convexity_of(prototype, leaf, crossing);
     hit->time = ray->time;
     /* What costs more is computed only for materials that need it. */
@@ -242,4 +244,14 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->pattern_scale = 0;
     if (hit->footprint > 0 && world->material_has_image[material])
         hit->pattern_scale = pattern_scale(map, leaf, hit->normal_geometric);
+}
+
+bool world_nearest_surface(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                           struct hit *hit) {
+    uint32_t primitive;
+    struct crossing crossing;
+    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
+        return false;
+    world_describe(world, ray, primitive, &crossing, hit);
+    return true;
 }

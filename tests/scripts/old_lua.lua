@@ -24,6 +24,16 @@ assert(table.concat(keys, ' ') == '1 2 a b')
 local found = table.foreachi({5, 6, 7}, function(index, value) if value == 6 then return index end end)
 assert(found == 2)
 
+-- arg: the further arguments of a function
+local function sum(first, ...)
+    local total = first
+    for i = 1, arg.n do total = total + (arg[i] or 0) end
+    return total, arg.n
+end
+assert(sum(1, 2, nil, 4, nil) == 7 and select(2, sum(1, 2, nil, 4, nil)) == 4 and select(2, sum(1)) == 0)
+local function fixed() return arg end
+assert(fixed() == nil and arg == nil and rawget(_G, 'arg') == nil)
+
 -- numbers print as they did
 assert(tostring(3.0) == '3' and tostring(6 / 2) == '3' and tostring(-0.5) == '-0.5' and tostring(2 ^ 53) ~= nil)
 assert(string.format('%s', 10 / 2) == '5')

@@ -64,6 +64,32 @@ TEST(the_mean_of_a_pixel_of_large_samples_stays_finite) {
     CHECK(isfinite(pixels[0].rgb[0]) && isfinite(pixels[0].rgb[1]) && pixels[0].rgb[2] == 1);
 }
 
+/* x is the mean of mapped samples b c / (1 + b c); its variance gives that of x / (1 - x) / b. */
+TEST(bright_pixels_are_the_mean_of_mapped_samples_mapped_back_in_any_passes) {
+    enum { COUNT = 400 };
+    const double bright = 4;
+    struct film film = two_pixels();
+    film.record = path_film_record(PATH_PART_BRIGHT);
+    struct path_pixel straight = {.bright = bright};
+    double sum = 0, squares = 0;
+    for (uint64_t k = 0; k < COUNT; k++) {
+        double c = k % 3 == 0 ? 1000 : random_unit(random_combine(5, k)), x = bright * c / (1 + bright * c);
+        struct path_pixel cut = path_film_load(&film, 1);
+        cut.bright = bright;
+        path_pixel_add(&straight, vec3_all(c), 0, 1);
+        path_pixel_add(&cut, vec3_all(c), 0, 1);
+        path_film_store(&film, 1, &cut);
+        sum += x;
+        squares += x * x;
+    }
+    path_film_store(&film, 0, &straight);
+    CHECK(memcmp(&floats[0], &floats[film.record.floats], film.record.floats * sizeof(float)) == 0);
+    double x = sum / COUNT, slope = 1 / ((1 - x) * (1 - x) * bright);
+    CHECK_NEAR(path_pixel_mean(&straight).x, x / (1 - x) / bright, 1e-9);
+    CHECK_NEAR(path_pixel_variance_of_samples(&straight).x / (slope * slope * (squares / COUNT - x * x) / (COUNT - 1)),
+               1, 1e-4);
+}
+
 TEST(negative_weights_of_a_filter_cancel_where_the_light_is_even) {
     struct path_pixel pixel = {0};
     for (int k = 0; k < 64; k++)

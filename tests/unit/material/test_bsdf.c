@@ -451,8 +451,9 @@ static struct material glass_of(double ior) {
 TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index) {
     const struct material_context tir = {.total_reflection = true};
     struct material glass = glass_of(1.5);
-    struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    struct medium_stack inside = {.media = &media};
+    medium_stack_enter(&inside, 0);
     for (double degrees = 1; degrees < 90; degrees += 4) {
         for (int front = 0; front < 2; front++) {
             struct hit hit = hit_at(degrees, front);
@@ -489,8 +490,9 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
 TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
     struct material base = glass_of(1.5), glass;
     material_derive(&glass, MATERIAL_FRESNEL, &base);
-    struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    struct medium_stack inside = {.media = &media};
+    medium_stack_enter(&inside, 0);
     for (double degrees = 2; degrees < 88; degrees += 5) {
         struct hit there = hit_at(degrees, true), back = there;
         struct bsdf bsdf;
@@ -512,8 +514,9 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
 
 TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
     struct material glass = glass_of(1.5);
-    struct medium_stack inside = {.count = 0};
-    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = 1.5});
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    struct medium_stack inside = {.media = &media};
+    medium_stack_enter(&inside, 0);
     struct hit hit = hit_at(60, false);
     for (int rough = 0; rough < 2; rough++) {
         for (int total = 0; total < 2; total++) {

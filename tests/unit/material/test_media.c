@@ -21,8 +21,9 @@ static bool is_nothing(const struct medium_effect *effect) {
 }
 
 TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
-    struct medium_stack glass = {.count = 0};
-    medium_stack_enter(&glass, &(struct medium){.primitive = 1, .ior = 1.5});
+    const struct media media = {&(struct solid){1, 0}, &(struct medium){.ior = 1.5}};
+    struct medium_stack glass = {.media = &media};
+    medium_stack_enter(&glass, 0);
     for (int i = 0; i < FOGS; i++) {
         struct ray ray = ray_in_the_open;
         struct medium_effect effect;
@@ -41,9 +42,12 @@ TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
 }
 
 TEST(absorption_is_beers_law_for_sight_and_for_photons) {
-    struct medium_stack stack = {.count = 0};
-    medium_stack_enter(&stack, &(struct medium){.primitive = 1, .ior = 1.3, .absorption = {9, 9, 9}});
-    medium_stack_enter(&stack, &(struct medium){.primitive = 2, .ior = 1.5, .absorption = {0.1, 0, 2}});
+    const struct solid solids[] = {{1, 0}, {2, 1}};
+    const struct medium all[] = {{.ior = 1.3, .absorption = {9, 9, 9}}, {.ior = 1.5, .absorption = {0.1, 0, 2}}};
+    const struct media media = {solids, all};
+    struct medium_stack stack = {.media = &media};
+    medium_stack_enter(&stack, 0);
+    medium_stack_enter(&stack, 1);
     struct ray ray = ray_in_the_open;
     ray.media = &stack;
     for (int kind = MEDIUM_RAY_SIGHT; kind <= MEDIUM_RAY_PHOTON; kind *= 2) {

@@ -32,10 +32,12 @@ static void layers_init(struct layers *layers) {
 /* The surface z = 0, seen at a cosine from outside or from inside. */
 static struct bsdf seen(const struct layers *layers, double cosine, bool front) {
     struct hit hit = {.view = {sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine}, .front = front, .primitive = 4};
-    struct medium_stack inside = {.count = 0};
+    const struct medium medium = {.ior = layers->numbers.specular_ior};
+    const struct media media = {&(struct solid){4, 0}, &medium};
+    struct medium_stack inside = {.media = &media};
     struct bsdf bsdf;
     hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
-    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = layers->numbers.specular_ior});
+    medium_stack_enter(&inside, 0);
     const struct material_context context = {.total_reflection = true};
     material_eval(&layers->material, &hit, front ? NULL : &inside, &context, &bsdf);
     return bsdf;

@@ -132,7 +132,7 @@ static struct vec3 uniform_direction(struct sample2 xi, const struct vec3 *side)
 static double brute_force(const struct stage *s, struct world_scratch *scratch, struct ray ray, int depth,
                           const double start[2 * BRUTE_DEPTH], uint64_t number) {
     const struct material_context context = {.total_reflection = true};
-    struct medium_stack media = {.count = 0};
+    struct medium_stack media = {.media = &s->world.media};
     struct hit hit;
     struct bsdf bsdf;
     double sum = 0, weight = 1;

@@ -254,6 +254,26 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
     CHECK_NEAR(mirrored[1], 4, 1e-5);
 }
 
+/* A sky of radiance 1000 above the horizon, which divides the pixel, and black below. */
+TEST(half_a_pixel_of_bright_light_beside_black_is_white_after_exposure_with_resolve_bright) {
+    static const double stops[4][4] = {{-1, 0, 0, 0}, {0, 0, 0, 0}, {0, 1000, 1000, 1000}, {1, 1000, 1000, 1000}};
+    struct stage s;
+    stage_begin(&s, 1);
+    s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
+    s.settings.integrator = INTEGRATOR_PATH;
+    s.settings.path_samples = 1024;
+    CHECK(stage_render(&s, 1, 1));
+    CHECK_NEAR(stage_pixel(&s, 0, 0).x, 500, 5);
+    s.settings.resolve = RESOLVE_BRIGHT;
+    for (double exposure = 0; exposure > -20; exposure -= 5) {
+        s.settings.tone.exposure = exposure;
+        double white = pow(2, -exposure), mapped = 0.5 * 1000 / (white + 1000);
+        CHECK(stage_render(&s, 1, 1));
+        CHECK_NEAR(stage_pixel(&s, 0, 0).x / (white * mapped / (1 - mapped)), 1, 0.02);
+    }
+    stage_end(&s);
+}
+
 /* On a line of sight, in front of a bright sky; light that falls through it reaches the floor. */
 TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_shadow) {
     double lit[2];
@@ -589,5 +609,36 @@ TEST(glass_absorbs_along_paths) {
     (void)add_planar(&s, glow, planar_plane(vec3_make(0, 0, 1), -5));
     s.camera.fov = 0.01;
     CHECK_NEAR(path_mean(&s, 16, 4), exp(-0.7 * 2), 1e-5);
+    stage_end(&s);
+}
+
+/* Light 1 from everywhere, a floor that reflects all of it, and a clear ball on it: rays that enter at the rim are
+ * reflected inside up to hundreds of times, others meet the floor near its point of contact. Nothing is lost, so ball
+ * and floor are invisible. */
+TEST(a_clear_ball_on_a_white_floor_is_invisible_in_even_light_also_at_its_rim) {
+    enum { WIDTH = 48, RINGS = 4 };
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glass = scene_material(&s.scene, MATERIAL_FRESNEL, stage_glass(&s, 0, 1, 1.5), &s.error);
+    stage_move(&s, stage_sphere(&s, s.root, glass), 0, 1, 0);
+    (void)add_planar(&s, stage_phong(&s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
+    s.sky.colour = vec3_all(1);
+    s.camera = (struct camera){{0, 1, 8}, {0, 0, -1}, {0, 1, 0}, 15};
+    s.settings.integrator = INTEGRATOR_PATH;
+    s.settings.path_samples = 64;
+    s.settings.max_depth = s.settings.roulette_depth = 1000;
+    CHECK(stage_render(&s, WIDTH, WIDTH));
+    double sums[RINGS + 1] = {0}, counts[RINGS + 1] = {0};
+    double radius = 1 / sqrt(63) / tan(7.5 * 3.14159265358979323846 / 180) * WIDTH / 2;
+    for (uint32_t i = 0; i < WIDTH * WIDTH; i++) {
+        double from = hypot(i % WIDTH + 0.5 - WIDTH / 2, i / WIDTH + 0.5 - WIDTH / 2) / radius;
+        int ring = from < 1 ? (int)(RINGS * from * from * from * from) : RINGS; /* thin at the rim */
+        double value = stage_pixel(&s, i % WIDTH, i / WIDTH).x;
+        CHECK(value > 0.85 && value < 1.15);
+        sums[ring] += value;
+        counts[ring]++;
+    }
+    for (int ring = 0; ring <= RINGS; ring++)
+        CHECK_NEAR(sums[ring] / counts[ring], 1, 0.002);
     stage_end(&s);
 }

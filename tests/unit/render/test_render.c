@@ -572,39 +572,51 @@ TEST(camera_replaces_an_up_parallel_to_view_with_one_warning) {
     CHECK_TEXT(warning, "");
 }
 
+/* Solid i of primitive i modulo 10, with index 1 + i / 100. */
+enum { SOLIDS = 100 };
+static struct solid numbered_solids[SOLIDS];
+static struct medium numbered_media[SOLIDS];
+static const struct media numbered = {numbered_solids, numbered_media};
+static void number_solids(void) {
+    for (uint32_t i = 0; i < SOLIDS; i++) {
+        numbered_solids[i] = (struct solid){i % 10, i};
+        numbered_media[i] = (struct medium){.ior = 1 + i / 100.0};
+    }
+}
+
 TEST(media_stack_removes_the_solid_that_is_left) {
-    struct medium_stack media = {.count = 0};
+    number_solids();
+    struct medium_stack media = {.media = &numbered};
     CHECK_NEAR(medium_stack_ior(&media), 1, 0);
-    medium_stack_enter(&media, &(struct medium){.primitive = 3, .ior = 1.5});
-    medium_stack_enter(&media, &(struct medium){.primitive = 7, .ior = 1.3});
-    medium_stack_enter(&media, &(struct medium){.primitive = 3, .ior = 1.6});
+    medium_stack_enter(&media, 53);
+    medium_stack_enter(&media, 37);
+    medium_stack_enter(&media, 63);
     medium_stack_leave(&media, 7);
-    CHECK_NEAR(medium_stack_ior(&media), 1.6, 0);
+    CHECK_NEAR(medium_stack_ior(&media), 1.63, 0);
     medium_stack_leave(&media, 3);
-    CHECK_NEAR(medium_stack_ior(&media), 1.5, 0);
+    CHECK_NEAR(medium_stack_ior(&media), 1.53, 0);
     medium_stack_leave(&media, 9);
     CHECK_EQ_INT(media.count, 1);
-    for (uint32_t i = 0; i < 100; i++)
-        medium_stack_enter(&media, &(struct medium){.primitive = i, .ior = 1 + i});
+    for (uint32_t i = 0; i < SOLIDS; i++)
+        medium_stack_enter(&media, i);
     CHECK_EQ_INT(media.count, MEDIUM_STACK_LIMIT);
-    CHECK_NEAR(medium_stack_ior(&media), 100, 0);
+    CHECK_NEAR(medium_stack_ior(&media), 1.99, 0);
 }
 
 TEST(the_relative_index_is_that_of_the_stacks_before_and_behind) {
     struct test_random random = {3};
+    number_solids();
     for (int run = 0; run < 2000; run++) {
-        struct medium_stack before = {.count = 0}, behind;
-        for (int i = (int)test_uniform(&random, 0, 6); i > 0; i--) {
-            struct medium medium = {.primitive = (uint32_t)test_uniform(&random, 0, 4),
-                                    .ior = test_uniform(&random, 1, 2)};
-            medium_stack_enter(&before, &medium);
-        }
-        struct medium_boundary boundary = {.medium = {.primitive = (uint32_t)test_uniform(&random, 0, 4), .ior = 1.7},
-                                           .entering = run % 2 == 0};
+        struct medium_stack before = {.media = &numbered}, behind;
+        for (int i = (int)test_uniform(&random, 0, 6); i > 0; i--)
+            medium_stack_enter(&before, (uint32_t)test_uniform(&random, 0, 40) / 10 * 10 +
+                                            (uint32_t)test_uniform(&random, 0, 4));
+        uint32_t solid = 40 + (uint32_t)test_uniform(&random, 0, 4);
+        struct medium_boundary boundary = {.solid = solid, .ior = numbered_media[solid].ior, .entering = run % 2 == 0};
         medium_stack_copy(&behind, &before);
         medium_stack_cross(&behind, &boundary);
         bool stays = !boundary.entering && behind.count == before.count; /* it was in a solid it never entered */
-        double here = stays ? 1.7 : medium_stack_ior(&before);
+        double here = stays ? boundary.ior : medium_stack_ior(&before);
         CHECK_NEAR(medium_stack_eta(&before, &boundary), here / medium_stack_ior(&behind), 0);
     }
 }

@@ -129,6 +129,27 @@ TEST(a_model_of_the_command_line_has_its_own_camera_and_lights) {
                0, "Flat\ttrue\t2\t1");
 }
 
+/* A triangle that rises by 4 within a second, and sinks within another. */
+TEST(the_fitted_camera_of_an_animated_model_does_not_move) {
+    test_write_text(
+        test_path("up.gltf"),
+        "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}],"
+        "\"samplers\":[{\"input\":1,\"output\":2}]}],\"accessors\":["
+        "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[-1,0,0],\"max\":[1,1,0]},"
+        "{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"SCALAR\",\"min\":[0],\"max\":[2]},"
+        "{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"bufferViews\":["
+        "{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":12},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":36}],"
+        "\"buffers\":[{\"byteLength\":84,\"uri\":\"data:application/octet-stream;base64,"
+        "AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAABAAAAAAAAAAAAAAAAAAAAAAAAAgEAAAAAA"
+        "AAAAAAAAAAAAAAAA\"}]}");
+    test_shell("$gray" SMALL "--integrator whitted --fps 1 --frames 3 up.gltf && cmp up.0001.png up.0003.png &&"
+               " ! cmp up.0001.png up.0002.png",
+               0, "up.0001.png up.0002.png differ");
+}
+
 TEST(check_lists_what_a_model_has) {
     write_gltf("g.gltf", LIGHT_NODE);
     test_shell("$gray --check g.gltf", 0,

@@ -83,6 +83,25 @@ TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
     says("local n = gr.mesh('a', 'data\\\\cow.obj')\n" PICTURE("n"), "", 0, "was found as 's/../meshes/cow.obj'");
 }
 
+TEST(the_case_of_a_name_counts_only_if_a_file_has_it) {
+    begin();
+    folder("w/s/Assets");
+    file("w/s/Assets/Cow.obj", triangle);
+    says("local n = gr.mesh('a', 'cow.OBJ')\n" PICTURE("n"), "", 0, "'cow.OBJ' was found as 's/Assets/Cow.obj'");
+    says("local n = gr.mesh('a', 'assets\\\\COW')\n" PICTURE("n"), "", 0, "was found as 's/Assets/Cow.obj'");
+    folder("w/far");
+    file("w/far/cow.OBJ", triangle);
+    says("local n = gr.mesh('a', 'cow.OBJ')\n" PICTURE("n"), "", 0, "'cow.OBJ' was found as 's/../far/cow.OBJ'");
+}
+
+TEST(fractions_of_sizes_by_position_are_dropped_with_a_warning) {
+    begin();
+    says("gr.render(gr.sphere('s'), 't.png', 33 / 2, 7 / 2, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})", "",
+         0, "gr.render: width is 16.5: fractions of pixels are dropped");
+    says("gr.render{node = gr.sphere('s'), file = 't.png', width = 33 / 2, height = 3}", "", 1,
+         "width must be a whole number");
+}
+
 /* A picture of one texel. */
 static void dot(const char *name) {
     static const char text[] = "PF\n1 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0";
