@@ -109,6 +109,21 @@ TEST(a_rough_open_pane_passes_light_as_it_would_mirror_it) {
     }
 }
 
+/* The pane covers a face of the cube and stands out on all sides. */
+TEST(a_pane_flush_on_a_solid_of_glass_is_invisible_in_a_white_furnace) {
+    struct stage s;
+    begin(&s);
+    struct material *glass = fresnel_glass(&s);
+    struct node *pane = stage_sphere(&s, s.root, glass), *cube = stage_cube(&s, s.root, glass);
+    struct planar square = planar_parallelogram(vec3_make(-2, -2, 0), vec3_make(4, 0, 0), vec3_make(0, 4, 0));
+    pane->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = square};
+    stage_move(&s, cube, -0.5, -0.5, -1);
+    stage_scale(&s, s.root, 2, 2, 2);
+    const struct effort effort = {SIDE, 256, 1};
+    estimate_check_mean("a pane flush on a cube", 1, &s, &effort, 100);
+    stage_end(&s);
+}
+
 /* Whether the picture of a glowing ball is the same as without the object before it. */
 static bool shows_the_same(struct stage *s, struct node *object, enum node_walls walls) {
     struct vec3 bare[SIDE * SIDE];
