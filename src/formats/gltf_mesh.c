@@ -23,6 +23,8 @@ static bool read_variant(struct gltf *g, struct primitive *p) {
     const json_t *mappings = json_object_get(extension, "mappings");
     for (size_t i = 0; g->variant != MODEL_NONE && i < json_array_size(mappings); i++) {
         const json_t *mapping = json_array_get(mappings, i), *variants = json_object_get(mapping, "variants");
+        if (!gltf_produce(g, 1 + json_array_size(variants), p->where))
+            return false;
         for (size_t k = 0; k < json_array_size(variants); k++)
             if (json_integer_value(json_array_get(variants, k)) == (json_int_t)g->variant)
                 return gltf_index(g, mapping, "material", "materials", &p->material, p->where);
@@ -289,9 +291,11 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
         int components = attribute.components;
         for (uint64_t i = 0; ok && (t == UV || t == SECOND_UV) && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
+        bool opaque = true;
         for (uint64_t i = 0; ok && t == COLOUR && components == 4 && i < corners->vertices; i++)
-            if (numbers[i * 4 + 3] < 1)
-                gltf_lacks(g, p->where, "the alpha of the colours of vertices is not read");
+            opaque = opaque && numbers[i * 4 + 3] >= 1;
+        if (!opaque)
+            gltf_lacks(g, p->where, "the alpha of the colours of vertices is not read");
         fine = ok && (t == COLOUR ? append_colours(g, tables[t].list, numbers, corners->vertices, components)
                                   : append(g, tables[t].list, numbers, corners->vertices, components, tables[t].kept));
         mem_free(numbers);
@@ -406,7 +410,9 @@ bool gltf_read_mesh(struct gltf *g, uint32_t number, const struct gltf_deformati
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < json_array_size(primitives); i++) {
             (void)snprintf(p.where, sizeof p.where, "meshes[%u].primitives[%zu]", number, i);
-            if (!read_primitive(g, json_array_get(primitives, i), &p))
+            /* A look at a primitive and its targets takes as long as some vertices, and many nodes may need one. */
+            if (!gltf_produce(g, 16 * (1 + (uint64_t)by->weight_count), p.where) ||
+                !read_primitive(g, json_array_get(primitives, i), &p))
                 return false;
             if (p.mode > 6)
                 return gltf_fail(g, p.where, "the mode %llu is unknown", (unsigned long long)p.mode);

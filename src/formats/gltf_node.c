@@ -323,7 +323,10 @@ static bool make_mesh(const struct tree *tree, uint32_t index, uint32_t mesh, ui
     }
     mem_free(weights);
     mem_free(joints);
-    return ok;
+    /* The scene has a list of the mesh's materials for each node. */
+    char where[64];
+    (void)snprintf(where, sizeof where, "nodes[%u]", index);
+    return ok && gltf_produce(g, model_meshes(g->model)[*out].slots.count, where);
 }
 
 /* One more node of the model. */
@@ -357,7 +360,8 @@ static bool read_instances(struct gltf *g, const json_t *attributes, struct inst
             continue;
         if (!gltf_accessor(g, accessor, &a))
             return false;
-        if (!a.data || a.components != width || a.sparse_count || (out->count && a.count != out->count))
+        bool other_count = (out->parts[0] || out->parts[1]) && a.count != out->count; /* also beside a count of 0 */
+        if (!a.data || a.components != width || a.sparse_count || other_count)
             return gltf_fail(g, where, "accessors[%u] does not have the %s of its instances", accessor, keys[k]);
         /* A node takes as much memory as some vertices. */
         if (!gltf_produce(g, 8 * a.count, where))
@@ -460,13 +464,18 @@ struct visit {
     struct affine model_from_parent;
 };
 
+/* Every node is on the stack once at most, so that equal children in a long list are an error at once. */
+static bool claim(struct tree *tree, uint32_t node) {
+    char where[64];
+    (void)snprintf(where, sizeof where, "nodes[%u]", node);
+    return !tree->seen[node]++ || gltf_fail(tree->g, where, "it has two parents, or is below itself");
+}
+
 /* Adds one node to the model and its children to the stack. */
 static bool read_node(struct tree *tree, struct visit visit) {
     struct gltf *g = tree->g;
     char where[64];
     (void)snprintf(where, sizeof where, "nodes[%u]", visit.node);
-    if (tree->seen[visit.node]++)
-        return gltf_fail(g, where, "it has two parents, or is below itself");
     const json_t *source = json_array_get(tree->nodes, visit.node);
     struct transform placement, rest = visit.rest;
     const char *name = gltf_name(g, source);
@@ -494,6 +503,8 @@ static bool read_node(struct tree *tree, struct visit visit) {
         uint32_t child = child_of(tree, children, count - 1 - i);
         if (child == MODEL_NONE)
             return gltf_fail(g, where, "a child that does not exist");
+        if (!claim(tree, child))
+            return false;
         below[i] = (struct visit){child, number, rest, model_from_node};
     }
     tree->stack.count += count;
@@ -501,6 +512,8 @@ static bool read_node(struct tree *tree, struct visit visit) {
 }
 
 static bool push_root(struct tree *tree, uint32_t node) {
+    if (!claim(tree, node))
+        return false;
     struct visit *visit = list_room(&tree->stack, 1, sizeof *visit);
     if (!visit)
         return error_no_memory(tree->g->error, tree->g->path);

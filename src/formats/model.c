@@ -558,7 +558,8 @@ static enum model_kind kind_of(const char *path, const uint8_t *data, size_t siz
     size_t head = size - at < 4096 ? size - at : 4096;
     if (is_word(extension, length, "stl")) {
         bool facets = holds(data + at, head, "facet") && (solid || holds(data + at, head, "vertex"));
-        return facets || (solid && holds(data + at, head, "endsolid")) ? MODEL_STL_TEXT : MODEL_STL_BINARY;
+        /* Without a triangle, a text is known by its lack of zeros. */
+        return facets || (solid && !memchr(data + at, 0, head)) ? MODEL_STL_TEXT : MODEL_STL_BINARY;
     }
     if (solid && holds(data + at, head, "facet normal"))
         return MODEL_STL_TEXT;
@@ -681,6 +682,7 @@ void model_destroy(struct model *model) {
     list_destroy(&model->cameras);
     list_destroy(&model->lights);
     list_destroy(&model->animations);
+    file_set_destroy(&model->broken);
     arena_destroy(&model->arena);
     *model = (struct model){0};
 }

@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/path_policy.h"
 #include "formats/list.h"
 #include "image/image.h"
@@ -149,7 +150,8 @@ struct model {
     struct list cameras, lights, animations; /* struct model_camera, model_light, model_animation */
     const char *warnings[MODEL_WARNINGS];
     int warning_count;
-    bool refused; /* model_find: the last name leads out of the readable folders */
+    bool refused;           /* model_find: the last name leads out of the readable folders */
+    struct file_set broken; /* pictures that could not be read: thousands of materials may name one */
 };
 
 /* The maximum number of vertices, and of corners, of a mesh: some numbers of 32 bits have other meanings. */

@@ -21,6 +21,24 @@ static void destroy_model(void *object) {
     mem_free(object);
 }
 
+/* Meshes that the last reading of the file made, too (at another time, say), take no memory again. */
+static void share_meshes(const struct assets *assets, const char *canonical, struct model *model) {
+    const struct asset_object *entry = assets->objects;
+    size_t length = strlen(canonical);
+    while (entry && (entry->destroy != destroy_model || strncmp(entry->key, canonical, length) != 0 ||
+                     entry->key[length] != '|'))
+        entry = entry->next;
+    const struct model *last = entry ? entry->object : NULL;
+    for (size_t i = 0; last && i < model->meshes.count && i < last->meshes.count; i++) {
+        struct model_mesh *mesh = &model_meshes(model)[i];
+        struct mesh *other = model_meshes(last)[i].mesh;
+        if (!mesh_equals(mesh->mesh, other))
+            continue;
+        mesh_release(mesh->mesh);
+        mesh->mesh = mesh_share(other);
+    }
+}
+
 struct model *model_asset(struct assets *assets, const char *path, const char *canonical,
                           const struct model_options *options, bool *fresh, struct error *error) {
     char key[4096 + 400];
@@ -47,6 +65,7 @@ struct model *model_asset(struct assets *assets, const char *path, const char *c
         mem_free(model);
         return NULL;
     }
+    share_meshes(assets, canonical, model);
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!assets_keep_mesh(assets, model_meshes(model)[i].mesh, error)) {
             destroy_model(model);
@@ -65,13 +84,21 @@ static bool is_usable(const struct model_texture *map) {
 /* A picture that cannot be read has no effect, as if it were missing; only a lack of memory is an error. */
 static bool check_picture(struct scene *scene, struct model *model, struct model_texture *map, struct error *error) {
     struct error reason = {0};
-    if (!map->path || assets_image(scene->assets, map->path, &reason))
+    struct file_identity identity;
+    if (!map->path)
         return true;
-    if (reason.kind != ERROR_SCENE || reason.limit) {
-        *error = reason;
-        return false;
+    bool known = file_identity_of(map->path, &identity);
+    if (!known || !file_set_has(&model->broken, identity)) {
+        if (assets_image(scene->assets, map->path, &reason))
+            return true;
+        if (reason.kind != ERROR_SCENE || reason.limit) {
+            *error = reason;
+            return false;
+        }
+        model_warn(model, "%s (the picture has no effect)", reason.text);
+        if (known && !file_set_add(&model->broken, identity))
+            return error_no_memory(error, model->path);
     }
-    model_warn(model, "%s (the picture has no effect)", reason.text);
     map->path = NULL;
     return true;
 }

@@ -140,6 +140,7 @@ struct reader {
     struct unread unread;
     struct model *model;
     struct slotting materials, groups;
+    struct file_set libraries; /* those that were read: a file may name one at every object */
 };
 
 static bool is_blank(char c) {
@@ -488,16 +489,18 @@ static bool read_slot(struct reader *reader, struct slotting *slotting) {
 static bool read_library(struct reader *reader, const char *name, size_t length, bool *found) {
     const char *path;
     struct file_bytes bytes;
+    struct file_identity identity;
     if (!model_find(reader->model, name, length, &path, reader->error))
         return false;
     *found = path != NULL;
-    if (!path)
+    bool known = path && file_identity_of(path, &identity);
+    if (!path || (known && file_set_has(&reader->libraries, identity)))
         return true;
     if (!path_policy_map(reader->model->options.path_policy, path, FILE_LIMIT, &bytes, reader->error))
         return false;
     bool ok = mtl_load(reader->model, path, (const char *)bytes.data, bytes.size, reader->error);
     file_unmap(&bytes);
-    return ok;
+    return ok && (!known || file_set_add(&reader->libraries, identity) || error_no_memory(reader->error, reader->path));
 }
 
 /* One name with blanks in it, or several names. */
@@ -849,5 +852,6 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
     names_destroy(&reader.groups.names);
     list_destroy(&reader.materials.faces);
     list_destroy(&reader.groups.faces);
+    file_set_destroy(&reader.libraries);
     return mesh != NULL && ok;
 }

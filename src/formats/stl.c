@@ -256,7 +256,7 @@ static bool is_cut_off(struct model *model, struct text *t) {
 static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size,
                       struct error *error) {
     struct text t = {.path = model->path, .at = data, .end = data + size, .line = 1, .error = error};
-    assert(size >= 3); /* a text has a facet or an endsolid */
+    assert(size >= 3); /* a text has a facet or a solid */
     if (memcmp(data, "\xef\xbb\xbf", 3) == 0)
         t.at += 3;
     struct unread unread = {0};
@@ -276,7 +276,9 @@ static bool load_text(struct model *model, struct model_mesh *mesh, const char *
             return error_set(error, ERROR_SCENE, "%s:%zu: too many triangles", model->path, t.line);
     }
     model_warn_unread(model, model->path, &unread);
-    return true;
+    /* What was left out is the reason otherwise. */
+    return mesh->vertices.count > 0 || model->warning_count > 0 ||
+           error_set(error, ERROR_SCENE, "%s: no triangles in this STL text", model->path);
 }
 
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error) {

@@ -602,18 +602,6 @@ static void note_rewind(void *context) {
     begin_frame(process);
 }
 
-/* The models of the command line before this one whose pictures have the same name. */
-static uint32_t count_namesakes(const struct options *options, const char *path) {
-    char name[PATH_SIZE], other[PATH_SIZE];
-    uint32_t count = 0;
-    context_name_of_picture(path, ".png", name, sizeof name);
-    for (int i = 0; options->scripts[i] != path; i++) {
-        context_name_of_picture(options->scripts[i], ".png", other, sizeof other);
-        count += model_is_named(options->scripts[i]) && strcmp(name, other) == 0;
-    }
-    return count;
-}
-
 /* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0;
  * repeats: an earlier run did not call gr.frames. */
 static int run_once(struct render_process *process, const char *path, const struct frame *frame, bool repeats) {
@@ -631,7 +619,7 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .frame = *frame,
                                .repeats = repeats,
                                .checks = process->options->check,
-                               .namesakes = count_namesakes(process->options, path),
+                               .namesakes = process->namesakes,
                                .frame_limit = options_picture_limit(process->options),
                                .animates = note_animation,
                                .frame_begins = begin_frame,
@@ -711,15 +699,49 @@ static int run_script(struct render_process *process, const char *path) {
     return status;
 }
 
+struct model_picture {
+    uint64_t name; /* its hash */
+    int script;
+};
+
+static int by_name_and_script(const void *left, const void *right) {
+    const struct model_picture *a = left, *b = right;
+    return a->name != b->name ? (a->name < b->name ? -1 : 1) : (a->script > b->script) - (a->script < b->script);
+}
+
+/* Of each script, the models before it whose pictures have the same name: sorted, since a command line may have a
+ * hundred thousand. NULL without memory: then a second picture of one name is refused. */
+static uint32_t *count_namesakes(const struct options *options) {
+    size_t room = (size_t)options->script_count + 1, count = 0;
+    uint32_t *namesakes = mem_alloc_zero(room, sizeof *namesakes);
+    struct model_picture *pictures = namesakes ? mem_alloc_zero(room, sizeof *pictures) : NULL;
+    for (int i = 0; pictures && i < options->script_count; i++) {
+        char name[PATH_SIZE];
+        context_name_of_picture(options->scripts[i], ".png", name, sizeof name);
+        if (model_is_named(options->scripts[i]))
+            pictures[count++] = (struct model_picture){hash_bytes(name, strlen(name), 0), i};
+    }
+    if (count > 1)
+        qsort(pictures, count, sizeof *pictures, by_name_and_script);
+    for (size_t i = 1; i < count; i++)
+        if (pictures[i].name == pictures[i - 1].name)
+            namesakes[pictures[i].script] = namesakes[pictures[i - 1].script] + 1;
+    mem_free(pictures);
+    return namesakes;
+}
+
 static void run_scripts(struct render_process *process, int first) {
+    uint32_t *namesakes = count_namesakes(process->options);
     process->pictures = process->played = process->frames_shown = 0;
     process->frames_differ = false;
     for (int i = first; i < process->options->script_count; i++) {
+        process->namesakes = namesakes ? namesakes[i] : 0;
         int status = run_script(process, process->options->scripts[i]);
         process->services->script_ended(process->services->context, i, status);
         if (status == ERROR_USAGE || status == ERROR_CANCELLED)
             break;
     }
+    mem_free(namesakes);
     effects_note_frames(process);
 }
 

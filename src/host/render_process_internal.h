@@ -24,6 +24,7 @@ struct render_process {
     const struct options *options;
     const struct host_services *services;
     const char *script; /* the one that runs */
+    uint32_t namesakes; /* models before it whose pictures have the same name */
     struct pool *pool;  /* made for the first picture */
     struct arena job;   /* memory of the current picture */
     struct assets assets;

@@ -494,6 +494,13 @@ bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input) 
            memcmp(mesh->face_vertex, input->vertex_index, corners * sizeof *input->vertex_index) == 0;
 }
 
+bool mesh_equals(const struct mesh *a, const struct mesh *b) {
+    return a->input_hash == b->input_hash && a->triangle_count > 0 && a->triangle_count == b->triangle_count &&
+           a->vertex_count == b->vertex_count &&
+           memcmp(a->vertices, b->vertices, a->vertex_count * sizeof *a->vertices) == 0 &&
+           memcmp(a->corners, b->corners, a->triangle_count * sizeof *a->corners) == 0;
+}
+
 static struct vec3 edge_of(const struct mesh *mesh, const uint32_t corners[3], int end) {
     const double *a = mesh->vertices[corners[0]], *b = mesh->vertices[corners[end]];
     return vec3_make(b[0] - a[0], b[1] - a[1], b[2] - a[2]);

@@ -86,6 +86,7 @@ size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
 /* The exact content as a key, so that equal tables give the same mesh (hash of everything in the input except the
  * name). */
 uint64_t mesh_input_hash(const struct mesh_input *input);
+bool mesh_equals(const struct mesh *a, const struct mesh *b); /* of equal input, and with triangles */
 bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input); /* vertices and faces the same */
 
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,

@@ -1,7 +1,7 @@
 -- The scene of a model on the command line. It has the camera and the lights of the file; else a camera that fits, the
 -- light of the studio, and a ground whose unshadowed parts have the colour of the background. Everything is a multiple
 -- of the model's size, so that a scaled or moved model has the same picture.
-local format, gmatch, concat, tonumber = string.format, string.gmatch, table.concat, tonumber
+local format, gmatch, match, find, concat, tonumber = string.format, string.gmatch, string.match, string.find, table.concat, tonumber
 local sqrt, log, max, min = math.sqrt, math.log, math.max, math.min
 local SAMPLES, POSES = 24, 8
 
@@ -49,7 +49,10 @@ return function(gr, path, file, options)
     local all = model
     if options.moves and is_animated(model) then model, all = animated(gr, file, options.seconds) end
     local found, low, high = pcall(all.bounds, all)
-    if not found then fail(path .. ': no face of this file has an area') end
+    if not found then
+        local reason = match(low, 'bounds: (.+) %(node')
+        fail(path .. ': ' .. (reason and not find(reason, '^no shape') and reason or 'no face of this file has an area'))
+    end
     local radius = size_of(low, high)
     local camera = camera_of(path, model.cameras, options.camera)
     local scene = {node = model}

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static inline void fuzz_model(const char *path, const uint8_t *data, size_t size) {
     struct error error = {0};
     struct model model;
-    /* The first byte chooses what is done with the mesh. */
+    /* The last byte chooses what is done with the mesh, and the moment of an animation. */
     struct model_options options = {.single_file = true};
     if (size > 0) {
         options.smooth = data[size - 1] & 1;
@@ -20,6 +20,9 @@ static inline void fuzz_model(const char *path, const uint8_t *data, size_t size
         options.weld = data[size - 1] & 2;
         options.weld_distance = data[size - 1] & 8 ? 0.5 : 0;
         options.flip = data[size - 1] & 4;
+        options.animated = data[size - 1] & 16;
+        options.time = (data[size - 1] >> 5) * 0.25;
+        options.variant = data[size - 1] & 64 ? "v" : NULL;
     }
     if (!model_parse(&model, path, data, size, &options, &error)) {
         if (error.kind == ERROR_NONE || !strstr(error.text, path) || strchr(error.text, '\n'))

@@ -207,6 +207,78 @@ TEST(gltf_instances_share_the_mesh_of_their_node) {
     bytes_free(&b);
 }
 
+TEST(gltf_instances_have_as_many_scales_as_translations_even_none) {
+    static const double scales[] = {1, 1, 1, 1, 1, 1};
+    struct bytes b = {0};
+    struct model model;
+    struct error error = {0};
+    add_triangle(&b);
+    add_floats(&b, scales, 6);
+    CHECK(
+        !parse_with(&model, &b,
+                    "\"accessors\":[" POSITIONS "," ACCESSOR(36, 5126, 0, "VEC3") "," ACCESSOR(
+                        36, 5126, 2, "VEC3") "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                                             "\"nodes\":[{\"mesh\":0," INSTANCING("\"TRANSLATION\":1,\"SCALE\":2") "}]",
+                    NULL, &error));
+    CHECK_TEXT(error.text, "t.gltf: nodes[0]: accessors[2] does not have the SCALE of its instances");
+    bytes_free(&b);
+}
+
+/* `count` times the text, with commas between. */
+static void add_repeated(struct bytes *b, const char *text, int count) {
+    for (int i = 0; i < count; i++)
+        bytes_print(b, "%s%s", i ? "," : "", text);
+}
+
+/* Nodes times primitives, targets or variants that make no vertex: a megabyte took minutes. */
+TEST(gltf_files_cannot_have_primitives_read_more_often_than_their_size_allows) {
+    static const char *const cases[][3] = {
+        {"{\"attributes\":{\"POSITION\":0}}", "{\"mode\":0}", "{\"mesh\":0,\"scale\":[1,1,0]}"},
+        {"{\"attributes\":{\"POSITION\":0},\"targets\":[{}]}", "{\"mode\":0,\"targets\":[{},{},{}]}",
+         "{\"mesh\":0,\"weights\":[0]}"},
+        {"{\"attributes\":{\"POSITION\":0}}",
+         "{\"mode\":0,\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{},{},{},{}]}}}",
+         "{\"mesh\":0,\"scale\":[1,1,0]}"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct bytes b = {0}, rest = {0};
+        struct model model;
+        struct error error = {0};
+        struct model_options options = {.variant = i == 2 ? "v" : NULL};
+        add_triangle(&b);
+        bytes_print(&rest,
+                    "\"accessors\":[" POSITIONS "],\"extensions\":{\"KHR_materials_variants\":{\"variants\":["
+                    "{\"name\":\"v\"}]}},\"meshes\":[{\"primitives\":[%s,",
+                    cases[i][0]);
+        add_repeated(&rest, cases[i][1], 400);
+        bytes_print(&rest, "]}],\"nodes\":[");
+        add_repeated(&rest, cases[i][2], 400);
+        bytes_add(&rest, "]", 2);
+        CHECK(!parse_with(&model, &b, (const char *)rest.data, &options, &error));
+        CHECK(strstr(error.text, "t.gltf: meshes[0].primitives[") && strstr(error.text, ": more vertices than a file"));
+        bytes_free(&b);
+        bytes_free(&rest);
+    }
+}
+
+TEST(gltf_files_cannot_have_more_materials_of_nodes_than_their_size_allows) {
+    struct bytes b = {0}, rest = {0};
+    struct model model;
+    struct error error = {0};
+    add_triangle(&b);
+    bytes_print(&rest, "\"accessors\":[" POSITIONS "],\"materials\":[");
+    add_repeated(&rest, "{}", 1000);
+    bytes_print(&rest, "],\"meshes\":[{\"primitives\":[");
+    for (int i = 0; i < 1000; i++)
+        bytes_print(&rest, "%s{\"attributes\":{\"POSITION\":0},\"material\":%d}", i ? "," : "", i);
+    bytes_print(&rest, "]}],\"nodes\":[");
+    add_repeated(&rest, "{\"mesh\":0}", 3000);
+    bytes_add(&rest, "]", 2);
+    CHECK(!parse_with(&model, &b, (const char *)rest.data, NULL, &error));
+    CHECK(strstr(error.text, "t.gltf: nodes[") && strstr(error.text, ": more vertices than a file"));
+    bytes_free(&b);
+    bytes_free(&rest);
+}
+
 /* The second vertex of the triangle at a time of animation `name`. */
 static struct vec3 moved(const struct bytes *b, const char *name, double time) {
     static const char rest[] =

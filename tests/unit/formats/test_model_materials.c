@@ -429,3 +429,61 @@ TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
     scene_destroy(&scene);
     assets_destroy(&assets);
 }
+
+TEST(a_broken_picture_of_many_materials_is_tried_once) {
+    test_write_text(in_folder("broken.png"), "\x89PNG");
+    test_write_text(in_folder("b.mtl"),
+                    "newmtl a\nmap_Kd broken.png\nnewmtl b\nmap_Kd ./broken.png\nmap_Ks broken.png\n");
+    test_write_text(in_folder("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\n"
+                                        "f 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 2/2\n");
+    struct assets assets = {0};
+    struct scene scene;
+    struct error error = {0};
+    struct model_placing placing = {.name = "b"};
+    bool fresh;
+    scene_init(&scene, &assets);
+    struct model *model = model_asset(&assets, in_folder("b.obj"), "b", &(struct model_options){0}, &fresh, &error);
+    CHECK(model && model_add_nodes(&scene, model, &placing, &error));
+    CHECK_TEXT(error.text, "");
+    if (model) {
+        CHECK_EQ_INT(model->warning_count, 1);
+        CHECK_EQ_INT(model->broken.count, 1);
+    }
+    scene_destroy(&scene);
+    assets_destroy(&assets);
+}
+
+#ifdef HAVE_JANSSON
+TEST(meshes_that_no_skin_or_morph_changes_are_shared_by_all_times_of_a_file) {
+    test_write_text(in_folder("times.gltf"),
+                    "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":52,\"uri\":\"data:;base64,"
+                    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAACAPw==\"}],"
+                    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":52}],\"accessors\":["
+                    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+                    "{\"bufferView\":0,\"byteOffset\":36,\"componentType\":5126,\"count\":2,\"type\":\"SCALAR\"},"
+                    "{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}],"
+                    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]},"
+                    "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":0}]}]}],"
+                    "\"nodes\":[{\"mesh\":0},{\"mesh\":1}],\"animations\":[{\"samplers\":["
+                    "{\"input\":1,\"output\":2},{\"input\":1,\"output\":1}],\"channels\":["
+                    "{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}},"
+                    "{\"sampler\":1,\"target\":{\"node\":1,\"path\":\"weights\"}}]}]}");
+    struct assets assets = {0};
+    struct error error = {0};
+    struct model *models[3];
+    for (int i = 0; i < 3; i++) {
+        struct model_options options = {.animated = true, .time = i / 2.0};
+        bool fresh;
+        models[i] = model_asset(&assets, in_folder("times.gltf"), "times", &options, &fresh, &error);
+        CHECK(models[i] && fresh);
+    }
+    CHECK_TEXT(error.text, "");
+    for (int i = 1; i < 3 && models[0] && models[i]; i++) {
+        CHECK(model_meshes(models[0])[0].mesh == model_meshes(models[i])[0].mesh);
+        CHECK(model_meshes(models[0])[1].mesh != model_meshes(models[i])[1].mesh);
+        CHECK(model_nodes(models[i])[0].parent_from_node.forward.m[0][3] != 0);
+    }
+    CHECK_EQ_INT(assets.mesh_count, 4);
+    assets_destroy(&assets);
+}
+#endif

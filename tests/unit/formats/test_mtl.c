@@ -277,6 +277,18 @@ TEST(mtl_materials_of_faces_keep_their_slots) {
     }
 }
 
+TEST(a_library_that_an_obj_names_again_and_again_is_read_once) {
+    test_write_text(in_folder("l.mtl"), "newmtl red\nKd 1 0 0\n");
+    test_write_text(in_folder("l.obj"), SQUARE "mtllib l.mtl\nmtllib l.mtl ./l.mtl\nmtllib ././l.mtl\nusemtl red\n"
+                                               "f 1 2 3\n");
+    struct model model;
+    if (!read_model(&model, "l.obj"))
+        return;
+    CHECK_EQ_INT(model.materials.count, 1);
+    CHECK_EQ_INT(model.warning_count, 0);
+    model_destroy(&model);
+}
+
 TEST(mtl_materials_follow_their_mesh) {
     test_write_text(in_folder("p.mtl"), "newmtl red\nKd 1 0 0\nillum 1\nKs 1 1 1\nnewmtl glass\nKd .5 .5 .5\nd 0.25\n"
                                         "Ni 1.5\nillum 7\nnewmtl mirror\nKd 0 0 0\nKs 1 1 1\nillum 3\n");

@@ -46,7 +46,8 @@ TEST(stl_errors_name_the_line) {
     static const struct {
         const char *text, *message;
     } cases[] = {
-        {"solid a\n", "t.stl: byte 8: a binary STL file has at least 84 bytes"},
+        {"solid a\n", "t.stl: no triangles in this STL text"},
+        {"solid ", "t.stl: no triangles in this STL text"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid",
          "t.stl:6: 'vertex' is found where a finite number must be"},
         {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n",
@@ -57,7 +58,10 @@ TEST(stl_errors_name_the_line) {
          "t.stl:7: 'vertex' is found where endloop must be"},
         {"solid a\nfacet normal 0 0",
          "t.stl: no faces in this file (t.stl:2: the file ends in a triangle, which is left out)"},
-        {"solid a\nendsolid a\n", "t.stl: no faces in this file"},
+        {"solid a\nendsolid a\n", "t.stl: no triangles in this STL text"},
+        {"solid a\nface 1 2 3\n",
+         "t.stl: no faces in this file (t.stl:2: 1 line with a keyword that gray does not read, the first here: "
+         "'face' (1))"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         check_text_refused("t.stl", cases[i].text, cases[i].message);

@@ -108,7 +108,7 @@ TEST(files_that_are_no_scenes_and_scenes_that_are_not_there_are_named) {
     test_write_text(test_path("m.stl"), "solid x\n");
     test_write_text(test_path("a.scad"), "cube([1, 2, 3]);\n");
     test_shell("printf '\\211PNG' >p; $gray p", 1, "p: is a picture, not a scene");
-    test_shell("$gray m.stl", 1, "m.stl: byte 8: a binary STL file has at least 84 bytes");
+    test_shell("$gray m.stl", 1, "m.stl: no triangles in this STL text");
     test_shell("$gray a.scad", 1, "a.scad: is a file of another program");
     test_shell("cp ball.lua script.txt; $gray script.txt", 0, "no picture was rendered");
     test_shell("$gray bal.lua", 1, "did you mean 'ball.lua'?");

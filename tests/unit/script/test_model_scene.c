@@ -190,6 +190,14 @@ TEST(a_file_without_a_model_is_one_line_and_status_1) {
     test_shell("$gray none.glb", 1, "none.glb: cannot be read");
 }
 
+TEST(a_model_whose_nodes_are_nested_too_deeply_has_a_message_that_says_so) {
+    write_gltf("g.gltf", LIGHT_NODE);
+    test_shell(
+        "awk '{ for (i = 4; i < 2100; i++) s = s \",{\\\"children\\\":[\" i + 1 \"],\\\"mesh\\\":0}\"; "
+        "sub(/0,1,2,3/, \"0,1,2,3,4\"); sub(/],\"cameras/, s \",{}&\"); print }' g.gltf >deep.gltf; $gray deep.gltf",
+        1, "deep.gltf: nodes are nested more than 2000 deep, or in a cycle\n");
+}
+
 TEST(a_sky_of_the_command_line_lights_models_and_scripts) {
     test_write_text(test_path("o.obj"), TRIANGLE);
     test_write_text(test_path("sky.lua"),
