@@ -152,6 +152,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,
+                                                 .thin = primitive_is_thin(s->world, hit.primitive),
                                                  .joint = joint_boundary(&joint)};
         material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {

@@ -313,6 +313,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     const struct material_context context = {.specular = settings->specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
+                                             .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint),
                                              .observer = state->observer ? observe_material : NULL,
                                              .observer_context = state->observer,
