@@ -451,6 +451,7 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
     node->shape.kind = SHAPE_MESH;
     node->shape.mesh = mesh->mesh;
     node->cull = p->placing->cull;
+    node->walls = p->placing->walls;
     node->material = p->placing->part_count ? NULL : p->placing->material;
     bool any = p->placing->part_count > 0 && mesh->slot_names.count > 0;
     for (size_t i = 0; i < mesh->slots.count; i++)

@@ -14,6 +14,7 @@ struct model_placing {
     const char *name;                /* of the node */
     const struct material *material; /* the material of everything; NULL: the file's own materials */
     enum node_cull cull;
+    enum node_walls walls;
     /* Materials for the parts of these names; they precede `material` and the file's materials. */
     const char *const *part_names;
     const struct material *const *part_materials;

@@ -158,6 +158,13 @@ struct medium material_medium(const struct material *material) {
     return medium;
 }
 
+bool material_divides_media(const struct material *material) {
+    struct medium medium = material_medium(material);
+    bool thin = material->openpbr && material->openpbr->thin_walled;
+    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.absorption) > 0;
+    return !thin && differs && material_passes(material);
+}
+
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
     const struct texture *texture = material_texture(material, INPUT_EMISSION);
     const struct phong *numbers = numbers_of(material);
@@ -273,6 +280,7 @@ static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight,
     lobe->weight = weight;
     lobe->exponent = exponent;
     lobe->share = 0;
+    lobe->facets = 0;
 }
 
 static inline void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
@@ -285,10 +293,21 @@ static inline void set_frame(const struct hit *hit, const struct surface_inputs 
         bsdf->side = bsdf->geometric_side;
 }
 
+/* A thin wall: both of its sides together. Light that passes keeps its direction, about which facets spread it. */
+static void set_pane(const struct hit *hit, double eta, const struct surface_inputs *inputs, struct bsdf *bsdf) {
+    bsdf->transmits = true;
+    bsdf->through = vec3_negate(hit->view);
+    if (!(inputs->roughness > 0))
+        return;
+    bsdf_facets_shape(&bsdf->facets[0], bsdf->side, vec3_all(0), inputs->roughness, 0);
+    bsdf_facets_pane(&bsdf->facets[0], inputs->fresnel ? eta : 1);
+}
+
 /* The relative index, whether light is transmitted, and Fresnel's share of both amounts. */
-static void set_boundary(const struct hit *hit, const struct medium_stack *media, const struct bsdf_joint *joint,
-                         struct surface_inputs *inputs, struct bsdf *bsdf) {
+static void set_boundary(const struct hit *hit, const struct medium_stack *media,
+                         const struct material_context *context, struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
+    const struct bsdf_joint *joint = context->joint;
     bsdf->eta = 1;
     bsdf->fresnel = -1;
     bsdf->fresnel_of_facets = inputs->fresnel && inputs->roughness > 0;
@@ -302,14 +321,33 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->boundary.ior = inputs->has_ior ? inputs->ior : 1;
     bsdf->boundary.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
     bsdf->boundary.entering = hit->front;
-    bsdf->boundary.thin = false;
-    bsdf->eta = joint ? joint->eta : medium_stack_eta(media ? media : &air, &bsdf->boundary);
-    bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
+    bsdf->boundary.thin = context->thin;
+    double eta;
+    media = media ? media : &air;
+    if (context->thin) {
+        eta = medium_stack_ior(media) / bsdf->boundary.ior;
+        set_pane(hit, eta, inputs, bsdf);
+    } else {
+        bsdf->eta = eta = joint ? joint->eta : medium_stack_eta(media, &bsdf->boundary);
+        bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
+    }
     if (inputs->fresnel) {
-        inputs->reflect = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), bsdf->eta);
+        double reflected = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), eta);
+        inputs->reflect = context->thin ? bsdf_pane_reflectance(reflected) : reflected;
         inputs->refract = 1 - inputs->reflect;
         bsdf->fresnel = inputs->reflect;
     }
+}
+
+/* Reflection and transmission by rough walls without thickness; the facets are those of set_pane. */
+static void add_rough_pane(const struct surface_inputs *inputs, double reflect, double refract, struct bsdf *bsdf) {
+    if (reflect != 0)
+        add_lobe(bsdf, inputs->fresnel ? LOBE_GLOSS : LOBE_GGX_REFLECTION, vec3_scale(inputs->ks, reflect), 0);
+    add_lobe(bsdf, LOBE_PANE, vec3_scale(inputs->ks, refract), 0);
+    if (!inputs->fresnel)
+        return;
+    bsdf->lobes[bsdf->count - 2].share = fmax(bsdf->fresnel, 1.0 / 16);
+    bsdf->lobes[bsdf->count - 1].share = fmax(1 - bsdf->fresnel, 1.0 / 16);
 }
 
 static void set_lobes(const struct surface_inputs *inputs, const struct material_context *context, struct bsdf *bsdf) {
@@ -330,6 +368,10 @@ static void set_lobes(const struct surface_inputs *inputs, const struct material
     }
     double reflect = bsdf->fresnel_of_facets ? 1 : inputs->reflect,
            refract = bsdf->fresnel_of_facets ? 1 : inputs->refract;
+    if (rough && refract != 0 && bsdf->boundary.thin) {
+        add_rough_pane(inputs, reflect, refract, bsdf);
+        return;
+    }
     if (reflect != 0)
         add_lobe(bsdf, rough ? LOBE_GGX_REFLECTION : LOBE_MIRROR, vec3_scale(inputs->ks, reflect), 0);
     if (refract != 0)
@@ -394,10 +436,10 @@ void material_eval(const struct material *material, const struct hit *hit, const
     if (!(inputs.opacity > 0))
         return;
     if (material->openpbr) {
-        openpbr_eval(material, hit, media, context->joint, &inputs, out);
+        openpbr_eval(material, hit, media, context, &inputs, out);
         out->ambient = context->ambient_plain ? vec3_all(1) : inputs.kd;
     } else {
-        set_boundary(hit, media, context->joint, &inputs, out);
+        set_boundary(hit, media, context, &inputs, out);
         set_lobes(&inputs, context, out);
     }
     tint_passing(context->joint, out);

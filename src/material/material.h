@@ -128,6 +128,8 @@ bool material_is_transparent(const struct material *material, double *ior);
 bool material_passes(const struct material *material);
 /* The inside of a solid, by the numbers of the base. */
 struct medium material_medium(const struct material *material);
+/* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */
+bool material_divides_media(const struct material *material);
 /* Of the base: its average emission, and a bound (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
 struct vec3 material_emission_bound(const struct material *material);

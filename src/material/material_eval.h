@@ -9,12 +9,13 @@
 /* Settings of the picture for all surfaces, and the observer. All zero: the defaults. */
 struct material_context {
     enum specular_kind specular;
-    bool ambient_plain;          /* the ambient colour is not multiplied by kd */
-    bool total_reflection;       /* at total reflection, refracted light is reflected; else it is lost */
-    bool no_black_highlight;     /* matte surfaces do not have a highlight with weight 0 */
+    bool ambient_plain;             /* the ambient colour is not multiplied by kd */
+    bool total_reflection;          /* at total reflection, refracted light is reflected; else it is lost */
+    bool no_black_highlight;        /* matte surfaces do not have a highlight with weight 0 */
     const struct bsdf_joint *joint; /* or NULL: no other surface is there */
     material_observer *observer;    /* called for every link of `authored`, or NULL */
     void *observer_context;
+    bool thin;                       /* the surface is a wall without thickness, with the same medium on both sides */
     const struct material *authored; /* if observer is set: the material of the scene that `material` was made from */
 };
 

@@ -16,6 +16,7 @@
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
+#include "material/material_eval.h"
 #include "material/microfacet_internal.h"
 #include "material/rough_lobes_internal.h"
 
@@ -416,10 +417,11 @@ static double relative_index(const struct layering *l) {
 }
 
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
-                  const struct bsdf_joint *joint, const struct surface_inputs *inputs, struct bsdf *bsdf) {
+                  const struct material_context *context, const struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
     struct openpbr values = *material->openpbr;
     read_textures(material, hit, &values);
+    values.thin_walled = values.thin_walled || context->thin;
     media = media ? media : &air;
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
@@ -446,14 +448,14 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = !is_solid;
     if (is_solid)
-        bsdf->eta = joint ? joint->eta : medium_stack_eta(media, &bsdf->boundary);
+        bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
     add_coat(&l);
     bsdf->emission = vec3_mul(inputs->emission, l.left);
     double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
     double roughness = roughness_below(&l);
     bsdf->passes = inputs->refract > 0 && values.base_metalness < 1;
-    bsdf->behind = joint ? joint->behind : NULL;
+    bsdf->behind = context->joint ? context->joint->behind : NULL;
     bsdf->roughness = inputs->refract < 1 ? 2 : roughness;
     if (l.inside && is_solid)
         turn_back(&l, eta, roughness);

@@ -35,9 +35,9 @@ double openpbr_ior(double ior, double specular_weight);
  * is one, the share of metal counts as all or nothing. */
 void openpbr_classic(struct material *material);
 
-/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray; joint: of the other
- * surfaces at the hit, or NULL. */
+struct material_context;
+/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
-                  const struct bsdf_joint *joint, const struct surface_inputs *inputs, struct bsdf *bsdf);
+                  const struct material_context *context, const struct surface_inputs *inputs, struct bsdf *bsdf);
 
 #endif

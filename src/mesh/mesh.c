@@ -83,6 +83,13 @@ bool mesh_is_open(const struct mesh *mesh) {
     return mesh->open_edge_count > 0;
 }
 
+bool mesh_opening(const struct mesh *mesh, double *share) {
+    struct mesh_accel *kept = mesh->accel;
+    kept->opening_is_known = kept->opening_is_known || mesh->closed || mesh_find_opening(mesh, &kept->opening);
+    *share = kept->opening;
+    return kept->opening_is_known;
+}
+
 void mesh_describe_open_edges(const struct mesh *mesh, char *text, size_t size) {
     int used =
         snprintf(text, size, "the first open edges (of one face, or of faces that disagree about the outside) go");

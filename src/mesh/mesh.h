@@ -65,6 +65,11 @@ enum { MESH_OPEN_EDGES = 3 };
 bool mesh_is_open(const struct mesh *mesh);
 /* The first ones and what helps, as the end of a sentence about a mesh that is open. */
 void mesh_describe_open_edges(const struct mesh *mesh, char *text, size_t size);
+/* How much of the surface is missing, over its area, in the mesh's own space: 1 for a flat sheet, 0 without edges that
+ * only one triangle uses. The vector areas of the loops of such edges count by magnitude, except that connected parts
+ * may close each other: between them vectors are added. Worked out by the first call, in linear time. Call from one
+ * thread. False: no memory. */
+bool mesh_opening(const struct mesh *mesh, double *share);
 bool mesh_is_outward(const struct mesh *mesh);  /* closed, and its triangles' normals point outwards */
 const char *mesh_file(const struct mesh *mesh); /* NULL: it was made from tables */
 uint32_t mesh_triangle_count(const struct mesh *mesh);

@@ -10,6 +10,8 @@
 struct mesh_accel {
     struct triangle_index *index, *grid; /* grid: only after ACCEL_GRID was requested */
     struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
+    bool opening_is_known;
+    double opening; /* mesh_opening */
 };
 
 /* Triangles as flat arrays. A triangle whose first normal or uv corner is MESH_NONE has none. */

@@ -14,5 +14,7 @@ bool mesh_weld(const double (*vertices)[3], uint32_t count, uint32_t *same);
 bool mesh_weld_near(const double (*vertices)[3], uint32_t count, double distance, uint32_t *same);
 /* Fills closed, outward and open_edges. False: no memory. */
 bool mesh_find_topology(struct mesh *mesh);
+/* mesh_opening, worked out. False: no memory. */
+bool mesh_find_opening(const struct mesh *mesh, double *share);
 
 #endif

@@ -9,6 +9,7 @@
  * node alone. Invariant: the photons under node k of level l are those from n k / 2^l to n (k + 1) / 2^l. Every
  * comparison falls back on the photon's number, so the tree is a function of the photons. */
 #include "photon/photon_map.h"
+#include "material/bsdf_select.h"
 #include "math/elementary.h"
 
 #include "base/mem.h"
@@ -562,24 +563,19 @@ static void gather(struct density_query *g) {
 }
 
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct bsdf *bsdf) {
+                             const struct bsdf *bsdf, uint32_t lobes) {
     struct density_query g = {.map = map, .world = world, .hit = hit, .bsdf = bsdf};
-    struct vec3 normal = bsdf->lit, albedo = {0, 0, 0};
+    struct vec3 normal = bsdf->lit;
     if (map->count == 0)
         return vec3_all(0);
     bool turned = vec3_dot(normal, hit->normal) < 0;
     g.side = turned ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     g.plain = normal.x == g.side.x && normal.y == g.side.y && normal.z == g.side.z;
     /* Only classic lobes; if all of them are Lambert's, one sum of power is enough. */
-    for (int i = 0; i < bsdf->count; i++) {
-        const struct lobe *lobe = &bsdf->lobes[i];
-        unsigned flags = lobe_flags(lobe->kind);
-        if (!(flags & BSDF_CLASSIC) || (lobe->weight.x == 0 && lobe->weight.y == 0 && lobe->weight.z == 0))
-            continue;
-        g.plain = g.plain && (flags & BSDF_LAMBERT);
-        albedo = vec3_add(albedo, lobe->weight);
-        g.lobes |= UINT32_C(1) << i;
-    }
+    bool lambert;
+    g.lobes = lobes & bsdf_lobes_with(bsdf, BSDF_CLASSIC);
+    struct vec3 albedo = bsdf_weight_of(bsdf, &g.lobes, &lambert);
+    g.plain = g.plain && lambert;
     if (g.lobes == 0)
         return vec3_all(0);
     /* In the units of the map, so that single precision suffices. */

@@ -47,9 +47,10 @@ bool photon_map_build(struct photon_map *map, const struct world *world, const s
                       double radius, struct pool *pool, struct error *error);
 void photon_map_destroy(struct photon_map *map);
 
-/* The light that the surface reflects towards hit->view from all photons around the hit that landed on its lit side. */
+/* The light that these lobes of the surface reflect towards hit->view from all photons around the hit that landed on
+ * its lit side. */
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct bsdf *bsdf);
+                             const struct bsdf *bsdf, uint32_t lobes);
 
 /* A unit vector in 32 bits: a point of the octahedron in 16 + 16 bits, wrong by at most 1e-4. */
 uint32_t photon_pack(struct vec3 direction);

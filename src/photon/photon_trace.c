@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
+#include "material/bsdf_select.h"
 #include "material/material_eval.h"
 #include "photon/photon_target_internal.h"
 #include "world/joint.h"
@@ -56,11 +57,7 @@ struct branching {
 };
 
 static struct branching branching_make(const struct bsdf *bsdf) {
-    struct branching branching = {.diffuse = 0};
-    for (int i = 0; i < bsdf->count; i++) {
-        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
-            branching.diffuse = vec3_max_abs(bsdf->lobes[i].weight);
-    }
+    struct branching branching = {.diffuse = bsdf_lambert(bsdf)};
     branching.count = bsdf_branches(bsdf, branching.branches);
     return branching;
 }
@@ -155,6 +152,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,
+                                                 .thin = primitive_is_thin(s->world, hit.primitive),
                                                  .joint = joint_boundary(&joint)};
         material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {

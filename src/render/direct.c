@@ -216,7 +216,7 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
     struct vec3 photons = {0, 0, 0};
     bool asked = state->caustics && !bsdf->dark;
     if (asked) {
-        photons = photon_map_light(state->caustics, world, hit, bsdf);
+        photons = photon_map_light(state->caustics, world, hit, bsdf, BSDF_ALL);
         sum = vec3_add(sum, photons);
     }
     OBSERVE(state->observer, OBSERVED_DIRECT,

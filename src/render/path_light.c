@@ -7,6 +7,7 @@
  * continues: both ways give the same light. */
 #include "light/light_edit.h"
 
+#include "material/bsdf_select.h"
 #include "material/medium.h"
 #include "render/path_light_internal.h"
 
@@ -113,10 +114,11 @@ static double share_of(double part, double all) {
 
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]) {
     const struct bsdf *bsdf = vertex->bsdf;
-    uint32_t of_kind[PATH_SCATTERINGS] = {0};
+    const uint32_t of_kind[PATH_SCATTERINGS] = {[SCATTERING_DIFFUSE] = lobes & bsdf_select(bsdf, BSDF_FOR_DIFFUSE),
+                                                [SCATTERING_SPECULAR] = lobes & bsdf_select(bsdf, BSDF_FOR_SPECULAR),
+                                                [SCATTERING_TRANSMISSION] =
+                                                    lobes & bsdf_select(bsdf, BSDF_FOR_TRANSMISSION)};
     struct vec3 sum = {0, 0, 0};
-    for (int i = 0; i < bsdf->count; i++)
-        of_kind[scattering_of(lobe_flags(bsdf->lobes[i].kind))] |= lobes & UINT32_C(1) << i;
     for (int i = 0; i < PATH_SCATTERINGS; i++) {
         out[i] = of_kind[i] ? scattered(vertex, of_kind[i], wi) : vec3_all(0);
         sum = vec3_add(sum, out[i]);

@@ -5,6 +5,7 @@
  * show the background, visible area lights and fog. All other rays are scattered: they add the light that a surface
  * receives, weighted against the samples of path_direct. */
 
+#include "material/bsdf_select.h"
 #include "material/medium.h"
 #include "math/range.h"
 #include "render/path_light_internal.h"
@@ -126,23 +127,12 @@ static void set_features(struct path *path, struct vec3 albedo, struct vec3 norm
 
 /* Records the features of a surface that scatters light in more than single directions, or emits light. */
 static void meet_features(struct path *path, const struct hit *hit, const struct bsdf *bsdf) {
-    struct vec3 albedo = light_albedo(bsdf->emission);
-    bool shows = vec3_max_abs(bsdf->emission) > 0;
-    double distance = hit->t * vec3_length(path->ray.direction), reflected = 0, refracted = 0;
-    for (int i = 0; i < bsdf->count; i++) {
-        const struct lobe *lobe = &bsdf->lobes[i];
-        unsigned flags = lobe_flags(lobe->kind);
-        if (flags & BSDF_EXPONENT)
-            continue;
-        bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
-        shows = shows || (!smooth && vec3_max_abs(lobe->weight) > 0);
-        albedo = vec3_add(albedo, lobe->weight);
-        *(flags & BSDF_TRANSMITS ? &refracted : &reflected) += vec3_max_abs(lobe->weight);
-    }
-    if (shows) {
-        set_features(path, albedo, bsdf->lit, distance);
-    } else if (refracted > 0 && path->parts->reflected == 0) {
-        path->parts->reflected = reflected / (reflected + refracted);
+    const struct bsdf_guide guide = bsdf_guide(bsdf, light_albedo(bsdf->emission));
+    double distance = hit->t * vec3_length(path->ray.direction);
+    if (guide.scatters || vec3_max_abs(bsdf->emission) > 0) {
+        set_features(path, guide.albedo, bsdf->lit, distance);
+    } else if (guide.refracted > 0 && path->parts->reflected == 0) {
+        path->parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
         path->parts->seen = vec3_scale(path->weight, path->parts->reflected);
     }
     path->travelled += distance;
@@ -214,28 +204,6 @@ static void leave_scene(const struct path_tracer *tracer, struct integrator_stat
     }
 }
 
-/* Selects the lobes that scatter. A highlight represents the mirror image of lights. If smooth traced lobes show
- * that image, the highlight only reflects lights that no ray can hit. Rough traced lobes reflect all lights, so the
- * highlight is omitted. */
-static void choose_lobes(struct path_vertex *vertex) {
-    const struct bsdf *bsdf = vertex->bsdf;
-    uint32_t highlights = 0, others = 0;
-    bool traced = false;
-    for (int i = 0; i < bsdf->count; i++) {
-        const struct lobe *lobe = &bsdf->lobes[i];
-        unsigned flags = lobe_flags(lobe->kind);
-        traced = traced || (flags & BSDF_TRACED);
-        if (vec3_max_abs(lobe->weight) == 0)
-            continue;
-        if (flags & BSDF_EXPONENT)
-            highlights |= UINT32_C(1) << i;
-        else
-            others |= UINT32_C(1) << i;
-    }
-    vertex->lobes = traced ? others : others | highlights;
-    vertex->substitute = traced && bsdf->alpha == 0 ? highlights : 0;
-}
-
 /* False: the path ends here. Paths with weights above 1 can end, too. The chance is the square root of the weight: if
  * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
  * noise than their rays cost. */
@@ -250,27 +218,14 @@ static bool survives(struct path *path, double u) {
 
 /* --- photons --- */
 
-/* The lobes that receive photons; none on surfaces that store no photons (photon_trace.c). */
-static uint32_t receiving_lobes(const struct bsdf *bsdf) {
-    double diffuse = 0;
-    for (int i = 0; i < bsdf->count; i++)
-        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
-            diffuse = fmax(diffuse, vec3_max_abs(bsdf->lobes[i].weight));
-    return diffuse > 0 && !bsdf->dark ? bsdf_lobes_with(bsdf, BSDF_CLASSIC) : 0;
-}
-
 /* The light of the photon map at the vertex. */
 static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                         const struct path_vertex *vertex) {
-    struct bsdf bsdf = *vertex->bsdf;
-    uint32_t lobes = vertex->lobes & receiving_lobes(&bsdf);
+    uint32_t lobes = vertex->lobes & bsdf_select(vertex->bsdf, BSDF_FOR_PHOTONS);
     if (lobes == 0 || path->depth + 2 > tracer->max_depth)
         return;
-    for (int i = 0; i < bsdf.count; i++)
-        if (!(lobes & UINT32_C(1) << i))
-            bsdf.lobes[i].weight = vec3_all(0);
-    struct vec3 light =
-        vec3_mul(path->weight, photon_map_light(&tracer->caustics, state->job->world, vertex->hit, &bsdf));
+    struct vec3 found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->bsdf, lobes);
+    struct vec3 light = vec3_mul(path->weight, found);
     path->light = vec3_add(path->light, light);
     /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
     struct vec3 diffuse[PATH_SCATTERINGS];
@@ -297,7 +252,7 @@ static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lob
  * from such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
     uint32_t traced = vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED);
-    uint32_t receiving = vertex->lobes & receiving_lobes(vertex->bsdf);
+    uint32_t receiving = vertex->lobes & bsdf_select(vertex->bsdf, BSDF_FOR_PHOTONS);
     bool delta = (sample->flags & BSDF_DELTA) != 0;
     struct vec3 by_traced = delta ? vec3_all(1) : share_of_lobes(vertex, traced, sample->direction);
     path->thrown = vec3_mul(vec3_add(path->received, path->thrown), by_traced);
@@ -358,6 +313,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     const struct material_context context = {.specular = settings->specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
+                                             .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint),
                                              .observer = state->observer ? observe_material : NULL,
                                              .observer_context = state->observer,
@@ -388,7 +344,8 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     double side = hit->front ? hit->offset : -hit->offset;
     vertex.receiver = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
                                               bsdf.side, hit->primitive};
-    choose_lobes(&vertex);
+    vertex.lobes = bsdf_select(&bsdf, BSDF_FOR_PATHS);
+    vertex.substitute = bsdf_select(&bsdf, BSDF_FOR_UNSEEN_LIGHTS);
     if (tracer->photon_lights) {
         add_photons(tracer, state, path, &vertex);
         vertex.thrown = vec3_add(path->received, path->thrown);

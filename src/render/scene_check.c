@@ -265,10 +265,35 @@ static void check_insides(struct check *check) {
     }
 }
 
+static void origin_of(const struct node *node, char *text, size_t size) {
+    if (node->line > 0)
+        (void)snprintf(text, size, " (made at %.200s:%u)", node->file, (unsigned)node->line);
+}
+
+/* Names each such node, in one picture of a run. */
+static void check_thin_walls(const struct check *check) {
+    const struct settings *settings = &check->job->settings;
+    const struct world *world = check->world;
+    if ((settings->integrator == INTEGRATOR_WHITTED && settings->caustics.photons == 0) ||
+        (*check->noticed >> FAULT_THIN_WALL & 1))
+        return;
+    for (uint32_t i = 0; i < world->prototype_count; i++) {
+        const struct node *node = world->authored.nodes[i];
+        char position[256] = "";
+        if (!world->prototypes[i].by_shape)
+            continue;
+        *check->noticed &= ~(1u << FAULT_THIN_WALL);
+        origin_of(node, position, sizeof position);
+        give(check, FAULT_THIN_WALL,
+             "'%.100s' is transparent and open, so it is a thin wall, which does not refract (thin_walled = true says "
+             "so, thin_walled = false refracts)%s",
+             node->name, position);
+    }
+}
+
 static void notice_empty(const struct check *check, const struct node *solid) {
     char position[256] = "";
-    if (solid->line > 0)
-        (void)snprintf(position, sizeof position, " (made at %.200s:%u)", solid->file, (unsigned)solid->line);
+    origin_of(solid, position, sizeof position);
     give(check, FAULT_SOLID, "'%.100s' is empty: nothing is left of its operands%s", solid->name, position);
 }
 
@@ -293,6 +318,7 @@ void scene_check(const struct render_job *job, unsigned *noticed, world_warning 
             notice_empty(&check, primitive_node(world, i));
     }
     check_materials(&check);
+    check_thin_walls(&check);
     if (moves || check_view(&check)) {
         check_size(&check);
         check_light(&check);

@@ -2,6 +2,7 @@
 #include "render/style_internal.h"
 
 #include "base/unreachable.h"
+#include "material/bsdf_select.h"
 #include "render/direct_internal.h"
 
 #include <math.h>
@@ -14,27 +15,14 @@ static double largest(struct vec3 c) {
 /* The light of all lights on a white matt surface. */
 static struct vec3 matt_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
                               uint64_t key) {
-    struct bsdf matt = *bsdf;
-    matt.count = 1;
-    matt.lobes[0] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = vec3_all(1), .share = 1};
-    matt.ambient = vec3_all(0);
+    const struct bsdf matt = bsdf_matt_copy(bsdf);
     return direct_light(state, hit, &matt, key);
 }
 
 /* Only the highlights; *colour: the sum of their weights. */
 static struct vec3 highlight(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
                              uint64_t key, struct vec3 *colour) {
-    struct bsdf shiny = *bsdf;
-    shiny.count = 0;
-    shiny.ambient = vec3_all(0);
-    *colour = vec3_all(0);
-    for (int i = 0; i < bsdf->count; i++) {
-        unsigned flags = lobe_flags(bsdf->lobes[i].kind);
-        if (!(flags & BSDF_CLASSIC) || flags & BSDF_DIFFUSE)
-            continue;
-        shiny.lobes[shiny.count++] = bsdf->lobes[i];
-        *colour = vec3_add(*colour, bsdf->lobes[i].weight);
-    }
+    const struct bsdf shiny = bsdf_shiny_copy(bsdf, colour);
     return shiny.count > 0 && largest(*colour) > 0 ? direct_light(state, hit, &shiny, key) : vec3_all(0);
 }
 

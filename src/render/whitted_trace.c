@@ -1,5 +1,6 @@
 /* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
  * and the position in the tree of rays. */
+#include "material/bsdf_select.h"
 #include "material/medium.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
@@ -228,8 +229,7 @@ static double rough_share(const struct bsdf_branch *branches, int count) {
 
 /* Whether the rough branches divide one number of rays. After a rough surface, glass sends one ray to each side. */
 static bool is_divided(const struct bsdf *bsdf, const struct bsdf_branch *rough, const struct path *path) {
-    return (lobe_flags(bsdf->lobes[rough->lobe].kind) & BSDF_ROUGH) &&
-           !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
+    return bsdf_branch_is_layered(bsdf, rough) && !(path->rough && bsdf_lobes_with(bsdf, BSDF_TRANSMITS));
 }
 
 /* All rough branches of a layered material: as many rays as their share of light justifies, which the samples of a
@@ -354,8 +354,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
 }
 
 static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
-    bool through =
-        world->material_has_medium[hit->material] || primitive_prototype(world, hit->primitive)->holes;
+    bool through = world->material_has_medium[hit->material] || primitive_prototype(world, hit->primitive)->holes;
     out->t = through ? INFINITY : hit->t;
     out->primitive = hit->primitive;
     out->material = hit->material;

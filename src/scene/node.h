@@ -39,6 +39,9 @@ enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
     X(CULL_BACK, "back")                                                                                               \
     X(CULL_FRONT, "front")
 enum node_cull { NODE_CULLS(LIST_MEMBER) };
+/* Whether a transparent surface is a wall without thickness, whose two sides have the same medium. WALLS_BY_SHAPE: if
+ * it is open (flatten.c). */
+enum node_walls { WALLS_BY_SHAPE, WALLS_THIN, WALLS_OF_SOLID };
 /* A difference is the first operand minus the others, an inverse has one; of NODE_CLIPPED and NODE_BOUNDED the first
  * operand is the visible object, of any kind, and the second the solid that clips it, or that contains it. */
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
@@ -93,6 +96,7 @@ struct node {
     const char *const *slot_names; /* as many, or NULL */
     uint32_t slot_count;
     enum node_cull cull;
+    enum node_walls walls;               /* not of operands of solids */
     const struct texture_image *texture; /* set_texture: over kd of the material; the mapping is that of the shape */
     const struct bump *bump;             /* set_bump, likewise */
     enum node_csg operation;             /* NODE_CSG */

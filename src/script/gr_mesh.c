@@ -22,6 +22,7 @@ enum {
     MESH_WELD,
     MESH_FLIP,
     MESH_CULL,
+    MESH_THIN_WALLED,
     MESH_MATERIALS,
     MESH_TIME,
     MESH_ANIMATION,
@@ -47,6 +48,7 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are reversed."},
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
+    [MESH_THIN_WALLED] = THIN_WALLED,
     [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
                         "Materials by the names of the parts in the file; with face_materials, a list."},
     [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
@@ -299,6 +301,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
         struct model_placing placing = {.name = name,
                                         .material = args[MESH_MATERIAL].material,
                                         .cull = cull,
+                                        .walls = walls_of(&args[MESH_THIN_WALLED]),
                                         .part_names = parts->names,
                                         .part_materials = parts->materials,
                                         .part_count = parts->count};
@@ -326,6 +329,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
         return false;
     node->material = args[MESH_MATERIAL].material;
     node->cull = cull;
+    node->walls = walls_of(&args[MESH_THIN_WALLED]);
     node->shape.kind = SHAPE_MESH;
     node->shape.mesh = mesh;
     if (args[MESH_MATERIALS].count > 0 && !keep_slots(context, &args[MESH_MATERIALS], node, error))

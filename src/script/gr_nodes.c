@@ -137,30 +137,28 @@ static bool gr_joint(struct script_context *context, const struct script_value *
     return add_children(context, node, &args[JOINT_CHILDREN], error);
 }
 
-enum { SPHERE_NAME, SPHERE_MATERIAL, SPHERE_CENTRE, SPHERE_RADIUS };
+enum { SPHERE_CENTRE = SHAPE_FIRST, SPHERE_RADIUS };
 static const struct script_parameter sphere_parameters[] = {
-    [SPHERE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'sphere'", NAME_HELP},
-    [SPHERE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    SHAPE("sphere"),
     [SPHERE_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre."},
     [SPHERE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Radius."},
 };
 
 static bool gr_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
-    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SPHERE_NAME], "sphere"), error);
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SHAPE_NAME], "sphere"), error);
     if (!node)
         return false;
-    node->material = args[SPHERE_MATERIAL].material;
+    set_shape_fields(args, node);
     node->shape.kind = SHAPE_SPHERE;
     node->shape.sphere.centre = args[SPHERE_CENTRE].vector;
     node->shape.sphere.radius = args[SPHERE_RADIUS].given ? args[SPHERE_RADIUS].number : 1;
     return give(result, node);
 }
 
-enum { CUBE_NAME, CUBE_MATERIAL, CUBE_CORNER, CUBE_SIZE };
+enum { CUBE_CORNER = SHAPE_FIRST, CUBE_SIZE };
 static const struct script_parameter cube_parameters[] = {
-    [CUBE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'cube'", NAME_HELP},
-    [CUBE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    SHAPE("cube"),
     [CUBE_CORNER] = {"corner", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}",
                      "The corner with the smallest coordinates."},
     [CUBE_SIZE] = {"size", KIND_SIZE, OPTIONAL | NOT_ZERO, ANY, NULL, "1",
@@ -169,12 +167,12 @@ static const struct script_parameter cube_parameters[] = {
 
 static bool gr_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
-    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[CUBE_NAME], "cube"), error);
+    struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SHAPE_NAME], "cube"), error);
     if (!node)
         return false;
     struct vec3 corner = args[CUBE_CORNER].vector, size = args[CUBE_SIZE].given ? args[CUBE_SIZE].vector : vec3_all(1);
     struct vec3 other = vec3_add(corner, size);
-    node->material = args[CUBE_MATERIAL].material;
+    set_shape_fields(args, node);
     node->shape.kind = SHAPE_BOX;
     node->shape.box = (struct box){vec3_min(corner, other), vec3_max(corner, other)};
     struct vec3 min = node->shape.box.min, max = node->shape.box.max;
@@ -207,6 +205,7 @@ static bool gr_geometry(struct script_context *context, const struct script_valu
     node->slot_names = primitive->slot_names;
     node->slot_count = primitive->slot_count;
     node->cull = primitive->cull;
+    node->walls = primitive->walls;
     node->texture = primitive->texture;
     node->bump = primitive->bump;
     node->operation = primitive->operation;

@@ -22,7 +22,7 @@ static struct node *shape_node(struct script_context *context, const struct scri
     const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
     if (node)
-        node->material = args[SHAPE_MATERIAL].material;
+        set_shape_fields(args, node);
     return node;
 }
 

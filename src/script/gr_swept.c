@@ -23,7 +23,7 @@ static bool give_node(struct script_context *context, const struct script_value 
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
     if (!node)
         return false;
-    node->material = args[SHAPE_MATERIAL].material;
+    set_shape_fields(args, node);
     node->shape = *shape;
     result->pointer = node;
     return true;

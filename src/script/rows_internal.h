@@ -28,9 +28,22 @@
 #define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}
 
 /* Every shape begins with these parameters; its own start at SHAPE_FIRST. */
-enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
+enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_FIRST };
+#define THIN_WALLED_HELP                                                                                               \
+    "Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons."
+#define THIN_WALLED                                                                                                    \
+    { "thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "whether it is open", THIN_WALLED_HELP }
 #define SHAPE(otherwise)                                                                                               \
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
-    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
+    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},  \
+    [SHAPE_THIN_WALLED] = THIN_WALLED
+/* What every shape takes from them. */
+static inline enum node_walls walls_of(const struct script_value *thin_walled) {
+    return !thin_walled->given ? WALLS_BY_SHAPE : thin_walled->boolean ? WALLS_THIN : WALLS_OF_SOLID;
+}
+static inline void set_shape_fields(const struct script_value *args, struct node *node) {
+    node->material = args[SHAPE_MATERIAL].material;
+    node->walls = walls_of(&args[SHAPE_THIN_WALLED]);
+}
 
 #endif

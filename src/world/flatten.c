@@ -113,20 +113,73 @@ static bool count_drawable(struct flattening *f, const struct node *root, uint32
 
 /* --- placing --- */
 
-static bool any_slot_has_holes(const struct flattening *f, uint32_t material, uint32_t slot_count) {
+typedef bool material_test(const struct material *material);
+
+static bool any_slot(const struct flattening *f, uint32_t material, uint32_t slot_count, material_test *is) {
     const struct material **materials = f->world->authored.materials;
     for (uint32_t i = 0; i < (slot_count > 1 ? slot_count : 1); i++)
-        if (material_has_holes(materials[material + i]))
+        if (is(materials[material + i]))
             return true;
     return false;
 }
 
-static bool any_holes(const struct flattening *f, const struct prototype *prototype) {
+/* Whether one of the materials of a prototype is such; what clips it has none. */
+static bool any_material(const struct flattening *f, const struct prototype *prototype, material_test *is) {
     const struct csg *csg = prototype->geometry.csg;
-    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
-        if (any_slot_has_holes(f, csg->leaves[i].material, csg->leaves[i].slot_count))
+    uint32_t end = !csg ? 0 : csg->clipped ? csg->program[csg->solid_length].leaf : csg->leaf_count;
+    for (uint32_t i = 0; i < end; i++)
+        if (any_slot(f, csg->leaves[i].material, csg->leaves[i].slot_count, is))
             return true;
-    return !csg && any_slot_has_holes(f, prototype->material, prototype->slot_count);
+    return !csg && any_slot(f, prototype->material, prototype->slot_count, is);
+}
+
+/* Whether a box is wholly in a leaf, which its corners tell of convex ones; of others it is not known. */
+static bool holds_box(const struct csg_leaf *leaf, const struct box *box) {
+    enum hit_convexity convexity = shape_convexity(&leaf->shape);
+    bool holds = convexity == CONVEXITY_BEHIND || convexity == CONVEXITY_PLANAR;
+    for (int i = 0; i < 8 && holds; i++) {
+        struct vec3 corner = vec3_make(i & 1 ? box->min.x : box->max.x, i & 2 ? box->min.y : box->max.y,
+                                       i & 4 ? box->min.z : box->max.z);
+        holds = vec3_finite(corner) &&
+                shape_contains(&leaf->shape, affine_point(&leaf->csg_from_leaf.inverse, corner), NULL);
+    }
+    return holds;
+}
+
+/* Whether a clipped solid is certainly whole: in the intersection of convex solids. */
+static bool is_whole(const struct csg *csg) {
+    uint32_t shown = csg->program[csg->solid_length].leaf;
+    struct box solid = box_empty();
+    bool whole = !csg->open;
+    for (uint32_t i = 0; i < shown; i++) {
+        struct box box = shape_bounds_under(&csg->leaves[i].shape, &csg->leaves[i].csg_from_leaf.forward);
+        solid = box_join(solid, box);
+    }
+    for (uint32_t i = csg->solid_length; whole && i < csg->program_length; i++) {
+        const struct csg_token *token = &csg->program[i];
+        whole = token->operation == CSG_LEAF ? holds_box(&csg->leaves[token->leaf], &solid)
+                                             : token->operation == CSG_INTERSECTION;
+    }
+    return whole;
+}
+
+/* A transparent surface that encloses nothing is a thin wall, unless the node says otherwise; solids with small holes
+ * enclose nearly all that they seem to. */
+static bool find_walls(struct flattening *f, enum node_walls walls, struct prototype *prototype) {
+    const double smallest_opening = 0.05; /* of a sheet, as a share of its area */
+    const struct mesh *mesh = geometry_mesh(&prototype->geometry);
+    const struct csg *csg = prototype->geometry.csg;
+    bool by_shape = walls == WALLS_BY_SHAPE && !f->unqueried && !geometry_is_closed(&prototype->geometry);
+    if ((walls != WALLS_THIN && !by_shape) || !any_material(f, prototype, material_divides_media))
+        return true;
+    double opening = 1;
+    if (by_shape && mesh && !mesh_opening(mesh, &opening))
+        return error_no_memory(f->error, "the edges of a mesh");
+    by_shape = by_shape && opening > smallest_opening && !(csg && is_whole(csg));
+    prototype->is_thin = by_shape || walls == WALLS_THIN;
+    prototype->by_shape = by_shape;
+    f->world->has_thin_walls = f->world->has_thin_walls || prototype->is_thin;
+    return true;
 }
 
 /* Makes room for one more entry in a list that doubles. */
@@ -203,6 +256,8 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
 
 /* The name of a prototype's node in messages. */
 static bool add_prototype(struct flattening *f, const struct node *node, struct prototype *prototype) {
+    if (!find_walls(f, node->walls, prototype))
+        return false;
     struct world *world = f->world;
     uint32_t capacity = f->prototype_capacity;
     struct prototype *prototypes =
@@ -215,7 +270,7 @@ static bool add_prototype(struct flattening *f, const struct node *node, struct 
     if (!nodes)
         return error_no_memory(f->error, "the primitives of the scene");
     world->authored.nodes = nodes;
-    prototype->holes = any_holes(f, prototype);
+    prototype->holes = any_material(f, prototype, material_has_holes);
     prototypes[world->prototype_count] = *prototype;
     nodes[world->prototype_count++] = node;
     return true;

@@ -26,12 +26,13 @@ struct junction {
     int count;
 };
 
-static const struct material_context plain = {.total_reflection = true};
-
-/* Holes are no surface. */
+/* Holes are no surface. Whitted's integrator knows thin walls of materials alone. */
 static void add_face(struct junction *junction, const struct hit *hit, const struct crossing *crossing) {
+    const struct world *world = junction->world;
+    const struct material_context context = {.total_reflection = true,
+                                             .thin = !world->classic && primitive_is_thin(world, hit->primitive)};
     struct bsdf bsdf;
-    material_eval(&junction->world->materials[hit->material], hit, junction->ray->media, &plain, &bsdf);
+    material_eval(&world->materials[hit->material], hit, junction->ray->media, &context, &bsdf);
     if (!(bsdf.opacity > 0) || junction->count == FACES)
         return;
     struct face *face = &junction->faces[junction->count++];
@@ -120,15 +121,18 @@ static bool has_thin_wall(const struct junction *junction) {
     return false;
 }
 
-/* The surface that scatters: the roughest, then that of the solid that is entered, then the first one. */
+/* The surface that scatters: one between media rather than a thin wall, the roughest, then that of the solid that is
+ * entered, then the first one. */
 static const struct face *roughest_face(const struct junction *junction) {
     const struct face *best = &junction->faces[0];
     for (int i = 1; i < junction->count; i++) {
         const struct face *face = &junction->faces[i];
         bool enters = face->boundary.entering && !best->boundary.entering;
         bool leaves = !face->boundary.entering && best->boundary.entering;
-        if (face->rank > best->rank ||
-            (face->rank == best->rank && (enters || (!leaves && face->primitive < best->primitive))))
+        if (face->boundary.thin != best->boundary.thin)
+            best = best->boundary.thin ? face : best;
+        else if (face->rank > best->rank ||
+                 (face->rank == best->rank && (enters || (!leaves && face->primitive < best->primitive))))
             best = face;
     }
     return best;

@@ -397,7 +397,7 @@ void world_medium_stack(const struct world *world, const struct inside_query *qu
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
         uint32_t material = prototype->geometry.csg ? prototype->geometry.csg->leaves[0].material : prototype->material;
-        if (world->material_has_medium[material])
+        if (!prototype->is_thin && world->material_has_medium[material])
             medium_stack_enter(out, world_solid(world, inside[i], material));
     }
 }

@@ -37,6 +37,8 @@ struct prototype {
     bool is_later_part;  /* not the first of them */
     enum hit_convexity convexity; /* unused for CSG, like material */
     bool holes;                   /* some of its materials have an opacity texture */
+    bool is_thin;                 /* a thin wall, for paths and photons; `by_shape`: because it is open */
+    bool by_shape;
 };
 
 /* The authored objects, for inspection: searches and shading never read this. Borrows from the scene. */
@@ -93,6 +95,7 @@ struct world {
     struct touching touching;
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     bool classic;               /* as requested */
+    bool has_thin_walls;        /* of prototypes */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
@@ -162,6 +165,10 @@ static inline const struct geometry *primitive_geometry(const struct world *worl
 static inline bool primitive_moves(const struct world *world, uint32_t primitive) {
     uint32_t linear = world->primitives[primitive].linear;
     return linear != LINEAR_NONE && (linear & LINEAR_MOVING) != 0;
+}
+/* Its surface is a thin wall, for paths and photons. */
+static inline bool primitive_is_thin(const struct world *world, uint32_t primitive) {
+    return world->has_thin_walls && primitive_prototype(world, primitive)->is_thin;
 }
 /* The node that a primitive came from. */
 static inline const struct node *primitive_node(const struct world *world, uint32_t primitive) {

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lines about surfaces at the same place and about open glass, which are no matter of files. */
+/* Lines about surfaces at the same place, which are no matter of files. */
 static const char *const known[] = {"flush boxes, whitted", "flush boxes, path, furnace", "four flush slabs, furnace",
-                                    "glass sheet, furnace", "a decal flush on a box"};
+                                    "a decal flush on a box"};
 
 static bool is_known(const char *line) {
     for (size_t k = 0; k < sizeof known / sizeof *known; k++)

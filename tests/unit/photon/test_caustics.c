@@ -552,7 +552,7 @@ TEST(the_map_gives_the_sum_over_all_discs) {
     for (int i = 0; i < 300; i++) {
         struct hit hit = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .front = true, .view = {0, 1, 0}};
         hit.point = vec3_make(test_uniform(&random, -3, 3), 0, test_uniform(&random, -3, 3));
-        struct vec3 light = photon_map_light(&map, &s.world, &hit, &bsdf);
+        struct vec3 light = photon_map_light(&map, &s.world, &hit, &bsdf, BSDF_ALL);
         double sum = 0;
         for (uint32_t k = 0; k < map.count; k++) {
             struct vec3 d = vec3_sub(photon_position(&map, k), hit.point);

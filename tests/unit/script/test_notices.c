@@ -50,6 +50,26 @@ TEST(an_option_without_effect_has_one_notice) {
     test_free_result(&result);
 }
 
+#define PANE(fields)                                                                                                   \
+    "local glass = gr.material{kd = {0, 0, 0}, ks = {1, 1, 1}, refract = 1, ior = 1.5} local s = gr.node('s')\n"       \
+    "s:add_child(gr.instances{of = gr.square{name = 'pane', material = glass" fields                                   \
+    "}, at = {{0, 0, 0}, {0, 1, 0}}})\n"
+TEST(an_open_transparent_surface_has_one_notice_for_its_node_unless_the_node_decides) {
+    prints(
+        "--integrator path --spp 1", PANE("") PICTURE "}",
+        "gr.render: 'pane' is transparent and open, so it is a thin wall, which does not refract (thin_walled = true "
+        "says so, thin_walled = false refracts)");
+    prints("--caustics 100", PANE("") PICTURE "}", "'pane' is transparent and open");
+    prints("", PANE("") PICTURE "}", NULL);
+    prints("--integrator path --spp 1", PANE(", thin_walled = true") PICTURE "}", NULL);
+    prints("--integrator path --spp 1", PANE(", thin_walled = false") PICTURE "}", NULL);
+    struct test_result result =
+        test_gray_scene(PANE("") "for i = 1, 2 do\n" PICTURE "} end", "--integrator path --spp 1 scene.lua", NULL);
+    const char *first = strstr(result.err, "'pane'");
+    CHECK(first && !strstr(first + 1, "'pane'"));
+    test_free_result(&result);
+}
+
 TEST(a_field_without_effect_has_one_notice_for_its_line) {
     prints("", BALL PICTURE ", spp = 4}", "scene.lua:2: gr.render: spp has no effect: it is for integrator path");
     prints("", BALL PICTURE ", blades = 5}", "blades has no effect without aperture");

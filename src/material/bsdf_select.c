@@ -1,0 +1,114 @@
+/* Lobes by purpose. */
+#include "material/bsdf_select.h"
+
+static bool is_black(struct vec3 c) {
+    return c.x == 0 && c.y == 0 && c.z == 0;
+}
+
+/* Lobes with a weight: highlights, and the others. */
+struct lobe_sets {
+    uint32_t highlights, others;
+    bool traced; /* there are traced lobes, whatever their weight */
+};
+
+static struct lobe_sets sets_of(const struct bsdf *bsdf) {
+    struct lobe_sets sets = {0, 0, false};
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        unsigned flags = lobe_flags(lobe->kind);
+        sets.traced = sets.traced || (flags & BSDF_TRACED);
+        if (!is_black(lobe->weight))
+            *(flags & BSDF_EXPONENT ? &sets.highlights : &sets.others) |= UINT32_C(1) << i;
+    }
+    return sets;
+}
+
+uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose purpose) {
+    uint32_t all = (UINT32_C(1) << bsdf->count) - 1;
+    struct lobe_sets sets;
+    switch (purpose) {
+    case BSDF_FOR_PATHS:
+        sets = sets_of(bsdf);
+        return sets.traced ? sets.others : sets.others | sets.highlights;
+    case BSDF_FOR_UNSEEN_LIGHTS:
+        if (bsdf->alpha != 0)
+            return 0;
+        sets = sets_of(bsdf);
+        return sets.traced ? sets.highlights : 0;
+    case BSDF_FOR_PHOTONS:
+        return bsdf_lambert(bsdf) > 0 && !bsdf->dark ? bsdf_lobes_with(bsdf, BSDF_CLASSIC) : 0;
+    case BSDF_FOR_DIFFUSE:
+        return bsdf_lobes_with(bsdf, BSDF_DIFFUSE) & ~bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
+    case BSDF_FOR_SPECULAR:
+        return all & ~bsdf_lobes_with(bsdf, BSDF_DIFFUSE | BSDF_TRANSMITS);
+    case BSDF_FOR_TRANSMISSION:
+        return bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
+    }
+    return 0;
+}
+
+struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert) {
+    struct vec3 sum = {0, 0, 0};
+    uint32_t left = 0;
+    *lambert = true;
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        if (!(*lobes >> i & 1) || is_black(lobe->weight))
+            continue;
+        left |= UINT32_C(1) << i;
+        *lambert = *lambert && (lobe_flags(lobe->kind) & BSDF_LAMBERT);
+        sum = vec3_add(sum, lobe->weight);
+    }
+    *lobes = left;
+    return sum;
+}
+
+double bsdf_lambert(const struct bsdf *bsdf) {
+    double largest = 0;
+    for (int i = 0; i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
+            largest = fmax(largest, vec3_max_abs(bsdf->lobes[i].weight));
+    return largest;
+}
+
+bool bsdf_branch_is_layered(const struct bsdf *bsdf, const struct bsdf_branch *branch) {
+    return lobe_flags(bsdf->lobes[branch->lobe].kind) & BSDF_ROUGH;
+}
+
+struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct vec3 glow) {
+    struct bsdf_guide guide = {.albedo = glow};
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        unsigned flags = lobe_flags(lobe->kind);
+        if (flags & BSDF_EXPONENT)
+            continue;
+        bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
+        guide.scatters = guide.scatters || (!smooth && !is_black(lobe->weight));
+        guide.albedo = vec3_add(guide.albedo, lobe->weight);
+        *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += vec3_max_abs(lobe->weight);
+    }
+    return guide;
+}
+
+struct bsdf bsdf_matt_copy(const struct bsdf *bsdf) {
+    struct bsdf matt = *bsdf;
+    matt.count = 1;
+    matt.lobes[0] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = vec3_all(1), .share = 1};
+    matt.ambient = vec3_all(0);
+    return matt;
+}
+
+struct bsdf bsdf_shiny_copy(const struct bsdf *bsdf, struct vec3 *colour) {
+    struct bsdf shiny = *bsdf;
+    shiny.count = 0;
+    shiny.ambient = vec3_all(0);
+    *colour = vec3_all(0);
+    for (int i = 0; i < bsdf->count; i++) {
+        unsigned flags = lobe_flags(bsdf->lobes[i].kind);
+        if (!(flags & BSDF_CLASSIC) || flags & BSDF_DIFFUSE)
+            continue;
+        shiny.lobes[shiny.count++] = bsdf->lobes[i];
+        *colour = vec3_add(*colour, bsdf->lobes[i].weight);
+    }
+    return shiny;
+}
