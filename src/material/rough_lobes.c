@@ -57,14 +57,34 @@ static double stretch_towards(const struct bsdf_facets *facets, struct vec3 dire
     return albedo_stretch(fabs(vec3_dot(direction, d->normal)), cos_double, d->alpha_along, d->alpha_across);
 }
 
-/* A fit to the means over directions of the sums of stretched_boundary, for indices from 1.2 to 2.5: within 3 percent of
- * lacks above .05, .3 percent of the light below. eta = index on the side of the direction / index behind; 1: facets that reflect all. */
+/* The means over directions of the sums of stretched_boundary, over those of one width: a table between whose nodes it
+ * is linear. eta: index on the side of the direction / index behind. */
+enum { STRETCH_INDICES = 5, STRETCH_WIDTHS = 15, STRETCH_RATIOS = 5 };
+static const double stretch_min_index = 1.1, stretch_max_index = 2.5, stretch_min_width = 0.3;
+#include "material/boundary_stretch_internal.h"
+
+/* The node below a position from 0 to 1, and how far beyond it. */
+static int node_below(double position, int count, double *beyond) {
+    double at = fmin(fmax(position, 0), 1) * (count - 1);
+    int node = at < count - 1 ? (int)at : count - 2;
+    *beyond = at - node;
+    return node;
+}
+
 static double boundary_stretch(const struct facet_distribution *d, double eta) {
-    double rest = 1 - d->alpha_along, ratio = d->alpha_across / d->alpha_along;
-    double amount = (1 - ratio) * (1 - ratio) * (1 + ratio / 2);
-    if (eta > 1)
-        return 1.01 - amount * fmax(0.094 - 0.03 * eta, 0) * (1 - rest * rest * rest);
-    return 1 + (0.02 + amount * (0.155 - 0.25 * rest * rest)) * fmin(2 * (1 / eta - 1), 1);
+    double index = eta > 1 ? eta : 1 / eta, part[3], sum = 0;
+    if (eta == 1)
+        return 1;
+    int e = node_below(el_log(index / stretch_min_index) / el_log(stretch_max_index / stretch_min_index),
+                       STRETCH_INDICES, &part[0]);
+    int w = node_below((sqrt(d->alpha_along) - stretch_min_width) / (1 - stretch_min_width), STRETCH_WIDTHS, &part[1]);
+    int r = node_below(sqrt(d->alpha_across / d->alpha_along), STRETCH_RATIOS, &part[2]);
+    for (int i = 0; i < 8; i++) {
+        int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+        double weight = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
+        sum += weight * (double)boundary_stretches[eta > 1][e + x][w + y][r + z];
+    }
+    return sum;
 }
 
 static double mean_lack(const struct bsdf_facets *facets, double mean_albedo, double eta) {
@@ -306,7 +326,7 @@ static __attribute__((noinline)) struct facet_shares stretched_boundary(const st
     view = vec3_add_scaled(view, d->along, fabs(vec3_dot(direction, d->along)));
     view = vec3_add_scaled(view, d->across, fabs(vec3_dot(direction, d->across)));
     const bool dense = eta > 1; /* total reflection divides the facets */
-    const int points = dense ? 89 : 34, step = dense ? 55 : 21;
+    const int points = dense ? 233 : 34, step = dense ? 144 : 21;
     double reflected = 0, passed = 0, all = 0;
     for (int i = 0; i < points; i++) {
         double s = (i + 0.5) / points, t = (i * step % points + 0.5) / points, weight = s * (1 - s) * t * (1 - t);

@@ -216,7 +216,7 @@ static struct vec3 random_colour(struct test_random *random) {
 }
 
 /* Under a sky that grows brighter to the top, beside a large lamp. */
-TEST_TIMES(balls_of_random_materials_are_the_same_with_and_without_sampled_lights, 50) {
+TEST_TIMES(balls_of_random_materials_are_the_same_with_and_without_sampled_lights, 5) {
     static const double stops[2][4] = {{-0.5, 0.1, 0.2, 0.3}, {1, 1, 0.8, 0.6}};
     const struct effort effort = {ESTIMATE_SIZE_MAX, times > 1 ? 100 : 12, 1};
     struct test_random random = {times > 1 ? 21 : 22};
