@@ -21,7 +21,7 @@ static void destroy_model(void *object) {
     mem_free(object);
 }
 
-/* Meshes that the last reading of the file made, too (at another time, say), take no memory again. */
+/* Meshes that the last reading of the file made at another time take no memory again. */
 static void share_meshes(const struct assets *assets, const char *canonical, struct model *model) {
     const struct asset_object *entry = assets->objects;
     size_t length = strlen(canonical);
@@ -65,7 +65,8 @@ struct model *model_asset(struct assets *assets, const char *path, const char *c
         mem_free(model);
         return NULL;
     }
-    share_meshes(assets, canonical, model);
+    if (options->animated)
+        share_meshes(assets, canonical, model);
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!assets_keep_mesh(assets, model_meshes(model)[i].mesh, error)) {
             destroy_model(model);

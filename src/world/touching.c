@@ -51,18 +51,20 @@ struct finder {
     bool failed;
 };
 
-static void add_to(struct finder *f, struct list *list, const void *item, size_t size) {
+/* False: no memory. */
+static bool add_to(struct finder *f, struct list *list, const void *item, size_t size) {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity ? 2 * list->capacity : 64;
         void *items = mem_resize_array(list->items, capacity, size);
         if (!items) {
             f->failed = true;
-            return;
+            return false;
         }
         list->items = items;
         list->capacity = capacity;
     }
     memcpy((char *)list->items + list->count++ * size, item, size);
+    return true;
 }
 
 /* --- what a surface is made of --- */
@@ -95,8 +97,7 @@ static void add_plane(struct finder *f, struct make *make, const struct transfor
     make->many = make->planes == PLANES;
     if (make->many)
         return;
-    add_to(f, &f->planes, &plane, sizeof plane);
-    make->planes++;
+    make->planes += add_to(f, &f->planes, &plane, sizeof plane);
 }
 
 static struct plane plane_of_triangle(const struct mesh *mesh, uint32_t triangle) {
@@ -109,8 +110,7 @@ static struct plane plane_of_triangle(const struct mesh *mesh, uint32_t triangle
 static void add_round(struct finder *f, struct make *make, const struct transform *map, struct vec3 centre) {
     make->kinds |= MADE_OF_ROUND;
     centre = affine_point(&map->forward, centre);
-    add_to(f, &f->centres, &centre, sizeof centre);
-    make->centres++;
+    make->centres += add_to(f, &f->centres, &centre, sizeof centre);
 }
 
 static void add_ends(struct finder *f, struct make *make, const struct transform *map,
@@ -119,8 +119,7 @@ static void add_ends(struct finder *f, struct make *make, const struct transform
     const struct axis axis = {affine_point(&map->forward, q->base),
                               vec3_normalize(affine_vector(&map->forward, q->axis))};
     make->kinds |= MADE_OF_AXIAL;
-    make->axes++;
-    add_to(f, &f->axes, &axis, sizeof axis);
+    make->axes += add_to(f, &f->axes, &axis, sizeof axis);
     for (int i = 0; i < 2 && !q->open; i++)
         if (isfinite(ends[i]))
             add_plane(f, make, map, (struct plane){vec3_add_scaled(q->base, q->axis, ends[i]), q->axis});
@@ -337,7 +336,7 @@ static bool find_pairs(struct finder *f, const struct box_tree *tree, struct poo
         while (box_tree_meeting_next(&meeting, &other)) {
             bool from_other = other < i && (all || make_of(f, other)->transparent);
             if (other != i && !from_other && may_share(f, i, other))
-                add_to(f, &f->pairs, &(struct pair){i, other}, sizeof(struct pair));
+                (void)add_to(f, &f->pairs, &(struct pair){i, other}, sizeof(struct pair));
         }
     }
     return true;
@@ -355,7 +354,7 @@ static bool make_lists(struct finder *f, struct touching *touching, struct arena
     size_t once = f->pairs.count;
     for (size_t i = 0; i < once && !f->failed; i++) {
         struct pair pair = ((const struct pair *)f->pairs.items)[i];
-        add_to(f, &f->pairs, &(struct pair){pair.b, pair.a}, sizeof pair);
+        (void)add_to(f, &f->pairs, &(struct pair){pair.b, pair.a}, sizeof pair);
     }
     if (f->failed || f->pairs.count == 0)
         return !f->failed;
