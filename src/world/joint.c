@@ -1,4 +1,4 @@
-/* See joint.h. The surfaces of the partners are looked for in a short piece of the ray margin the hit. */
+/* See joint.h. The surfaces of the partners are looked for in a short piece of the ray around the hit. */
 #include "world/joint.h"
 
 #include "world/world_describe.h"
