@@ -18,13 +18,13 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
                           struct medium_effect *out) {
     out->transmittance = vec3_all(1);
     out->source = vec3_all(0);
+    if (!medium_affects(kind, fog, ray))
+        return false;
     if (ray->media && ray->media->count > 0) {
-        if (!(ABSORPTION_AFFECTS & kind))
-            return false;
         out->transmittance = absorption_transmittance(medium_stack_at(ray->media, ray->media->count - 1), distance);
         return true;
     }
-    if (!fog || !(FOG_AFFECTS & kind) || (fog->clear_sky && distance == INFINITY))
+    if (fog->clear_sky && distance == INFINITY)
         return false;
     struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
     out->source = fog->colour;

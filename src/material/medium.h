@@ -1,7 +1,6 @@
 /* The effect of media on the light along a ray: absorption inside transparent solids (the current medium of the ray's
  * stack) and fog outside. This is the only query for integrators. Rays have kinds, and each medium states which of them
- * it affects. Fog attenuates only lines of sight, not the light of lamps. Absorption also affects photons and, in the
- * path tracer, the shadow rays that begin inside of a solid; Whitted's shadow rays do not ask. */
+ * it affects. Fog attenuates only lines of sight, not the light of lamps. Absorption affects all rays that ask. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
@@ -111,15 +110,24 @@ struct fog {
 double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
 
 enum medium_ray {
-    MEDIUM_RAY_SIGHT = 1,  /* camera rays and the reflected, refracted and hole rays that follow them */
-    MEDIUM_RAY_PHOTON = 2, /* of a photon */
+    MEDIUM_RAY_SIGHT = 1,     /* camera rays and the reflected, refracted and hole rays that follow them */
+    MEDIUM_RAY_SCATTERED = 2, /* of a path, that diffuse or rough lobes have scattered */
+    MEDIUM_RAY_SHADOW = 4,    /* to a light */
+    MEDIUM_RAY_PHOTON = 8,    /* of a photon */
 };
 
-/* Sets of them. */
+/* Sets of them. Shadow rays of Whitted's integrator ask for no medium. */
 enum {
-    ABSORPTION_AFFECTS = MEDIUM_RAY_SIGHT | MEDIUM_RAY_PHOTON,
+    ABSORPTION_AFFECTS = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON,
     FOG_AFFECTS = MEDIUM_RAY_SIGHT,
 };
+
+/* Whether a ray is affected where it starts, and so on its whole way. */
+static inline bool medium_affects(enum medium_ray kind, const struct fog *fog, const struct ray *ray) {
+    if (ray->media && ray->media->count > 0)
+        return ABSORPTION_AFFECTS & kind;
+    return fog && (FOG_AFFECTS & kind);
+}
 
 /* Light that was `x` is transmittance * x + source * (1 - transmittance) after it. */
 struct medium_effect {

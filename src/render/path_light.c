@@ -88,7 +88,7 @@ static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_
     OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {1, !is_black(radiance), OBSERVER_NO_BLOCKER});
     struct medium_effect effect;
     if (is_black(radiance) || shadow.media->count == 0 ||
-        !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
+        !medium_transmittance(MEDIUM_RAY_SHADOW, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
         return radiance;
     return vec3_mul(radiance, effect.transmittance);
 }
@@ -249,7 +249,7 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         bool counted = segment->passed > 0 && !(hit.t > segment->ray->t_min); /* before the hole */
         if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
-        (void)medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
+        (void)medium_transmittance(MEDIUM_RAY_SCATTERED, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
         struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
         radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);

@@ -170,13 +170,12 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
                                          &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown,
                                                                 passed_of(path)},
                                          end));
-    /* Fog is only between the eye and what it sees; media weaken all rays. */
-    const struct fog *fog = path->sight ? state->job->fog : NULL;
-    if (!seen && !fog && path->media.count == 0)
+    enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
+    if (!seen && !medium_affects(kind, state->job->fog, &path->ray))
         return true;
     double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     struct medium_effect effect;
-    if (medium_transmittance(MEDIUM_RAY_SIGHT, fog, &path->ray, distance, &effect)) {
+    if (medium_transmittance(kind, state->job->fog, &path->ray, distance, &effect)) {
         add_light(path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
         path->weight = vec3_mul(path->weight, effect.transmittance);
     }

@@ -33,7 +33,8 @@ TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
         CHECK_NEAR(effect.transmittance.x, seen, 1e-15);
         CHECK_NEAR(effect.transmittance.z, seen, 1e-15);
         CHECK_NEAR(effect.source.y, fogs[i].colour.y, 0);
-        CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &fogs[i], &ray, 4, &effect) && is_nothing(&effect));
+        for (int kind = MEDIUM_RAY_SCATTERED; kind <= MEDIUM_RAY_PHOTON; kind *= 2)
+            CHECK(!medium_transmittance((enum medium_ray)kind, &fogs[i], &ray, 4, &effect) && is_nothing(&effect));
         CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &fogs[i], &ray, INFINITY, &effect) == !fogs[i].clear_sky);
         ray.media = &glass;
         (void)medium_transmittance(MEDIUM_RAY_SIGHT, &fogs[i], &ray, 4, &effect);
@@ -41,7 +42,7 @@ TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
     }
 }
 
-TEST(absorption_is_beers_law_for_sight_and_for_photons) {
+TEST(absorption_is_beers_law_for_every_kind_of_ray) {
     const struct solid solids[] = {{1, 0}, {2, 1}};
     const struct medium all[] = {{.ior = 1.3, .absorption = {9, 9, 9}}, {.ior = 1.5, .absorption = {0.1, 0, 2}}};
     const struct media media = {solids, all};
