@@ -23,7 +23,7 @@ static struct lobe_sets sets_of(const struct bsdf *bsdf) {
     return sets;
 }
 
-uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose purpose) {
+uint32_t bsdf_select_of_many(const struct bsdf *bsdf, enum bsdf_purpose purpose) {
     uint32_t all = (UINT32_C(1) << bsdf->count) - 1;
     struct lobe_sets sets;
     switch (purpose) {

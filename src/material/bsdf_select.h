@@ -17,7 +17,13 @@ enum bsdf_purpose {
     BSDF_FOR_SPECULAR,
     BSDF_FOR_TRANSMISSION,
 };
-uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose purpose);
+uint32_t bsdf_select_of_many(const struct bsdf *bsdf, enum bsdf_purpose purpose);
+/* Most surfaces have one lobe, which paths use unless it is black. */
+static inline uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose purpose) {
+    if (bsdf->count == 1 && purpose <= BSDF_FOR_UNSEEN_LIGHTS)
+        return purpose == BSDF_FOR_PATHS && vec3_max_abs(bsdf->lobes[0].weight) > 0;
+    return bsdf_select_of_many(bsdf, purpose);
+}
 
 /* The sum of the weights of a set of lobes, from which it removes black ones. *lambert: all others are Lambert's. */
 struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert);

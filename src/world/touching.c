@@ -505,8 +505,11 @@ bool touching_next(struct touching_query *query, uint32_t *partner) {
 }
 
 bool touching_any(const struct world *world, uint32_t primitive, const struct box *region) {
-    struct touching_query query;
-    uint32_t partner;
-    touching_begin(&query, world, primitive, region);
-    return touching_next(&query, &partner);
+    const struct touching *touching = &world->touching;
+    const uint32_t *list = touching->partners + touching->first[primitive],
+                   *end = touching->partners + touching->first[primitive + 1];
+    for (const uint32_t *partner = list; end - list <= LISTED && partner < end; partner++)
+        if (boxes_meet(&world->boxes[*partner], region))
+            return true;
+    return end - list > LISTED;
 }

@@ -38,6 +38,7 @@ struct touching_query {
 void touching_begin(struct touching_query *query, const struct world *world, uint32_t primitive,
                     const struct box *region);
 bool touching_next(struct touching_query *query, uint32_t *partner);
+/* False: no box of a partner meets it. */
 bool touching_any(const struct world *world, uint32_t primitive, const struct box *region);
 
 #endif
