@@ -47,8 +47,8 @@ static bool form_has(const struct script_function *function, const char *form, i
     return index == parameter;
 }
 
-/* "; with names: gr.sphere{material = ..., centre = ..., radius = ...}": the fields but the name and that of open
- * surfaces, the first ones of many; "" for methods. */
+/* "; with names: gr.sphere{material = ..., centre = ..., radius = ...}": the fields but the name and rare ones, the
+ * first ones of many; "" for methods. */
 static const char *table_form_words(const struct script_function *function, char out[256]) {
     enum { SHOWN = 4 };
     char title[96];
@@ -58,7 +58,7 @@ static const char *table_form_words(const struct script_function *function, char
     snprintf(out, 256, "; with names: %s{", function_title(function, title));
     for (int k = 0, shown = 0; k < function->parameter_count && shown <= SHOWN; k++) {
         const char *name = function->parameters[k].name;
-        if (strcmp(name, "name") != 0 && strcmp(name, "thin_walled") != 0 && ++shown)
+        if (strcmp(name, "name") != 0 && !(function->parameters[k].flags & RARE) && ++shown)
             snprintf(out + strlen(out), 256 - strlen(out), "%s%s%s", shown > 1 ? ", " : "",
                      shown > SHOWN ? "..." : name, shown > SHOWN ? "" : " = ...");
     }

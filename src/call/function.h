@@ -131,6 +131,7 @@ enum {
     OR_PAIR = 8192,     /* of KIND_TEXT: also accepts two numbers */
     OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
+    RARE = 32768,       /* hints of the usual fields leave it out */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };
 

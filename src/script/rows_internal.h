@@ -32,7 +32,7 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_FIRST };
 #define THIN_WALLED_HELP                                                                                               \
     "Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons."
 #define THIN_WALLED                                                                                                    \
-    { "thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "whether it is open", THIN_WALLED_HELP }
+    { "thin_walled", KIND_BOOLEAN, OPTIONAL | RARE, ANY, NULL, "whether it is open", THIN_WALLED_HELP }
 #define SHAPE(otherwise)                                                                                               \
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
     [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},  \
