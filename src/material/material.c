@@ -134,12 +134,9 @@ bool material_has_function(const struct material *material) {
     return false;
 }
 
-bool material_is_transparent(const struct material *material, double *ior) {
+bool material_is_transparent(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    if (!numbers->has_ior)
-        return false;
-    *ior = numbers->ior;
-    return material->fresnel || numbers->refract > 0;
+    return numbers->has_ior && (material->fresnel || numbers->refract > 0);
 }
 
 bool material_passes(const struct material *material) {

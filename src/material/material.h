@@ -122,8 +122,8 @@ bool material_has_image(const struct material *material);
 bool material_has_bump(const struct material *material);
 bool material_has_function(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
-/* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
-bool material_is_transparent(const struct material *material, double *ior);
+/* Whether light passes into a solid of it, everywhere, so that a camera inside is in its medium. */
+bool material_is_transparent(const struct material *material);
 /* Whether light may pass the surface of the solid at some points. */
 bool material_passes(const struct material *material);
 /* The inside of a solid, by the numbers of the base. */

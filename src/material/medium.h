@@ -30,7 +30,7 @@ struct solid {
 /* All solids that light passes, and their media. */
 struct media {
     const struct solid *solids;
-    const struct medium *all;
+    struct medium *all;
 };
 #define SOLID_NONE UINT32_MAX
 

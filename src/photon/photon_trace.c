@@ -104,18 +104,6 @@ static void store_photon(const struct photon_start *start, const struct photon_t
     *photon = (struct photon){hit->point, power, photon_pack(hit->view), target->number};
 }
 
-/* The photon hits a primitive that touches others. False: it leaves the scene. */
-static bool join_photon(const struct world *world, struct photon_path *path, struct world_scratch *scratch,
-                        struct hit *hit, struct joint *joint) {
-    bool met = world_join(world, &path->ray, scratch, hit, joint);
-    if (joint->passed) {
-        path->ray = joint->ray;
-        medium_stack_copy(&path->media, &joint->before);
-        path->ray.media = &path->media;
-    }
-    return met;
-}
-
 static void trace_photon(struct photon_job *s, const struct photon_target *target, uint32_t index,
                          struct world_scratch *scratch, struct photon *photon) {
     struct photon_start start = photon_target_start(target, index, s->seed);
@@ -143,7 +131,8 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct bsdf bsdf;
         joint.joined = JOINED_NOT;
         if (!world_nearest_surface(s->world, &path.ray, scratch, &hit) ||
-            (world_touches(s->world, &hit) && !join_photon(s->world, &path, scratch, &hit, &joint)))
+            (world_touches(s->world, &hit) &&
+             !world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint)))
             return;
         path.length += hit.t;
         struct medium_effect effect;

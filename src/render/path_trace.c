@@ -445,18 +445,6 @@ static void observe_end(const struct observed_path *observed, const struct integ
     }
 }
 
-/* The ray of the path meets a surface; others may be at the same place. False: they have no effect, and behind them is
- * nothing. */
-static bool meet_joint(const struct integrator_state *state, struct path *path, struct hit *hit, struct joint *joint) {
-    bool met = world_join(state->job->world, &path->ray, state->scratch, hit, joint);
-    if (joint->passed) {
-        path->ray = joint->ray;
-        medium_stack_copy(&path->media, &joint->before);
-        path->ray.media = &path->media;
-    }
-    return met;
-}
-
 /* hit: the hit of the camera ray, if it has met anything; it is also the storage for the hits of later rays. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
@@ -468,7 +456,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
     for (;;) {
         joint.joined = JOINED_NOT;
         if (met && world_touches(world, hit))
-            met = meet_joint(state, path, hit, &joint);
+            met = world_join_path(world, &path->ray, &path->media, state->scratch, hit, &joint);
         if (state->observer)
             observe_next(&observed, state, path, met ? hit : NULL);
         /* The way to the hit, then the surface or the sky there. */

@@ -183,7 +183,7 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
     joint->joined = JOINED_NOT;
     joint->passed = false;
     for (;;) {
-        if (hit->behind > 0 || !world_touches(world, hit) || !find_faces(&junction))
+        if (hit->behind > 0 || !find_faces(&junction))
             return true;
         if (!joint->passed) {
             joint->ray = *ray;
@@ -205,7 +205,20 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
         /* On to what is behind. */
         if (!world_nearest_surface(world, &joint->ray, scratch, hit))
             return false;
+        if (!world_touches(world, hit))
+            return true;
     }
+}
+
+bool world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
+                     struct world_scratch *scratch, struct hit *hit, struct joint *joint) {
+    bool met = world_join(world, ray, scratch, hit, joint);
+    if (joint->passed) {
+        *ray = joint->ray;
+        medium_stack_copy(media, &joint->before);
+        ray->media = media;
+    }
+    return met;
 }
 
 struct ray joint_ray_through_hole(const struct joint *joint, const struct hit *hit, const struct ray *ray,

@@ -20,10 +20,14 @@ struct joint {
     struct medium_stack before, behind; /* the hit */
 };
 
-/* Resolves a hit of the ray (in the media ray->media) on a primitive that touches others: `hit` becomes that of the
+/* Resolves a hit of the ray (in the media ray->media) where world_touches says so: `hit` becomes that of the
  * surface that is seen, with the offset of them all. False: behind boundaries without effect the ray hits nothing. */
 bool world_join(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit,
                 struct joint *joint);
+
+/* The same for the ray of a path, in its own media: it becomes joint->ray. */
+bool world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
+                     struct world_scratch *scratch, struct hit *hit, struct joint *joint);
 
 /* The bounds of the point of a hit, with its error. */
 static inline struct box joint_bounds(const struct hit *hit) {

@@ -26,9 +26,8 @@ struct axis {
 
 /* The surface of a prototype, in object space. */
 struct make {
-    unsigned kinds;   /* a set of enum made_of */
-    bool transparent; /* some of it */
-    bool many;        /* it has more planes than are listed */
+    unsigned kinds; /* a set of enum made_of */
+    bool many;      /* it has more planes than are listed */
     /* How many of them are listed, and where they begin: planes, centres of round surfaces, axes. */
     uint32_t planes, centres, axes, first_plane, first_centre, first_axis;
 };
@@ -167,13 +166,6 @@ static void add_shape(struct finder *f, struct make *make, const struct transfor
     }
 }
 
-static bool is_transparent(const struct world *world, uint32_t material, uint32_t slots) {
-    for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
-        if (material_passes(&world->materials[i]))
-            return true;
-    return false;
-}
-
 static void find_make(struct finder *f, const struct prototype *prototype, struct make *make) {
     const struct csg *csg = prototype->geometry.csg;
     const struct transform as_it_is = transform_identity();
@@ -182,17 +174,21 @@ static void find_make(struct finder *f, const struct prototype *prototype, struc
                           .first_axis = (uint32_t)f->axes.count};
     if (!csg) {
         add_shape(f, make, &as_it_is, &prototype->geometry.shape);
-        make->transparent = is_transparent(f->world, prototype->material, prototype->slot_count);
         return;
     }
     for (uint32_t i = 0; i < csg->leaf_count; i++) {
         const struct csg_leaf *leaf = &csg->leaves[i];
         add_shape(f, make, &leaf->csg_from_leaf, &leaf->shape);
-        make->transparent = make->transparent || is_transparent(f->world, leaf->material, leaf->slot_count);
     }
 }
 
 /* --- pairs --- */
+
+/* Light passes some of its surface. */
+static bool is_transparent(const struct finder *f, uint32_t primitive) {
+    const uint32_t *first = f->world->first_solid;
+    return first && first[primitive] < first[primitive + 1];
+}
 
 static const struct make *make_of(const struct finder *f, uint32_t primitive) {
     return &f->makes[f->world->primitives[primitive].prototype];
@@ -250,7 +246,7 @@ static bool have_common_plane(struct finder *f, uint32_t a, uint32_t b) {
     struct vec3 near = middle_of(&f->world->boxes[a], &f->world->boxes[b]);
     struct plane first[PLANES], second[PLANES];
     if (of_a->many && of_b->many)
-        return of_a->transparent || of_b->transparent;
+        return is_transparent(f, a) || is_transparent(f, b);
     if (of_a->many) {
         uint32_t count = planes_of(f, b, second);
         return mesh_has_plane(f, a, second, count);
@@ -325,7 +321,7 @@ static bool find_pairs(struct finder *f, const struct box_tree *tree, struct poo
     const struct world *world = f->world;
     bool all = world->primitive_count <= OPAQUE_LIMIT;
     for (uint32_t i = 0; i < world->primitive_count && !f->failed; i++) {
-        bool own = all || make_of(f, i)->transparent;
+        bool own = all || is_transparent(f, i);
         struct box_tree_meeting meeting;
         uint32_t other;
         if (i % 1024 == 0 && pool_cancelled(pool))
@@ -334,7 +330,7 @@ static bool find_pairs(struct finder *f, const struct box_tree *tree, struct poo
             continue;
         box_tree_meeting_begin(&meeting, tree, &world->boxes[i]);
         while (box_tree_meeting_next(&meeting, &other)) {
-            bool from_other = other < i && (all || make_of(f, other)->transparent);
+            bool from_other = other < i && (all || is_transparent(f, other));
             if (other != i && !from_other && may_share(f, i, other))
                 (void)add_to(f, &f->pairs, &(struct pair){i, other}, sizeof(struct pair));
         }
@@ -402,8 +398,8 @@ static bool is_hidden(const struct finder *f, struct pair pair, struct world_scr
     const struct make *make = make_of(f, pair.b);
     const struct box *box = &f->world->boxes[pair.b];
     struct plane planes[PLANES];
-    if (make->kinds != MADE_OF_PLANES || make->many || make->planes != 1 || make->transparent ||
-        make_of(f, pair.a)->transparent || !vec3_finite(box->min) || !vec3_finite(box->max))
+    if (make->kinds != MADE_OF_PLANES || make->many || make->planes != 1 || is_transparent(f, pair.a) ||
+        is_transparent(f, pair.b) || !vec3_finite(box->min) || !vec3_finite(box->max))
         return false;
     (void)planes_of(f, pair.b, planes);
     int samples = 0;
@@ -422,6 +418,8 @@ static bool is_hidden(const struct finder *f, struct pair pair, struct world_scr
 /* Of the first one: many of them have one cause. */
 static bool warn_of_hidden(struct finder *f, struct flattening *flattening) {
     struct world_scratch scratch;
+    if (f->pairs.count == 0)
+        return true;
     if (!world_scratch_init(&scratch, f->world))
         return false;
     for (size_t i = 0; i < f->pairs.count; i++) {
@@ -441,19 +439,34 @@ static bool warn_of_hidden(struct finder *f, struct flattening *flattening) {
     return ok;
 }
 
-bool touching_find(struct touching *touching, struct flattening *flattening) {
-    const struct world *world = flattening->world;
+/* The hierarchy over the primitives. */
+static const struct box_tree *tree_of(const struct world *world) {
+    const struct box_tree *tree = scene_accel_hierarchy(&world->accel);
+    return tree ? tree : &world->touching.tree;
+}
+
+/* Lists what prototypes are made of. False: no two of them need a search, or no memory. */
+static bool find_makes(struct finder *f) {
+    const struct world *world = f->world;
+    bool any = world->primitive_count > 1 && (world->primitive_count <= OPAQUE_LIMIT || world->first_solid);
+    f->makes = any ? mem_resize_array(NULL, world->prototype_count, sizeof *f->makes) : NULL;
+    f->failed = any && !f->makes;
+    for (uint32_t i = 0; any && i < world->prototype_count && !f->failed; i++)
+        find_make(f, &world->prototypes[i], &f->makes[i]);
+    return any && !f->failed;
+}
+
+bool touching_find(struct world *world, struct flattening *flattening) {
+    struct touching *touching = &world->touching;
     struct pool *pool = flattening->pool;
     struct error *error = flattening->error;
     struct finder f = {.world = world};
-    f.makes = mem_resize_array(NULL, world->prototype_count, sizeof *f.makes);
+    bool ok = true, searches = find_makes(&f);
     *touching = (struct touching){0};
-    f.failed = !f.makes;
-    for (uint32_t i = 0; i < world->prototype_count && !f.failed; i++)
-        find_make(&f, &world->prototypes[i], &f.makes[i]);
-    bool ok = !f.failed ? box_tree_build(&touching->tree, world->boxes, world->primitive_count, pool, error) &&
-                              find_pairs(&f, &touching->tree, pool, error)
-                        : error_no_memory(error, "the surfaces that touch");
+    if (searches && !scene_accel_hierarchy(&world->accel))
+        ok = box_tree_build(&touching->tree, world->boxes, world->primitive_count, pool, error);
+    if (searches && ok)
+        ok = find_pairs(&f, tree_of(world), pool, error);
     if (ok && (f.failed || !make_lists(&f, touching, flattening->arena) || !warn_of_hidden(&f, flattening)))
         ok = error_no_memory(error, "the surfaces that touch");
     if (ok && !touching->first)
@@ -489,7 +502,7 @@ void touching_begin(struct touching_query *query, const struct world *world, uin
     if (query->end - query->list <= LISTED)
         return;
     query->list = NULL;
-    box_tree_meeting_begin(&query->meeting, &touching->tree, region);
+    box_tree_meeting_begin(&query->meeting, tree_of(world), region);
 }
 
 bool touching_next(struct touching_query *query, uint32_t *partner) {

@@ -15,12 +15,12 @@ struct flattening;
 struct touching {
     const uint32_t *first;    /* by primitive, one more at the end: where its partners begin; NULL: there are none */
     const uint32_t *partners; /* in ascending order for each primitive */
-    struct box_tree tree;     /* of all that can have partners; owned */
+    struct box_tree tree;     /* over all primitives, if the accelerator has none; owned */
 };
 
-/* Of the world that is made, which has its primitives, boxes and materials. Warns of flat primitives that others hide.
- * Errors: no memory, cancelled. */
-bool touching_find(struct touching *touching, struct flattening *flattening);
+/* Fills world->touching. The world has its primitives, solids and accelerator. Warns of flat primitives that others
+ * hide. Errors: no memory, cancelled. */
+bool touching_find(struct world *world, struct flattening *flattening);
 void touching_destroy(struct touching *touching);
 
 static inline bool touching_has(const struct touching *touching, uint32_t primitive) {

@@ -660,8 +660,10 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 void world_update_materials(struct world *world) {
-    for (uint32_t i = 0; i < world->material_count; i++)
+    for (uint32_t i = 0; i < world->material_count; i++) {
         world->materials[i].phong = material_flatten(world->authored.materials[i], world->classic).phong;
+        world->media.all[i] = material_medium(&world->materials[i]);
+    }
 }
 
 /* The tables of materials and of the media inside. */
@@ -673,9 +675,9 @@ static bool make_materials(struct flattening *f) {
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
     world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
     world->material_has_medium = arena_alloc_array(arena, count, sizeof *world->material_has_medium);
-    struct medium *media = arena_alloc_array(arena, count, sizeof *media);
+    world->media.all = arena_alloc_array(arena, count, sizeof *world->media.all);
     if (!world->materials || !world->material_has_image || !world->material_has_tangents ||
-        !world->material_has_medium || !media)
+        !world->material_has_medium || !world->media.all)
         return error_no_memory(f->error, "the materials of the scene");
     /* Textures are numbered in the flat copies, so these come first. */
     for (uint32_t i = 0; i < count; i++)
@@ -686,13 +688,11 @@ static bool make_materials(struct flattening *f) {
         const struct material *material = &world->materials[i];
         world->material_has_image[i] = material_has_image(material);
         world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
-        double ior;
-        world->material_has_medium[i] = material_is_transparent(material, &ior);
-        media[i] = material_medium(material);
+        world->material_has_medium[i] = material_is_transparent(material);
+        world->media.all[i] = material_medium(material);
         struct vec3 emission = material_emission_bound(world->authored.materials[i]);
         world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
     }
-    world->media.all = media;
     return true;
 }
 
@@ -746,7 +746,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
         !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
         return false;
     flattening.arena = arena;
-    if (!touching_find(&world->touching, &flattening))
+    if (!touching_find(world, &flattening))
         return false;
     return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
            mesh_group_build(&world->group, world, arena, pool, error);

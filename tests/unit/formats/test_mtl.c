@@ -314,9 +314,8 @@ TEST(mtl_materials_follow_their_mesh) {
         CHECK_NEAR(node->slots[0]->phong.kd.x, 1, 0);
         CHECK_NEAR(node->slots[0]->phong.ks.x, 0, 0);
         CHECK_EQ_INT(node->slots[1]->kind, MATERIAL_FRESNEL);
-        double ior = 0;
-        CHECK(material_is_transparent(node->slots[1], &ior));
-        CHECK_NEAR(ior, 1.5, 0);
+        CHECK(material_is_transparent(node->slots[1]));
+        CHECK_NEAR(material_medium(node->slots[1]).ior, 1.5, 0);
         CHECK_NEAR(node->slots[2]->phong.reflect, 1, 0);
     }
     scene_destroy(&scene);

@@ -44,7 +44,7 @@ TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
 
 TEST(absorption_is_beers_law_for_every_kind_of_ray) {
     const struct solid solids[] = {{1, 0}, {2, 1}};
-    const struct medium all[] = {{.ior = 1.3, .absorption = {9, 9, 9}}, {.ior = 1.5, .absorption = {0.1, 0, 2}}};
+    struct medium all[] = {{.ior = 1.3, .absorption = {9, 9, 9}}, {.ior = 1.5, .absorption = {0.1, 0, 2}}};
     const struct media media = {solids, all};
     struct medium_stack stack = {.media = &media};
     medium_stack_enter(&stack, 0);

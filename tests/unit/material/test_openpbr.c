@@ -32,7 +32,7 @@ static void layers_init(struct layers *layers) {
 /* The surface z = 0, seen at a cosine from outside or from inside. */
 static struct bsdf seen(const struct layers *layers, double cosine, bool front) {
     struct hit hit = {.view = {sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine}, .front = front, .primitive = 4};
-    const struct medium medium = {.ior = layers->numbers.specular_ior};
+    struct medium medium = {.ior = layers->numbers.specular_ior};
     const struct media media = {&(struct solid){4, 0}, &medium};
     struct medium_stack inside = {.media = &media};
     struct bsdf bsdf;
