@@ -130,10 +130,12 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct hit hit;
         struct bsdf bsdf;
         joint.joined = JOINED_NOT;
-        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit) ||
-            (world_touches(s->world, &hit) &&
-             !world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint)))
+        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit))
             return;
+        if (world_touches(s->world, &hit))
+            world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint);
+        if (joint.joined == JOINED_AWAY)
+            continue;
         path.length += hit.t;
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))

@@ -29,6 +29,7 @@ static const struct light *visible_light(const struct world *world, const struct
     const struct light *best = NULL;
     struct ray limited = *ray;
     struct light_hit met;
+    limited.t_min = 0; /* also before boundaries without effect */
     limited.t_max = t_max;
     for (uint32_t i = 0; i < world->light_count; i++) {
         if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
