@@ -4,6 +4,7 @@
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
+#include "material/fog.h"
 #include "math/ray.h"
 #include "math/vec3.h"
 
@@ -73,41 +74,6 @@ bool medium_stack_has(const struct medium_stack *stack, uint32_t solid);
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);
 /* The index of refraction on the ray's side over the index behind the surface. */
 double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary);
-
-/* Fog: attenuates light along lines of sight and adds its colour. It is outside of transparent solids only, and does
- * not attenuate the light of lamps. */
-
-enum fog_kind {
-    FOG_EXPONENTIAL, /* exp(-density d) */
-    FOG_SQUARED,     /* exp(-(density d)^2) */
-    FOG_LINEAR,      /* 1 before near, 0 beyond far, linear between */
-    FOG_HEIGHT,      /* density exp(-(y - base) / scale), integrated along the ray */
-    FOG_PROFILE,     /* a density for every height, linear between, constant beyond; integrated */
-    FOG_GRID,        /* a density for every cell of a box, none outside; integrated */
-    FOG_FIELD,       /* a density and perhaps a colour as functions of the point, in a box (fog_field.h) */
-};
-
-struct fog_field;
-
-/* Arrays belong to the script's arena. */
-struct fog {
-    enum fog_kind kind;
-    struct vec3 colour; /* a bound, where the field has colours */
-    bool display;       /* `colour` is a display colour */
-    double density;
-    double near, far;
-    double base, scale;
-    uint32_t count; /* of the profile: heights never decrease */
-    const double *heights, *densities;
-    const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
-    struct vec3 corner, size;
-    uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
-    const struct fog_field *field;
-    bool clear_sky; /* fog does not affect the sky */
-};
-
-/* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. Of FOG_FIELD at time 0. */
-double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
 
 enum medium_ray {
     MEDIUM_RAY_SIGHT = 1,     /* camera rays and the reflected, refracted and hole rays that follow them */
