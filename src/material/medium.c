@@ -6,23 +6,23 @@
 
 #include <string.h>
 
+struct medium medium_outside(const struct fog *fog) {
+    return (struct medium){.ior = 1, .tint = {1, 1, 1}, .fog = fog, .affects = fog ? MEDIUM_RAY_SIGHT : 0};
+}
+
+struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+    const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
+    bool absorbs = absorption.x > 0 || absorption.y > 0 || absorption.z > 0;
+    return (struct medium){.ior = ior, .tint = tint, .absorption = absorption, .affects = absorbs ? all : 0};
+}
+
 /* The law of Beer, Lambert and Bouguer. */
-static struct vec3 absorption_transmittance(const struct medium *medium, double distance) {
-    struct vec3 a = medium->absorption;
+static struct vec3 absorption_transmittance(struct vec3 a, double distance) {
     return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
-bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const struct ray *ray, double distance,
-                          struct medium_effect *out) {
-    out->transmittance = vec3_all(1);
-    out->source = vec3_all(0);
-    if (!medium_affects(kind, fog, ray))
-        return false;
-    if (ray->media && ray->media->count > 0) {
-        out->transmittance = absorption_transmittance(medium_stack_at(ray->media, ray->media->count - 1), distance);
-        return true;
-    }
+static bool fog_effect(const struct fog *fog, const struct ray *ray, double distance, struct medium_effect *out) {
     if (fog->clear_sky && distance == INFINITY)
         return false;
     struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
@@ -33,6 +33,18 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
         return true;
     }
     out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
+    return true;
+}
+
+bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
+    out->transmittance = vec3_all(1);
+    out->source = vec3_all(0);
+    if (!medium_affects(kind, ray))
+        return false;
+    const struct medium *medium = medium_stack_current(ray->media);
+    if (medium->fog)
+        return fog_effect(medium->fog, ray, distance, out);
+    out->transmittance = absorption_transmittance(medium->absorption, distance);
     return true;
 }
 
@@ -47,10 +59,9 @@ static bool vectors_equal(struct vec3 a, struct vec3 b) {
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
-    static const struct medium air = {.ior = 1, .tint = {1, 1, 1}};
-    const struct medium *x = a->count ? medium_stack_at(a, a->count - 1) : &air,
-                        *y = b->count ? medium_stack_at(b, b->count - 1) : &air;
-    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint);
+    const struct medium *x = medium_stack_current(a), *y = medium_stack_current(b);
+    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint) &&
+           x->fog == y->fog;
 }
 
 void medium_stack_enter(struct medium_stack *stack, uint32_t solid) {
