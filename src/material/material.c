@@ -158,7 +158,7 @@ struct medium material_medium(const struct material *material) {
 bool material_divides_media(const struct material *material) {
     struct medium medium = material_medium(material);
     bool thin = material->openpbr && material->openpbr->thin_walled;
-    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.absorption) > 0;
+    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.extinction) > 0;
     return !thin && differs && material_passes(material);
 }
 

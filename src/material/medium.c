@@ -13,11 +13,11 @@ struct medium medium_outside(const struct fog *fog) {
 struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
     const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
     bool absorbs = absorption.x > 0 || absorption.y > 0 || absorption.z > 0;
-    return (struct medium){.ior = ior, .tint = tint, .absorption = absorption, .affects = absorbs ? all : 0};
+    return (struct medium){.ior = ior, .tint = tint, .extinction = absorption, .affects = absorbs ? all : 0};
 }
 
 /* The law of Beer, Lambert and Bouguer. */
-static struct vec3 absorption_transmittance(struct vec3 a, double distance) {
+static struct vec3 uniform_transmittance(struct vec3 a, double distance) {
     return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
@@ -44,8 +44,34 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
     const struct medium *medium = medium_stack_current(ray->media);
     if (medium->fog)
         return fog_effect(medium->fog, ray, distance, out);
-    out->transmittance = absorption_transmittance(medium->absorption, distance);
+    out->transmittance = uniform_transmittance(medium->extinction, distance);
     return true;
+}
+
+/* The integral of the transmittance over the distance. */
+static double depth_seen(double extinction, double distance) {
+    return extinction > 0 ? -el_expm1(-extinction * distance) / extinction : distance;
+}
+
+struct vec3 medium_emission(const struct medium *medium, double distance) {
+    struct vec3 e = medium->emission, s = medium->extinction;
+    return vec3_make(e.x > 0 ? e.x * depth_seen(s.x, distance) : 0, e.y > 0 ? e.y * depth_seen(s.y, distance) : 0,
+                     e.z > 0 ? e.z * depth_seen(s.z, distance) : 0);
+}
+
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+                                   struct sample2 u) {
+    double sum = throughput.x + throughput.y + throughput.z;
+    struct vec3 share = sum > 0 ? vec3_scale(throughput, 1 / sum) : vec3_all(1.0 / 3), s = medium->extinction;
+    double extinction = u.x < share.x ? s.x : u.x < share.x + share.y ? s.y : s.z;
+    double t = extinction > 0 ? -el_log(1 - u.y) / extinction : INFINITY;
+    struct medium_sample sample = {.scatters = t < distance, .distance = fmin(t, distance)};
+    struct vec3 left = uniform_transmittance(s, sample.distance);
+    /* Passing has a probability, scattering a density; each is the mean over the channels that may have been chosen. */
+    double chance = vec3_dot(share, sample.scatters ? vec3_mul(s, left) : left);
+    sample.weight =
+        vec3_scale(sample.scatters ? vec3_mul(medium->scattering, left) : left, chance > 0 ? 1 / chance : 0);
+    return sample;
 }
 
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from) {
@@ -60,8 +86,9 @@ static bool vectors_equal(struct vec3 a, struct vec3 b) {
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
     const struct medium *x = medium_stack_current(a), *y = medium_stack_current(b);
-    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint) &&
-           x->fog == y->fog;
+    return x->ior == y->ior && vectors_equal(x->extinction, y->extinction) && vectors_equal(x->tint, y->tint) &&
+           x->fog == y->fog && vectors_equal(x->scattering, y->scattering) && vectors_equal(x->emission, y->emission) &&
+           x->phase.kind == y->phase.kind && x->phase.g == y->phase.g;
 }
 
 void medium_stack_enter(struct medium_stack *stack, uint32_t solid) {

@@ -1,10 +1,12 @@
-/* Media and their effect on the light along a ray. A ray is in the medium of the solid that it entered last, and
- * outside of all solids in that of the whole scene. Rays have kinds, and each medium states which of them it affects:
- * fog only lines of sight, not the light of lamps; absorption all. */
+/* Media and their effect on the light along a ray: they absorb, scatter and emit, each the same everywhere and by
+ * length; or are one of the classic fogs. A ray is in the medium of the solid that it entered last, and outside of all
+ * solids in that of the whole scene. Rays have kinds, and each medium states which of them it affects: fog only lines
+ * of sight, not the light of lamps; absorption all. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
 #include "material/fog.h"
+#include "material/phase.h"
 #include "math/ray.h"
 #include "math/vec3.h"
 
@@ -21,14 +23,17 @@ enum medium_ray {
 struct medium {
     double ior;
     struct vec3 tint;       /* of light that passes the surface of the solid */
-    struct vec3 absorption; /* the logarithm of light decreases by this per unit, unless it is a fog */
-    const struct fog *fog;  /* or NULL */
+    const struct fog *fog;  /* or NULL; then nothing of the following */
+    struct vec3 extinction; /* absorption and scattering: the logarithm of light decreases by this per unit */
+    struct vec3 scattering; /* at most the extinction */
+    struct vec3 emission;   /* radiance per unit */
+    struct phase phase;     /* of scattering */
     unsigned affects;       /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 
 /* Around all solids. fog: or NULL. */
 struct medium medium_outside(const struct fog *fog);
-/* Inside of a solid. */
+/* Inside of a solid, without scattering and emission. */
 struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption);
 
 /* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
@@ -108,5 +113,21 @@ struct medium_effect {
 /* From the ray's origin over a distance in world units (infinite: no hit). False: the ray is not affected, and
  * transmittance is 1. */
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out);
+
+/* The radiance that a medium without fog adds over a distance, itself attenuated. */
+struct vec3 medium_emission(const struct medium *medium, double distance);
+
+/* Where a path is scattered in a medium without fog. */
+struct medium_sample {
+    bool scatters; /* before the distance */
+    double distance;
+    struct vec3 weight; /* transmittance over the probability of coming this far; or with the colour of scattering, over
+                           the density of the distance */
+};
+/* Samples over at most `distance` (may be infinite). The channel whose extinction decides is chosen in proportion to
+ * the throughput of the path, and all channels use the sample with one-sample multiple importance sampling (Wilkie et
+ * al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the throughput never grows. */
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+                                   struct sample2 u);
 
 #endif
