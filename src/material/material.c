@@ -146,19 +146,19 @@ bool material_passes(const struct material *material) {
 struct medium material_medium(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     const struct openpbr *openpbr = material->openpbr;
-    struct medium medium = {.ior = numbers->has_ior ? numbers->ior : 1, .absorption = numbers->absorption};
-    medium.tint = material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    double ior = numbers->has_ior ? numbers->ior : 1;
+    struct vec3 tint = material->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
     if (openpbr) {
-        medium.ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
-        medium.tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+        ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
+        tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
     }
-    return medium;
+    return medium_inside(ior, tint, numbers->absorption);
 }
 
 bool material_divides_media(const struct material *material) {
     struct medium medium = material_medium(material);
     bool thin = material->openpbr && material->openpbr->thin_walled;
-    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.absorption) > 0;
+    bool differs = material->openpbr || medium.ior != 1 || vec3_max_abs(medium.extinction) > 0;
     return !thin && differs && material_passes(material);
 }
 

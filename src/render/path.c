@@ -114,7 +114,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
         return tracer->built;
     if (!find_photon_lights(tracer, world))
         return error_no_memory(error, "the lights of the scene");
-    const struct photon_scene scene = {world, renderer->job->fog, settings};
+    const struct photon_scene scene = {world, settings};
     return photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error);
 }
 

@@ -82,8 +82,8 @@ struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integra
         radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
     struct medium_effect effect;
-    if (is_black(radiance) || shadow->media.count == 0 ||
-        !medium_transmittance(MEDIUM_RAY_SHADOW, NULL, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect))
+    if (is_black(radiance) ||
+        !medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect))
         return radiance;
     return vec3_mul(radiance, effect.transmittance);
 }
@@ -227,7 +227,7 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         bool counted = segment->passed > 0 && !(hit.t > 0); /* before the hole */
         if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
-        (void)medium_transmittance(MEDIUM_RAY_SCATTERED, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
+        (void)medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect);
         struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
         radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);

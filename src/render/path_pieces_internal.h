@@ -136,11 +136,11 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
         add_light(state, path, path_area_lights(tracer, &segment, end));
     }
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
-    if (!seen && !medium_affects(kind, state->job->fog, &path->ray))
+    if (!seen && !medium_affects(kind, &path->ray))
         return true;
     double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     struct medium_effect effect;
-    if (medium_transmittance(kind, state->job->fog, &path->ray, distance, &effect)) {
+    if (medium_transmittance(kind, &path->ray, distance, &effect)) {
         add_light(state, path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
         path->weight = vec3_mul(path->weight, effect.transmittance);
     }
