@@ -842,10 +842,6 @@ static void read_lanes(const struct expr_program *program, uint16_t output, int 
 void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct expr_lane_inputs *inputs,
                                 const struct expr_directions *directions, struct expr_lane_range outputs[EXPR_OUTPUTS],
                                 struct expr_choice *choices, void *rows) {
-    static void (*const run[])(const struct expr_program *, int, bool, struct expr_lanes *,
-                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_slopes_base,
-                                                        [CPU_ISA_AVX2] = expr_run_slopes_avx2,
-                                                        [CPU_ISA_AVX512] = expr_run_slopes_avx512};
     struct expr_lanes *values = rows;
     for (int i = 0; i < program->input_count; i++) {
         enum expr_input input = (enum expr_input)program->inputs[i].input;
@@ -858,7 +854,7 @@ void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct
             for (int n = 0; n < EXPR_LANES; n++)
                 value->slopes[k].low[n] = value->slopes[k].high[n] = directions->seeds[input][k];
     }
-    run[cpu_isa()](program, directions->count, inputs->are_cases, values, choices);
+    CPU_ISA_CALL(expr_run_slopes, program, directions->count, inputs->are_cases, values, choices)
     for (int i = 0; i < program->output_count; i++)
         read_lanes(program, program->outputs[i], directions->count, values, &outputs[i]);
 }

@@ -152,14 +152,17 @@ static inline struct expr_interval maximum(struct expr_interval a, struct expr_i
 
 /* --- elementary functions --- */
 
-typedef double function_of_one(double);
+/* A function of one number. */
+static double value_at(enum expr_operation operation, double x) {
+    return expr_apply(operation, (union expr_value){x}, (union expr_value){0}, (union expr_value){0}).f;
+}
 
 /* For a function that increases from `first` to `last` and is undefined elsewhere. */
-static struct expr_interval growing(struct expr_interval a, function_of_one *f, double first, double last) {
+static struct expr_interval growing(struct expr_interval a, enum expr_operation f, double first, double last) {
     struct expr_interval inside = within(a, first, last);
     if (!(inside.low <= inside.high))
         return anything;
-    return widened(f(inside.low), f(inside.high), a.may_be_nan || a.low < first || a.high > last);
+    return widened(value_at(f, inside.low), value_at(f, inside.high), a.may_be_nan || a.low < first || a.high > last);
 }
 
 /* Whether start + n * 2 pi is in the interval, or closer to it than rounding errors. Angles are below 10^6. */
@@ -169,14 +172,14 @@ static bool contains_angle(struct expr_interval a, double start) {
 }
 
 /* For the sine or the cosine, with its maximum at `top`. */
-static struct expr_interval wave(struct expr_interval a, function_of_one *f, double top) {
+static struct expr_interval wave(struct expr_interval a, enum expr_operation f, double top) {
     bool may_be_nan = a.may_be_nan || isinf(a.low) || isinf(a.high);
     if (!(a.high - a.low < 2 * PI) || fabs(a.low) > 1e6 || fabs(a.high) > 1e6)
         return (struct expr_interval){-1, 1, may_be_nan};
     bool to_bottom = contains_angle(a, top + PI), to_top = contains_angle(a, top);
     if (to_bottom && to_top)
         return (struct expr_interval){-1, 1, may_be_nan};
-    double p = f(a.low), q = f(a.high);
+    double p = value_at(f, a.low), q = value_at(f, a.high);
     return within(widened(to_bottom ? -1 : smaller(p, q), to_top ? 1 : larger(p, q), may_be_nan), -1, 1);
 }
 
@@ -411,13 +414,13 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_MAX:
         return maximum(a, b);
     case EXPR_SIN:
-        return wave(a, el_sin, PI / 2);
+        return wave(a, EXPR_SIN, PI / 2);
     case EXPR_COS:
-        return wave(a, el_cos, 0);
+        return wave(a, EXPR_COS, 0);
     case EXPR_TAN:
         return tangent(a);
     case EXPR_ASIN:
-        return growing(a, el_asin, -1, 1);
+        return growing(a, EXPR_ASIN, -1, 1);
     case EXPR_ACOS: {
         struct expr_interval inside = within(a, -1, 1);
         if (!(inside.low <= inside.high))
@@ -427,19 +430,19 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_ATAN:
         return arc_tangent(a, b);
     case EXPR_EXP:
-        return within(growing(a, el_exp, -INFINITY, INFINITY), 0, INFINITY);
+        return within(growing(a, EXPR_EXP, -INFINITY, INFINITY), 0, INFINITY);
     case EXPR_LOG:
-        return growing(a, el_log, 0, INFINITY);
+        return growing(a, EXPR_LOG, 0, INFINITY);
     case EXPR_LOG2:
-        return growing(a, el_log2, 0, INFINITY);
+        return growing(a, EXPR_LOG2, 0, INFINITY);
     case EXPR_LOG10:
-        return growing(a, el_log10, 0, INFINITY);
+        return growing(a, EXPR_LOG10, 0, INFINITY);
     case EXPR_SINH:
-        return growing(a, el_sinh, -INFINITY, INFINITY);
+        return growing(a, EXPR_SINH, -INFINITY, INFINITY);
     case EXPR_COSH:
         return hyperbolic_cosine(a);
     case EXPR_TANH:
-        return within(growing(a, el_tanh, -INFINITY, INFINITY), -1, 1);
+        return within(growing(a, EXPR_TANH, -INFINITY, INFINITY), -1, 1);
     case EXPR_NOISE:
         return noise((struct expr_interval[3]){a, b, c});
     case EXPR_HASH:
@@ -739,15 +742,11 @@ static void put_inputs(const struct expr_program *program, const struct expr_box
 
 void expr_evaluate_intervals(const struct expr_program *program, const struct expr_boxes *boxes,
                              struct expr_bounds outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
-    static void (*const run[])(const struct expr_program *, uint32_t, double *, struct expr_flags *,
-                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_intervals_base,
-                                                        [CPU_ISA_AVX2] = expr_run_intervals_avx2,
-                                                        [CPU_ISA_AVX512] = expr_run_intervals_avx512};
     uint32_t width = (boxes->count + 7) & ~7U;
     double *values = rows;
     struct expr_flags *flags = (struct expr_flags *)(void *)(values + (size_t)program->row_count * 2 * EXPR_BOXES);
     put_inputs(program, boxes, width, values, flags);
-    run[cpu_isa()](program, width, values, flags, choices);
+    CPU_ISA_CALL(expr_run_intervals, program, width, values, flags, choices)
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;

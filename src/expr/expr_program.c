@@ -628,8 +628,6 @@ static void put_inputs(const struct expr_program *program, uint32_t count, uint3
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS],
                          void *rows) {
-    static void (*const run[])(const struct expr_program *, uint32_t, double *, const struct expr_direct *) = {
-        [CPU_ISA_BASE] = expr_run_base, [CPU_ISA_AVX2] = expr_run_avx2, [CPU_ISA_AVX512] = expr_run_avx512};
     static const uint32_t steps[] = {[CPU_ISA_BASE] = 4, [CPU_ISA_AVX2] = 4, [CPU_ISA_AVX512] = 8};
     const uint32_t step = steps[cpu_isa()], width = (count + step - 1) & ~(step - 1);
     const int last = cpu_isa() == CPU_ISA_BASE ? -1 : program->direct_output - 1;
@@ -639,7 +637,7 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
         direct.inputs[i] = inputs[program->inputs[i].input];
     put_inputs(program, count, width, values, &direct);
     direct.output = last < 0 ? NULL : width == count ? outputs[last] : row_of(program, program->outputs[last], values);
-    run[cpu_isa()](program, width, values, &direct);
+    CPU_ISA_CALL(expr_run, program, width, values, &direct)
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         if (value >= program->constant_count) {
