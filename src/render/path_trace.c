@@ -313,15 +313,15 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
                                              .total_reflection = true,
                                              .no_black_highlight = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
-                                             .joint = joint_boundary(joint),
-                                             .observer = state->observer ? observe_material : NULL,
-                                             .observer_context = state->observer,
-                                             .authored = world->authored.materials[hit->material]};
+                                             .joint = joint_boundary(joint)};
     uint32_t dimension = path->dimension;
     struct bsdf bsdf;
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
     state->hits++;
-    material_eval(&world->materials[hit->material], hit, path->ray.media, &context, &bsdf);
+    if (state->observer)
+        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
+                         state->observer);
+    material_eval(&world->surfaces, hit, path->ray.media, &context, &bsdf);
     if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
         path->ray = joint_ray_through_hole(joint, hit, &path->ray, &path->media);
         path->kind = RAY_HOLE;

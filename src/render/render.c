@@ -283,7 +283,7 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
     renderer->medium_stack_by_ray = renderer->closed_count > 0 && spread;
     renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->medium_stack_by_ray;
     world_medium_stack(world, &(struct inside_query){renderer->camera.eye, 0, renderer->closed, renderer->closed_count},
-                    &renderer->workers[0].scratch, &renderer->eye_medium_stack);
+                       &renderer->workers[0].scratch, &renderer->eye_medium_stack);
     return !renderer->workers[0].scratch.failed;
 }
 
@@ -294,9 +294,9 @@ static bool reads_time(const struct render_job *job) {
     const struct world *world = job->world;
     bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
                            (colour && expr_field_reads(colour, EXPR_TIME)));
-    for (uint32_t i = 0; !reads && i < world->texture_count; i++)
-        reads = world->textures[i].kind == TEXTURE_FUNCTION &&
-                expr_field_reads(world->textures[i].recorded.program, EXPR_TIME);
+    for (uint32_t i = 0; !reads && i < world->surfaces.textures.count; i++)
+        reads = world->surfaces.textures.operations[i].kind == TEXTURE_FUNCTION &&
+                expr_field_reads(world->surfaces.textures.operations[i].recorded.program, EXPR_TIME);
     return reads;
 }
 
