@@ -87,9 +87,7 @@ static inline bool is_common(enum expr_operation operation) {
             as = (const TYPE_##A *)(const void *)ra;                                                                   \
             bs = (const TYPE_##B *)(const void *)rb;                                                                   \
             cs = (const TYPE_##C *)(const void *)rc;                                                                   \
-            if (lanes_functions[member])                                                                               \
-                lanes_functions[member](ra, rb, rc, width, to);                                                        \
-            else                                                                                                       \
+            if (!run_lanes(member, ra, rb, rc, width, to))                                                             \
                 LOOP(width, 0, A, B, C, expression)                                                                    \
         }                                                                                                              \
         break;                                                                                                         \
@@ -159,6 +157,26 @@ static void run_noise(const double *as, const double *bs, const double *cs, uint
     run_noise_lanes(as, bs, cs, width, out);
 }
 
+#define CASE(member, name)                                                                                             \
+    case member:                                                                                                       \
+        name(as, bs, cs, width, out);                                                                                  \
+        return true;
+/* False: it is none of these. */
+static inline bool run_lanes(enum expr_operation operation, const double *as, const double *bs, const double *cs,
+                             uint32_t width, double *out) {
+    switch ((unsigned)operation) {
+        CASE(EXPR_SIN, run_sin)
+        CASE(EXPR_COS, run_cos)
+        CASE(EXPR_TAN, run_tan)
+        CASE(EXPR_EXP, run_exp)
+        CASE(EXPR_LOG, run_log)
+        CASE(EXPR_POWER, run_power)
+        CASE(EXPR_NOISE, run_noise)
+    }
+    return false;
+}
+#else
+#define run_lanes(...) false
 #endif
 
 /* The sine and the cosine of one number. */
@@ -178,14 +196,6 @@ static void run_sincos(const double *from, uint32_t width, double *sines, double
     for (uint32_t i = 0; i < width && is_other; i++)
         el_sincos(copies[i], &sines[i], &cosines[i]);
 }
-
-typedef void lanes_function(const double *, const double *, const double *, uint32_t, double *);
-static lanes_function *const lanes_functions[EXPR_OPERATION_COUNT] = {
-#ifdef __AVX2__
-    [EXPR_SIN] = run_sin, [EXPR_COS] = run_cos,     [EXPR_TAN] = run_tan,     [EXPR_EXP] = run_exp,
-    [EXPR_LOG] = run_log, [EXPR_POWER] = run_power, [EXPR_NOISE] = run_noise,
-#endif
-    [EXPR_INPUT] = NULL};
 
 /* An operand: the beginning of its row, or the constant. */
 static inline const double *operand(const struct expr_program *program, uint16_t value, double *rows) {

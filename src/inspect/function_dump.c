@@ -104,7 +104,7 @@ static void dump_geometry(struct functions *functions, const struct geometry *ge
 
 void inspect_functions(const struct inspected *picture, struct text_writer *writer) {
     const struct world *world = picture->job->world;
-    const struct fog *fog = picture->job->fog;
+    const struct fog *fog = world_outside(world)->fog;
     struct functions functions = {.writer = writer, .json = picture->json};
     text_writer_put(writer, picture->json ? "{\"picture\":%q,\"functions\":[" : "%n: functions\n", picture->file);
     for (uint32_t i = 0; i < world->surfaces.textures.count; i++)

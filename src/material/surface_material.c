@@ -172,19 +172,19 @@ bool surface_passes(const struct surface_material *surface) {
 struct medium surface_medium(const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
     const struct openpbr *openpbr = surface->has_layers ? &surface->openpbr : NULL;
-    struct medium medium = {.ior = numbers->has_ior ? numbers->ior : 1, .absorption = numbers->absorption};
-    medium.tint = surface->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    double ior = numbers->has_ior ? numbers->ior : 1;
+    struct vec3 tint = surface->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
     if (openpbr) {
-        medium.ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
-        medium.tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+        ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
+        tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
     }
-    return medium;
+    return medium_inside(ior, tint, numbers->absorption);
 }
 
 bool surface_divides_media(const struct surface_material *surface) {
     struct medium medium = surface_medium(surface);
     bool thin = surface->has_layers && surface->openpbr.thin_walled;
-    bool differs = surface->has_layers || medium.ior != 1 || vec3_max_abs(medium.absorption) > 0;
+    bool differs = surface->has_layers || medium.ior != 1 || vec3_max_abs(medium.extinction) > 0;
     return !thin && differs && surface_passes(surface);
 }
 

@@ -114,7 +114,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
         return tracer->built;
     if (!find_photon_lights(tracer, world))
         return error_no_memory(error, "the lights of the scene");
-    const struct photon_scene scene = {world, renderer->job->fog, settings};
+    const struct photon_scene scene = {world, settings};
     return photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error);
 }
 
@@ -168,6 +168,14 @@ struct sample_plan {
     uint32_t before, expected;
 };
 
+/* The last piece of path i of the batch (path_pieces_internal.h). */
+static void add(struct path_pixel *pixel, const struct batch *batch, uint32_t i) {
+    double weight = batch->positions[i].weight;
+    if (batch->parts)
+        path_pixel_add_parts(pixel, &batch->parts[i], batch->colours[i], weight);
+    path_pixel_add(pixel, batch->colours[i], batch->seen_through[i], weight);
+}
+
 /* Adds these samples to the pixels of a row of the film, pixel by pixel and batch by batch. A batch may contain samples
  * of several pixels. */
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
@@ -191,9 +199,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
         /* Samples are added in their order, so the sums do not depend on the batches. */
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
-            if (batch->parts)
-                path_pixel_add_parts(&pixel, &batch->parts[i], batch->colours[i], batch->positions[i].weight);
-            path_pixel_add(&pixel, batch->colours[i], batch->seen_through[i], batch->positions[i].weight);
+            add(&pixel, batch, i);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);

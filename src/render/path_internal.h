@@ -3,7 +3,7 @@
  * with the power heuristic, and Russian roulette ends paths (E. Veach, "Robust Monte Carlo Methods for Light Transport
  * Simulation", 1997, chapters 9 and 10). The vocabulary is that of pbrt-v4.
  *
- * path.c: pixels and their samples. path_trace.c: one path. path_light.c: the light that reaches a vertex. */
+ * path.c: pixels and their samples. path_pieces_internal.h: one path. path_light.c: the light that reaches a vertex. */
 #ifndef GRAY_RENDER_PATH_INTERNAL_H
 #define GRAY_RENDER_PATH_INTERNAL_H
 

@@ -289,9 +289,10 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
 
 /* Whether a function of a script does. */
 static bool reads_time(const struct render_job *job) {
-    const struct fog_field *field = job->fog ? job->fog->field : NULL;
-    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
     const struct world *world = job->world;
+    const struct fog *fog = world_outside(world)->fog;
+    const struct fog_field *field = fog ? fog->field : NULL;
+    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
     bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
                            (colour && expr_field_reads(colour, EXPR_TIME)));
     for (uint32_t i = 0; !reads && i < world->surfaces.textures.count; i++)

@@ -29,6 +29,7 @@ static const struct light *visible_light(const struct world *world, const struct
     const struct light *best = NULL;
     struct ray limited = *ray;
     struct light_hit met;
+    limited.t_min = 0; /* also before boundaries without effect */
     limited.t_max = t_max;
     for (uint32_t i = 0; i < world->light_count; i++) {
         if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
@@ -323,7 +324,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
     struct medium_effect air;
     struct path dimmed;
-    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct vec3 left = air.transmittance;
     OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
     if (affected) {

@@ -674,7 +674,8 @@ static bool make_materials(struct flattening *f) {
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
     world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
     world->material_has_medium = arena_alloc_array(arena, count, sizeof *world->material_has_medium);
-    world->media.all = arena_alloc_array(arena, count, sizeof *world->media.all);
+    world->media.all = arena_alloc_array(arena, (size_t)count + 1, sizeof *world->media.all);
+    world->media.outside = count;
     if (!world->material_has_image || !world->material_has_tangents || !world->material_has_medium || !world->media.all)
         return error_no_memory(f->error, "the materials of the scene");
     if (!flatten_surfaces(f))
@@ -733,6 +734,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     flattening.arena = of_tables;
     if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening) || !solids_make(&flattening)))
         return false;
+    world->media.all[world->media.outside] = input->outside ? *input->outside : medium_outside(NULL);
     add_up_meshes(world, input->scene->assets);
     /* The accelerator comes last, since it needs the boxes; that of the frame before fits if they are equal. */
     reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,

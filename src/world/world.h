@@ -84,7 +84,7 @@ struct world {
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
     bool *material_has_medium;   /* solids of the material have one inside: it is transparent */
     uint32_t material_count, material_number_count;
-    struct media media;          /* of all solids that light may pass; their media have the numbers of the materials */
+    struct media media;          /* those of solids have the numbers of the materials */
     const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
     double emission_bound;       /* a bound of the largest component of emission */
     const struct light *lights;
@@ -100,6 +100,11 @@ struct world {
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
+
+/* The medium around all solids. */
+static inline const struct medium *world_outside(const struct world *world) {
+    return &world->media.all[world->media.outside];
+}
 
 #define WORLD_NOTHING UINT32_MAX /* instead of a primitive's number */
 enum { WORLD_SHADOW_CACHE = 8 };
@@ -134,6 +139,7 @@ struct world_input {
     const struct scene_light *lights;
     uint32_t light_count;
     const struct sky *sky;
+    const struct medium *outside; /* around all solids; NULL: nothing */
     struct shutter shutter;
     enum accel_kind accel;     /* of the world and of the meshes */
     bool linear_colours;       /* pictures and display colours are decoded (docs/colour.md) */

@@ -452,7 +452,7 @@ static struct material glass_of(double ior) {
 TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index) {
     const struct material_context tir = {.total_reflection = true};
     struct material glass = glass_of(1.5);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     for (double degrees = 1; degrees < 90; degrees += 4) {
@@ -491,7 +491,7 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
 TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
     struct material base = glass_of(1.5), glass;
     material_derive(&glass, MATERIAL_FRESNEL, &base);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     for (double degrees = 2; degrees < 88; degrees += 5) {
@@ -515,7 +515,7 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
 
 TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
     struct material glass = glass_of(1.5);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     struct hit hit = hit_at(60, false);

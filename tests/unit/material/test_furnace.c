@@ -30,7 +30,7 @@ static void ball_init(struct ball *ball) {
 static const struct solid solid = {4, 0};
 static struct media inside_of(struct ball *ball) {
     ball->medium.ior = openpbr_ior(ball->numbers.specular_ior, ball->numbers.specular_weight);
-    return (struct media){&solid, &ball->medium};
+    return (struct media){&solid, &ball->medium, 0};
 }
 
 /* The surface at a point of the ball of radius 1, seen by a ray. */

@@ -33,7 +33,7 @@ static void layers_init(struct layers *layers) {
 static struct bsdf seen(const struct layers *layers, double cosine, bool front) {
     struct hit hit = {.view = {sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine}, .front = front, .primitive = 4};
     struct medium medium = {.ior = layers->numbers.specular_ior};
-    const struct media media = {&(struct solid){4, 0}, &medium};
+    const struct media media = {&(struct solid){4, 0}, &medium, 0};
     struct medium_stack inside = {.media = &media};
     struct bsdf bsdf;
     hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);

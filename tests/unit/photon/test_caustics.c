@@ -74,7 +74,7 @@ static struct photon_statistics send(struct stage *s, int photons, struct photon
     struct photon_statistics statistics = {0};
     s->settings.caustics.photons = photons;
     CHECK(stage_build(s, s->root, ACCEL_AUTO));
-    const struct photon_scene scene = {.world = &s->world, .settings = &s->settings, .fog = s->fog};
+    const struct photon_scene scene = {.world = &s->world, .settings = &s->settings};
     if (!photons_make(map, &scene, s->pool, &statistics, &s->error))
         test_fail(__FILE__, __LINE__, "%s", s->error.text);
     return statistics;
