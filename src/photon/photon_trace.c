@@ -144,7 +144,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
                                                  .total_reflection = true,
                                                  .thin = primitive_is_thin(s->world, hit.primitive),
                                                  .joint = joint_boundary(&joint)};
-        material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
+        material_eval(&s->world->surfaces, &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
             path.ray = joint_ray_through_hole(&joint, &hit, &path.ray, &path.media);

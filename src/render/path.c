@@ -345,8 +345,8 @@ static const char *user_of(const struct world *world, uint32_t material) {
 static bool has_emission(const struct world *world, uint32_t material, uint32_t slots) {
     bool any = false;
     for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
-        any = any || vec3_max_abs(material_emission(&world->materials[i])) > 0 ||
-              vec3_max_abs(material_emission_bound(&world->materials[i])) > 0;
+        any = any || vec3_max_abs(surface_emission(&world->surfaces, &world->surfaces.materials[i])) > 0 ||
+              vec3_max_abs(surface_emission_bound(&world->surfaces, &world->surfaces.materials[i])) > 0;
     return any;
 }
 
@@ -382,14 +382,15 @@ void path_tracer_warn(const struct render_job *job, world_warning *warn, void *c
     if (vec3_max_abs(job->ambient) > 0)
         warn(context, "--integrator path ignores ambient: it computes indirect light instead");
     for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = &world->materials[i];
-        double albedo = material_albedo_bound(material);
+        const struct surface_material *material = &world->surfaces.materials[i];
+        const char *name = world->authored.materials[i]->name;
+        double albedo = surface_albedo_bound(&world->surfaces, material);
         if (!(albedo > 1 + 0x1p-20))
             continue;
         (void)snprintf(text, sizeof text,
                        "warning: --integrator path: the material of '%.100s' reflects more light than it receives "
                        "(%.3g times); only --max-depth and Russian roulette end its paths",
-                       material->name && material->name[0] ? material->name : user_of(world, i), albedo);
+                       name && name[0] ? name : user_of(world, i), albedo);
         warn(context, text);
         return;
     }

@@ -359,11 +359,11 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
                                              .total_reflection = true,
                                              .no_black_highlight = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
-                                             .joint = joint_boundary(joint),
-                                             .observer = OBSERVED ? observe_material : NULL,
-                                             .observer_context = OBSERVED ? state->observer : NULL,
-                                             .authored = world->authored.materials[hit->material]};
-    material_eval(&world->materials[hit->material], hit, path->ray.media, &context, bsdf);
+                                             .joint = joint_boundary(joint)};
+    if (OBSERVED)
+        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
+                         state->observer);
+    material_eval(&world->surfaces, hit, path->ray.media, &context, bsdf);
 }
 
 /* The surface's own light. */

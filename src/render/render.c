@@ -295,9 +295,9 @@ static bool reads_time(const struct render_job *job) {
     const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
     bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
                            (colour && expr_field_reads(colour, EXPR_TIME)));
-    for (uint32_t i = 0; !reads && i < world->texture_count; i++)
-        reads = world->textures[i].kind == TEXTURE_FUNCTION &&
-                expr_field_reads(world->textures[i].recorded.program, EXPR_TIME);
+    for (uint32_t i = 0; !reads && i < world->surfaces.textures.count; i++)
+        reads = world->surfaces.textures.operations[i].kind == TEXTURE_FUNCTION &&
+                expr_field_reads(world->surfaces.textures.operations[i].recorded.program, EXPR_TIME);
     return reads;
 }
 

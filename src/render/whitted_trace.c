@@ -293,14 +293,14 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
-                                             .joint = joint_boundary(joint),
-                                             .observer = state->observer ? observe_material : NULL,
-                                             .observer_context = state->observer,
-                                             .authored = world->authored.materials[hit->material]};
+                                             .joint = joint_boundary(joint)};
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};
     state->hits++;
-    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    if (state->observer)
+        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
+                         state->observer);
+    material_eval(&world->surfaces, hit, ray->media, &context, &bsdf);
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
         return shade(state, &at, path);

@@ -8,6 +8,7 @@
 #include "csg/geometry.h"
 #include "geometry/hit.h"
 #include "material/medium.h"
+#include "material/surface_material.h"
 #include "math/motion.h"
 #include "scene/node.h"
 #include "world/mesh_group.h"
@@ -43,9 +44,10 @@ struct prototype {
 
 /* The authored objects, for inspection: searches and shading never read this. Borrows from the scene. */
 struct authored {
-    const struct node **nodes;         /* of each prototype; owned */
-    const struct material **materials; /* of each material, with the chain that it was derived from */
-    const uint8_t *draws;              /* by node->index: whether the node, or a descendant, has primitives */
+    const struct node **nodes;             /* of each prototype; owned */
+    const struct material **materials;     /* of each material, with the chain that it was derived from */
+    const struct texture *const *textures; /* of each texture */
+    const uint8_t *draws;                  /* by node->index: whether the node, or a descendant, has primitives */
 };
 
 /* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
@@ -74,16 +76,14 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    /* Flattened (material_flatten), by layout of shapes: a material whose images have another mapping on spheres or
-     * boxes is here several times, with the same number. */
-    struct material *materials;
+    /* By layout of shapes: a material whose images have another mapping on spheres or boxes is here several times, with
+     * the same number. */
+    struct surface_tables surfaces;
     const uint32_t *material_numbers;
-    const struct texture *textures; /* textures of materials and bumps; parts come before their readers */
-    const struct bump *bumps;
     bool *material_has_image;    /* such materials need the footprint on the surface */
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
     bool *material_has_medium;   /* solids of the material have one inside: it is transparent */
-    uint32_t material_count, material_number_count, texture_count, bump_count;
+    uint32_t material_count, material_number_count;
     struct media media;          /* those of solids have the numbers of the materials */
     const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
     double emission_bound;       /* a bound of the largest component of emission */

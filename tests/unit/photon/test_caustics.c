@@ -665,7 +665,7 @@ TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
         layers.specular_weight = kind == 1;
         layers.coat_weight = kind == 2;
         if (kind >= 3)
-            lacquer->inputs[kind == 3 ? INPUT_COAT_WEIGHT : INPUT_METALNESS].authored = &half;
+            lacquer->inputs[kind == 3 ? INPUT_COAT_WEIGHT : INPUT_METALNESS] = &half;
         ball(&s, vec3_make(0, 1.5, 0), 1, lacquer);
         inverse_square(&s, vec3_make(0, 5, 0), 1);
         CHECK_EQ_INT(send(&s, 1000, &map).sent, kind == 0 ? 0 : 1000);
