@@ -10,10 +10,25 @@ struct medium medium_outside(const struct fog *fog) {
     return (struct medium){.ior = 1, .tint = {1, 1, 1}, .fog = fog, .affects = fog ? MEDIUM_RAY_SIGHT : 0};
 }
 
-struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+static bool has_some(struct vec3 c) {
+    return c.x > 0 || c.y > 0 || c.z > 0;
+}
+
+struct medium medium_scattering(const struct medium_input *in) {
     const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
-    bool absorbs = absorption.x > 0 || absorption.y > 0 || absorption.z > 0;
-    return (struct medium){.ior = ior, .tint = tint, .extinction = absorption, .affects = absorbs ? all : 0};
+    struct medium medium = {.ior = 1, .tint = {1, 1, 1}, .phase = in->phase, .scatters = has_some(in->scattering)};
+    medium.scattering = in->scattering;
+    medium.emission = in->emission;
+    medium.extinction = vec3_add(in->absorption, in->scattering);
+    medium.affects = has_some(medium.extinction) || has_some(in->emission) ? all : 0;
+    return medium;
+}
+
+struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+    struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
+    medium.ior = ior;
+    medium.tint = tint;
+    return medium;
 }
 
 /* The law of Beer, Lambert and Bouguer. */

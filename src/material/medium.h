@@ -34,6 +34,12 @@ struct medium {
 
 /* Around all solids. fog: or NULL. */
 struct medium medium_outside(const struct fog *fog);
+/* One that absorbs, scatters and emits. */
+struct medium_input {
+    struct vec3 absorption, scattering, emission;
+    struct phase phase;
+};
+struct medium medium_scattering(const struct medium_input *in);
 /* Inside of a solid, without scattering and emission. */
 struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption);
 
