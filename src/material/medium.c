@@ -63,6 +63,18 @@ static bool fog_effect(const struct fog *fog, const struct ray *ray, double dist
     return true;
 }
 
+/* Emission over extinction. where_clear: of the channels without extinction. */
+static struct vec3 source_of(const struct medium *medium, struct vec3 where_clear) {
+    struct vec3 e = medium->emission, s = medium->extinction;
+    return vec3_make(s.x > 0 ? e.x / s.x : where_clear.x, s.y > 0 ? e.y / s.y : where_clear.y,
+                     s.z > 0 ? e.z / s.z : where_clear.z);
+}
+
+double medium_brightest(const struct medium *medium) {
+    struct vec3 source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
+    return fmax(source.x, fmax(source.y, source.z));
+}
+
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
     out->transmittance = vec3_all(1);
     out->added = out->source = vec3_all(0);
@@ -72,11 +84,9 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
     if (medium->fog)
         return fog_effect(medium->fog, ray, distance, out);
     out->transmittance = uniform_transmittance(medium->extinction, distance);
-    if (vec3_max_abs(medium->emission) > 0) {
-        struct vec3 e = medium->emission, s = medium->extinction, near = medium_emission(medium, distance);
-        out->added = near;
-        out->source =
-            vec3_make(s.x > 0 ? e.x / s.x : near.x, s.y > 0 ? e.y / s.y : near.y, s.z > 0 ? e.z / s.z : near.z);
+    if (has_some(medium->emission)) {
+        out->added = medium_emission(medium, distance);
+        out->source = source_of(medium, out->added);
     }
     return true;
 }

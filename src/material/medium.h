@@ -122,6 +122,8 @@ struct medium_effect {
  * transmittance is 1. */
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out);
 
+/* The largest radiance that it shows over a long distance. */
+double medium_brightest(const struct medium *medium);
 /* The radiance that a medium without fog adds over a distance, itself attenuated. */
 struct vec3 medium_emission(const struct medium *medium, double distance);
 

@@ -197,8 +197,8 @@ static void leave_scene(const struct path_tracer *tracer, struct integrator_stat
  * noise than their rays cost. Media scatter so often that even .95 would leave few, heavy paths. */
 static bool survives(struct path *path, bool on_surface, double u) {
     double chance = sqrt(vec3_max_abs(path->weight) / path->radiance_scale);
-    double most = on_surface ? survival : 1;
-    chance = chance < most ? chance : most;
+    double limit = on_surface ? survival : 1;
+    chance = chance < limit ? chance : limit;
     if (!(u < chance))
         return false;
     path->weight = vec3_scale(path->weight, 1 / chance);
