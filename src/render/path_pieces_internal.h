@@ -337,6 +337,7 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    watch_medium(watch);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
@@ -484,7 +485,7 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
     if (to == ENDS_AT_LIGHT)
         return false;
-    watch_arrival(watch, path, 0);
+    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? distance : 0);
     if (to == ENDS_IN_MEDIUM)
         return meet_medium(tracer, state, path, distance, shadow, watch);
     if (met)
