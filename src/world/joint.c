@@ -32,7 +32,7 @@ static void add_face(struct junction *junction, const struct hit *hit, const str
     const struct material_context context = {.total_reflection = true,
                                              .thin = !world->classic && primitive_is_thin(world, hit->primitive)};
     struct bsdf bsdf;
-    material_eval(&world->materials[hit->material], hit, junction->ray->media, &context, &bsdf);
+    material_eval(&world->surfaces, hit, junction->ray->media, &context, &bsdf);
     if (!(bsdf.opacity > 0) || junction->count == FACES)
         return;
     struct face *face = &junction->faces[junction->count++];
