@@ -383,7 +383,8 @@ static inline struct vec3 radiance_of(struct integrator_state *state, const stru
     return incident_radiance(state, ray, hit, &single, path);
 }
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+static inline __attribute__((always_inline)) struct vec3 trace(struct integrator_state *state, const struct ray *ray,
+                                                               const struct path *path) {
     struct hit hit;
     if (integrator_cancelled(state))
         return vec3_all(0); /* deep paths through glass grow exponentially */
