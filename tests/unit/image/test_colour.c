@@ -114,8 +114,8 @@ TEST(a_pixel_trace_reports_the_decoded_colours_of_the_picture) {
     stage_begin(&s, 1);
     struct image *image = ramp(&s.error);
     CHECK(in_world(&s, image, INPUT_KD, ENCODING_AUTO, COLOUR_LINEAR));
-    material_observe(&s.world.surfaces, &hit, s.world.authored.materials[0], &(struct material_context){.thin = false},
-                     keep_last, &reported);
+    CHECK(material_observe(&s.world.surfaces, &hit, s.world.authored.materials[0],
+                           &(struct material_context){.thin = false}, keep_last, &reported));
     CHECK_NEAR(reported.kd.x, decoded(64 / 255.0) * (255 - 64) / 255, 1e-4); /* with its alpha, over black */
     stage_end(&s);
     image_release(image);
