@@ -552,9 +552,9 @@ static const struct expr_instruction *run_code(const struct expr_program *progra
     if (in >= end)
         return NULL;
     goto *targets[in->link];
+LOOP:
+    return in;
 UNLINKED:
-    if (in->operation == EXPR_LOOP)
-        return in;
     in = run_unlinked(program, in, values);
     NEXT EXPR_LINK_CASES(SINGLE_1, SINGLE_2, SINGLE_3)
 }
@@ -611,8 +611,7 @@ __attribute__((noinline)) static void run_loops(const struct expr_program *progr
 void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                    double outputs[EXPR_OUTPUTS]) {
     union expr_value values[EXPR_VALUES];
-    for (uint32_t i = 0; i < program->constant_count; i++)
-        values[i] = program->constants[i];
+    memcpy(values, program->constants, program->constant_count * sizeof *values);
     for (int i = 0; i < program->input_count; i++)
         values[program->inputs[i].value].f = inputs[program->inputs[i].input];
     if (program->loop_count > 0)

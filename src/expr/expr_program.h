@@ -17,7 +17,7 @@ enum { EXPR_VALUES = 8192, EXPR_OUTPUTS = 4, EXPR_BATCH = 64 };
 struct expr_instruction {
     uint16_t operation;    /* enum expr_operation */
     uint16_t out, a, b, c; /* `out` for operands that the operation does not have */
-    uint16_t link;         /* for the evaluators of points, see expr_link_internal.h; 0 is always right */
+    uint16_t link;         /* for the evaluators of points, see expr_link_internal.h; 0 is right but for EXPR_LOOP */
 };
 
 struct expr_loop;

@@ -10,7 +10,7 @@ struct interaction {
     const struct bsdf *bsdf; /* of a surface, or NULL */
     uint32_t lobes;          /* that scatter; 1 in a medium */
     struct vec3 wo;
-    struct phase phase; /* of a medium: the colour of scattering is in the weight of medium_sample */
+    const struct phase *phase; /* of a medium: the colour of scattering is in the weight of medium_sample */
 };
 
 /* The flag of samples in a medium, beside those of bsdf_sample. */
@@ -21,12 +21,12 @@ static inline struct vec3 interaction_eval(const struct interaction *at, uint32_
                                            struct vec3 wi) {
     if (at->bsdf)
         return bsdf_eval(at->bsdf, lobes, mode, at->wo, wi);
-    return vec3_all(lobes ? phase_eval(&at->phase, at->wo, wi) : 0);
+    return vec3_all(lobes ? phase_eval(at->phase, at->wo, wi) : 0);
 }
 
 /* The density of interaction_sample's directions per solid angle, delta lobes aside. */
 static inline double interaction_pdf(const struct interaction *at, struct vec3 wi) {
-    return at->bsdf ? bsdf_pdf(at->bsdf, at->lobes, at->wo, wi) : phase_eval(&at->phase, at->wo, wi);
+    return at->bsdf ? bsdf_pdf(at->bsdf, at->lobes, at->wo, wi) : phase_eval(at->phase, at->wo, wi);
 }
 
 /* A direction for a point of the unit square. False: none, which counts as black. */
@@ -34,9 +34,9 @@ static inline bool interaction_sample(const struct interaction *at, enum bsdf_mo
                                       struct bsdf_sample *out) {
     if (at->bsdf)
         return bsdf_sample(at->bsdf, at->lobes, mode, at->wo, u, out);
-    out->direction = phase_sample(&at->phase, at->wo, u);
+    out->direction = phase_sample(at->phase, at->wo, u);
     out->weight = vec3_all(1);
-    out->pdf = phase_eval(&at->phase, at->wo, out->direction);
+    out->pdf = phase_eval(at->phase, at->wo, out->direction);
     out->flags = INTERACTION_MEDIUM;
     return true;
 }

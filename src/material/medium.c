@@ -22,32 +22,6 @@ static struct vec3 uniform_transmittance(struct vec3 a, double distance) {
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
-static bool fog_effect(const struct fog *fog, const struct ray *ray, double distance, struct medium_effect *out) {
-    if (fog->clear_sky && distance == INFINITY)
-        return false;
-    struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
-    out->source = fog->colour;
-    if (fog->kind == FOG_FIELD) {
-        const struct fog_line line = {ray->origin, direction, distance, ray->time};
-        out->transmittance = vec3_all(fog_field_transmittance(fog->field, &line, &out->source));
-        return true;
-    }
-    out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
-    return true;
-}
-
-bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
-    out->transmittance = vec3_all(1);
-    out->source = vec3_all(0);
-    if (!medium_affects(kind, ray))
-        return false;
-    const struct medium *medium = medium_stack_current(ray->media);
-    if (medium->fog)
-        return fog_effect(medium->fog, ray, distance, out);
-    out->transmittance = uniform_transmittance(medium->extinction, distance);
-    return true;
-}
-
 /* The integral of the transmittance over the distance. */
 static double depth_seen(double extinction, double distance) {
     return extinction > 0 ? -el_expm1(-extinction * distance) / extinction : distance;
@@ -57,6 +31,48 @@ struct vec3 medium_emission(const struct medium *medium, double distance) {
     struct vec3 e = medium->emission, s = medium->extinction;
     return vec3_make(e.x > 0 ? e.x * depth_seen(s.x, distance) : 0, e.y > 0 ? e.y * depth_seen(s.y, distance) : 0,
                      e.z > 0 ? e.z * depth_seen(s.z, distance) : 0);
+}
+
+static bool fog_effect(const struct fog *fog, const struct ray *ray, double distance, struct medium_effect *out) {
+    if (fog->clear_sky && distance == INFINITY)
+        return false;
+    struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
+    out->source = fog->colour;
+    if (fog->kind == FOG_FIELD) {
+        const struct fog_line line = {ray->origin, direction, distance, ray->time};
+        out->transmittance = vec3_all(fog_field_transmittance(fog->field, &line, &out->source));
+    } else {
+        out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
+    }
+    out->added = vec3_mul(out->source, vec3_sub(vec3_all(1), out->transmittance));
+    return true;
+}
+
+bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
+    out->transmittance = vec3_all(1);
+    out->added = out->source = vec3_all(0);
+    if (!medium_affects(kind, ray))
+        return false;
+    const struct medium *medium = medium_stack_current(ray->media);
+    if (medium->fog)
+        return fog_effect(medium->fog, ray, distance, out);
+    out->transmittance = uniform_transmittance(medium->extinction, distance);
+    if (vec3_max_abs(medium->emission) > 0) {
+        struct vec3 e = medium->emission, s = medium->extinction, near = medium_emission(medium, distance);
+        out->added = near;
+        out->source =
+            vec3_make(s.x > 0 ? e.x / s.x : near.x, s.y > 0 ? e.y / s.y : near.y, s.z > 0 ? e.z / s.z : near.z);
+    }
+    return true;
+}
+
+static double quotient(double part, double all) {
+    return all > 0 ? part / all : 0;
+}
+
+struct vec3 medium_albedo(const struct medium *medium) {
+    struct vec3 s = medium->scattering, e = medium->extinction;
+    return vec3_make(quotient(s.x, e.x), quotient(s.y, e.y), quotient(s.z, e.z));
 }
 
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,

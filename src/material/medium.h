@@ -28,6 +28,7 @@ struct medium {
     struct vec3 scattering; /* at most the extinction */
     struct vec3 emission;   /* radiance per unit */
     struct phase phase;     /* of scattering */
+    bool scatters;          /* scattering is not black */
     unsigned affects;       /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 
@@ -104,10 +105,11 @@ static inline bool medium_affects(enum medium_ray kind, const struct ray *ray) {
     return ray->media && (medium_stack_current(ray->media)->affects & kind);
 }
 
-/* Light that was `x` is transmittance * x + source * (1 - transmittance) after it. */
+/* Light that was `x` is transmittance * x + added after it. */
 struct medium_effect {
     struct vec3 transmittance; /* 0..1 */
-    struct vec3 source;        /* the colour of the medium over an infinite distance */
+    struct vec3 added;         /* the light of the medium itself */
+    struct vec3 source;        /* the same over an infinite distance, where that is finite */
 };
 
 /* From the ray's origin over a distance in world units (infinite: no hit). False: the ray is not affected, and
@@ -116,6 +118,9 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
 
 /* The radiance that a medium without fog adds over a distance, itself attenuated. */
 struct vec3 medium_emission(const struct medium *medium, double distance);
+
+/* The share of scattering in the extinction. */
+struct vec3 medium_albedo(const struct medium *medium);
 
 /* Where a path is scattered in a medium without fog. */
 struct medium_sample {

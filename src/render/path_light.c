@@ -34,36 +34,48 @@ static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t lig
 /* --- sampling a light --- */
 
 /* f |cos| of a set of lobes. Classic lobes do not reflect light from behind the geometric surface. */
-static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
-    const struct bsdf *bsdf = vertex->bsdf;
-    if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
+static inline struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    if (bsdf && !(vec3_dot(wi, bsdf->geometric_side) > 0))
         lobes &= bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
-    return lobes ? bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi) : vec3_all(0);
+    return lobes ? interaction_eval(&vertex->at, lobes, BSDF_RADIANCE, wi) : vec3_all(0);
 }
 
-/* The ray to a sample, from the side of the surface on which the light is, in the media on that side. */
-static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+/* Starts a ray to a sample on the side of the surface on which the light is, in the media on that side. */
+static void leave_surface(const struct path_vertex *vertex, struct path_shadow *out) {
     const struct world_light_sample *sample = &out->sample;
     const struct hit *hit = vertex->hit;
     struct ray *shadow = &out->ray;
-    shadow->origin = vertex->receiver->from;
-    shadow->t_min = 0;
-    shadow->time = hit->time;
-    shadow->footprint = (struct footprint){0, 0};
-    shadow->media = &out->media;
-    medium_stack_copy(&out->media, vertex->ray->media);
-    if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
+    if (!(vec3_dot(sample->direction, vertex->at.bsdf->geometric_side) > 0)) {
         shadow->origin = hit_start(hit, vertex->ray, sample->direction);
-        bsdf_cross(vertex->bsdf, &out->media);
+        bsdf_cross(vertex->at.bsdf, &out->media);
     }
     shadow->direction = light_target_from(&sample->target, shadow->origin);
-    shadow->t_max = light_target_end(&sample->target);
     /* A classic area light is shaded from its centre, which may be on the other side of the surface than this point. */
     double side = vec3_dot(sample->direction, hit->normal_geometric);
     struct hit_skip skip = sample->skip_primitive ? (struct hit_skip){sample->skip_primitive, 0}
                                                   : hit_skip_from(hit, side, shadow->direction);
     shadow->skip_primitive = skip.primitive;
     shadow->skip_part = skip.part;
+}
+
+static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+    const struct world_light_sample *sample = &out->sample;
+    struct ray *shadow = &out->ray;
+    shadow->origin = vertex->receiver->from;
+    shadow->t_min = 0;
+    shadow->t_max = light_target_end(&sample->target);
+    shadow->time = vertex->ray->time;
+    shadow->footprint = (struct footprint){0, 0};
+    shadow->media = &out->media;
+    medium_stack_copy(&out->media, vertex->ray->media);
+    if (vertex->at.bsdf) {
+        leave_surface(vertex, out);
+    } else {
+        shadow->direction = light_target_from(&sample->target, shadow->origin);
+        shadow->skip_primitive = sample->skip_primitive;
+        shadow->skip_part = 0;
+    }
     out->sent = true;
 }
 
@@ -81,10 +93,10 @@ struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integra
     } else {
         radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
-    struct medium_effect effect;
-    if (is_black(radiance) ||
-        !medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect))
+    if (is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
+    struct medium_effect effect;
+    (void)medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect);
     return vec3_mul(radiance, effect.transmittance);
 }
 
@@ -108,7 +120,11 @@ static double share_of(double part, double all) {
 }
 
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]) {
-    const struct bsdf *bsdf = vertex->bsdf;
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    if (!bsdf) {
+        path_share_all(BSDF_DIFFUSE, out);
+        return;
+    }
     const uint32_t of_kind[PATH_SCATTERINGS] = {[SCATTERING_DIFFUSE] = lobes & bsdf_select(bsdf, BSDF_FOR_DIFFUSE),
                                                 [SCATTERING_SPECULAR] = lobes & bsdf_select(bsdf, BSDF_FOR_SPECULAR),
                                                 [SCATTERING_TRANSMISSION] =
@@ -129,7 +145,7 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
                         struct vec3 shares[PATH_SCATTERINGS]) {
     struct vec3 f = choice->lobes, highlight = choice->highlight, sum = vec3_add(f, highlight);
-    path_shares(vertex, vertex->lobes, wi, shares);
+    path_shares(vertex, vertex->at.lobes, wi, shares);
     if (is_black(highlight))
         return;
     struct vec3 all = vec3_make(share_of(f.x, sum.x), share_of(f.y, sum.y), share_of(f.z, sum.z));
@@ -161,8 +177,9 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
         xi = sampler_point(draw->sampler, draw->dimension);
     if (!world_lights_sample(lights, vertex->receiver, part, xi, sample))
         return false;
-    struct vec3 f = scattered(vertex, vertex->lobes, sample->direction);
-    uint32_t traced = tracer->photon_lights ? vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED) : 0;
+    struct vec3 f = scattered(vertex, vertex->at.lobes, sample->direction);
+    uint32_t traced =
+        tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !is_black(vertex->thrown)) {
         struct vec3 by_traced = scattered(vertex, traced, sample->direction);
         f = vec3_sub(f, vec3_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
@@ -171,7 +188,7 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (sample->is_delta) {
         f = vec3_scale(f, 1 / pdf);
     } else {
-        double other = bsdf_pdf(vertex->bsdf, vertex->lobes, vertex->hit->view, sample->direction);
+        double other = interaction_pdf(&vertex->at, sample->direction);
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
     choice->lobes = f;
@@ -227,8 +244,10 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         bool counted = segment->passed > 0 && !(hit.t > 0); /* before the hole */
         if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
-        (void)medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect);
-        struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
+        struct vec3 radiance = light_emitted(&lights->lights[number], &ray, &hit);
+        if (path_is_affected(tracer, MEDIUM_RAY_SCATTERED, &ray) &&
+            medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect))
+            radiance = vec3_mul(radiance, effect.transmittance);
         radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
         sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));

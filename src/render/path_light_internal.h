@@ -2,20 +2,24 @@
 #ifndef GRAY_RENDER_PATH_LIGHT_INTERNAL_H
 #define GRAY_RENDER_PATH_LIGHT_INTERNAL_H
 
+#include "material/interaction.h"
 #include "render/path_internal.h"
 #include "render/path_state_internal.h"
 
-/* A vertex whose BSDF is known. */
 struct path_vertex {
-    const struct ray *ray; /* that hit it */
-    const struct hit *hit;
-    const struct bsdf *bsdf;
+    const struct ray *ray; /* that ends here */
+    const struct hit *hit; /* of a surface */
+    struct interaction at;
     const struct light_receiver *receiver;
-    uint32_t lobes;      /* that scatter */
     uint32_t substitute; /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;          /* of a line of sight, on which mirrors show only visible lights */
     struct vec3 thrown;  /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
 };
+
+/* medium_affects; most scenes have nothing around their solids. */
+static inline bool path_is_affected(const struct path_tracer *tracer, enum medium_ray kind, const struct ray *ray) {
+    return (ray->media->count > 0 || tracer->in_medium) && medium_affects(kind, ray);
+}
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {

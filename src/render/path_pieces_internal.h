@@ -122,10 +122,33 @@ static double passed_of(const struct path *path) {
     return vec3_length(vec3_sub(path->ray.origin, path->scatter.from)) / vec3_length(path->ray.direction);
 }
 
-/* Adds everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
- * an area light. */
-static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
-                   const struct hit *hit, struct path_watch *watch) {
+/* Where a ray ends; nothing hit is a hit, too. */
+enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
+
+/* Passes the medium over a distance. True: it scatters the path, after *distance. */
+static bool pass_medium(const struct integrator_state *state, struct path *path, enum medium_ray kind,
+                        double *distance) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    struct medium_effect effect;
+    if (medium->scatters) {
+        const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
+        add_light(state, path, medium_emission(medium, *distance));
+        struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
+        path->weight = vec3_mul(path->weight, sample.weight);
+        *distance = sample.distance;
+        return sample.scatters;
+    }
+    if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
+        add_light(state, path, effect.added);
+        path->weight = vec3_mul(path->weight, effect.transmittance);
+    }
+    return false;
+}
+
+/* Adds everything between the origin of the ray and its end: area lights, media. *distance: to the hit, the light or
+ * where the medium scatters. */
+static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                             const struct hit *hit, struct path_watch *watch, double *distance) {
     double end = hit ? hit->t : path->ray.t_max;
     struct vec3 radiance;
     bool seen = false;
@@ -136,22 +159,20 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
         add_light(state, path, path_area_lights(tracer, &segment, end));
     }
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
-    if (!seen && !medium_affects(kind, &path->ray))
-        return true;
-    double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    struct medium_effect effect;
-    if (medium_transmittance(kind, &path->ray, distance, &effect)) {
-        add_light(state, path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
-        path->weight = vec3_mul(path->weight, effect.transmittance);
-    }
+    if (!seen && !path_is_affected(tracer, kind, &path->ray))
+        return ENDS_AT_HIT;
+    *distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
+    if (pass_medium(state, path, kind, distance))
+        return ENDS_IN_MEDIUM;
     if (!seen)
-        return true;
+        return ENDS_AT_HIT;
     const struct path_parts *parts = parts_of(state);
-    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + distance : 0);
-    watch_arrival(watch, path, distance);
+    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + *distance : 0);
+    watch_arrival(watch, path, *distance);
     add_light(state, path, radiance);
     watch_stage(watch, path, STAGE_EMISSION);
-    return watch_end(watch, PATH_SEES_LIGHT);
+    (void)watch_end(watch, PATH_SEES_LIGHT);
+    return ENDS_AT_LIGHT;
 }
 
 static void leave_scene(const struct path_tracer *tracer, struct integrator_state *state, struct path *path) {
@@ -188,10 +209,10 @@ static bool survives(struct path *path, double u) {
 /* The light of the photon map at the vertex. */
 static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                         const struct path_vertex *vertex) {
-    uint32_t lobes = vertex->lobes & bsdf_select(vertex->bsdf, BSDF_FOR_PHOTONS);
+    uint32_t lobes = vertex->at.lobes & bsdf_select(vertex->at.bsdf, BSDF_FOR_PHOTONS);
     if (lobes == 0 || path->depth + 2 > tracer->max_depth)
         return;
-    struct vec3 found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->bsdf, lobes);
+    struct vec3 found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->at.bsdf, lobes);
     struct vec3 light = vec3_mul(path->weight, found);
     path->light = vec3_add(path->light, light);
     /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
@@ -208,37 +229,50 @@ static double share_of(double part, double all) {
 
 /* The fraction of light from wi that these lobes of the vertex scatter. */
 static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
-    const struct bsdf *bsdf = vertex->bsdf;
-    if (lobes == 0 || lobes == vertex->lobes)
+    const struct interaction *at = &vertex->at;
+    if (lobes == 0 || lobes == at->lobes)
         return vec3_all(lobes ? 1 : 0);
-    struct vec3 part = bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi),
-                all = bsdf_eval(bsdf, vertex->lobes, BSDF_RADIANCE, vertex->hit->view, wi);
+    struct vec3 part = interaction_eval(at, lobes, BSDF_RADIANCE, wi),
+                all = interaction_eval(at, at->lobes, BSDF_RADIANCE, wi);
     return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
 }
 
 /* Photons carry light from a light source through traced lobes to a lobe that receives them. A path that continues
  * from such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
-    uint32_t traced = vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED);
-    uint32_t receiving = vertex->lobes & bsdf_select(vertex->bsdf, BSDF_FOR_PHOTONS);
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    uint32_t traced = bsdf ? vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED) : 0;
+    uint32_t receiving = bsdf ? vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS) : 0;
     bool delta = (sample->flags & BSDF_DELTA) != 0;
     struct vec3 by_traced = delta ? vec3_all(1) : share_of_lobes(vertex, traced, sample->direction);
     path->thrown = vec3_mul(vec3_add(path->received, path->thrown), by_traced);
     path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
 }
 
-/* Continues in a direction that the BSDF samples. */
-static bool scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                    const struct path_vertex *vertex, double u_roulette, struct path_watch *watch) {
-    const struct hit *hit = vertex->hit;
-    const struct bsdf *bsdf = vertex->bsdf;
+/* The ray that continues from a vertex in a medium. */
+static __attribute__((noinline)) void send_in_medium(struct ray *ray, struct vec3 from, struct vec3 direction) {
+    double passed = vec3_length(vec3_sub(from, ray->origin));
+    ray->footprint.width += ray->footprint.spread * passed;
+    ray->origin = from;
+    ray->direction = direction;
+    ray->t_min = 0;
+    ray->t_max = INFINITY;
+    ray->skip_primitive = ray->skip_part = 0;
+}
+
+/* Continues in a direction that the BSDF or the phase function samples. */
+static inline __attribute__((always_inline)) bool scatter(const struct path_tracer *tracer,
+                                                          struct integrator_state *state, struct path *path,
+                                                          const struct path_vertex *vertex, double u_roulette,
+                                                          struct path_watch *watch) {
+    const struct bsdf *bsdf = vertex->at.bsdf;
     const struct sample2 u = sampler_point(&path->sampler, path->dimension - 1); /* the last one of the vertex */
     struct bsdf_sample sample;
-    if (!bsdf_sample(bsdf, vertex->lobes, BSDF_RADIANCE, hit->view, u, &sample))
+    if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
         return watch_end(watch, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
     /* A shading normal may reflect into the surface. */
-    if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
+    if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return watch_end(watch, PATH_IS_ABSORBED);
     if (tracer->photon_lights)
         count_shares(path, vertex, &sample);
@@ -248,7 +282,7 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
         if (delta)
             path_share_all(sample.flags, parts->shares);
         else
-            path_shares(vertex, vertex->lobes, sample.direction, parts->shares);
+            path_shares(vertex, vertex->at.lobes, sample.direction, parts->shares);
     }
     path->weight = vec3_mul(path->weight, sample.weight);
     path->depth++;
@@ -263,7 +297,10 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     /* The last ray of a path finds only lights that rays can meet. */
     if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
-    path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
+    if (bsdf)
+        path->ray = hit_ray(vertex->hit, &path->ray, sample.direction, &path->media);
+    else
+        send_in_medium(&path->ray, path->scatter.point, sample.direction);
     path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
     if (transmits) {
         bsdf_cross(bsdf, &path->media);
@@ -272,6 +309,44 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
         state->reflected_rays++;
     }
     return true;
+}
+
+/* Asks for the light of a light source, and continues. dimension: the first one of the vertex. */
+static inline __attribute__((always_inline)) bool
+light_and_scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                  const struct path_vertex *vertex, struct path_shadow *shadow, struct path_watch *watch) {
+    const struct sampler *sampler = &path->sampler;
+    uint32_t dimension = path->dimension - SAMPLER_VERTEX_DIMENSIONS;
+    bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
+    struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
+    const struct path_light_draw draw = {choice.x, sampler, dimension + 1};
+    struct path_choice chosen;
+    shadow->weight = path->weight;
+    shadow->depth = path->depth;
+    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+        path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
+    return scatter(tracer, state, path, vertex, choice.y, watch);
+}
+
+/* One vertex in the medium of the ray, after a distance. False: the path ends here. */
+static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
+                                                  struct path *path, double distance, struct path_shadow *shadow,
+                                                  struct path_watch *watch) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    struct vec3 direction = vec3_normalize(path->ray.direction);
+    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    if (path->depth >= tracer->max_depth)
+        return watch_end(watch, PATH_REACHES_MAX_DEPTH);
+    struct path_parts *parts = parts_of(state);
+    if (parts && path->sight)
+        set_features(state, path, medium_albedo(medium), vec3_all(0), parts->travelled + distance);
+    path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
+    const struct path_vertex vertex = {.ray = &path->ray,
+                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &medium->phase},
+                                       .receiver = &path->scatter,
+                                       .sight = path->sight};
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
 /* --- the vertex --- */
@@ -313,14 +388,13 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
                          const struct path_hit *at, struct path_shadow *shadow, struct path_watch *watch) {
     const struct hit *hit = &at->hit;
     const struct joint *joint = &at->joint;
-    const struct sampler *sampler = &path->sampler;
     uint32_t dimension = path->dimension;
     struct bsdf bsdf;
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
     state->hits++;
     evaluate(state, path, hit, joint, &bsdf);
     /* A hole. */
-    if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
+    if (bsdf.opacity < 1 && !(random_unit(random_combine(path->sampler.key, dimension)) < bsdf.opacity)) {
         path->ray = joint_ray_through_hole(joint, hit, &path->ray, &path->media);
         path->kind = RAY_HOLE;
         return path->holes++ < HOLE_LIMIT || watch_end(watch, PATH_IN_TOO_MANY_HOLES);
@@ -333,28 +407,21 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     watch_stage(watch, path, STAGE_EMISSION);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
-    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf, .sight = path->sight};
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .sight = path->sight};
+    vertex.at.bsdf = &bsdf;
+    vertex.at.wo = hit->view;
     double side = hit->front ? hit->offset : -hit->offset;
     path->scatter = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
                                             bsdf.side, hit->primitive};
     vertex.receiver = &path->scatter;
-    vertex.lobes = bsdf_select(&bsdf, BSDF_FOR_PATHS);
+    vertex.at.lobes = bsdf_select(&bsdf, BSDF_FOR_PATHS);
     vertex.substitute = bsdf_select(&bsdf, BSDF_FOR_UNSEEN_LIGHTS);
     if (tracer->photon_lights) {
         add_photons(tracer, state, path, &vertex);
         vertex.thrown = vec3_add(path->received, path->thrown);
         watch_stage(watch, path, STAGE_PHOTONS);
     }
-    /* The light to ask for. */
-    bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
-    struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
-    const struct path_light_draw draw = {choice.x, sampler, dimension + 1};
-    struct path_choice chosen;
-    shadow->weight = path->weight;
-    shadow->depth = path->depth;
-    if (path_choose_light(tracer, &vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
-        path_direct_shares(&vertex, &chosen, shadow->sample.direction, shadow->shares);
-    return scatter(tracer, state, path, &vertex, choice.y, watch);
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
 /* --- the pieces --- */
@@ -412,9 +479,13 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
 #endif
     /* The way to it, then the surface or the sky there. */
-    if (!travel(tracer, state, path, met ? &at.hit : NULL, watch))
+    double distance;
+    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
+    if (to == ENDS_AT_LIGHT)
         return false;
     watch_arrival(watch, path, 0);
+    if (to == ENDS_IN_MEDIUM)
+        return meet_medium(tracer, state, path, distance, shadow, watch);
     if (met)
         return meet_surface(tracer, state, path, &at, shadow, watch);
     leave_scene(tracer, state, path);

@@ -332,11 +332,12 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         path = &dimmed;
     }
 
-    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
+    struct vec3 colour = {0, 0, 0}, seen, in_scattered = air.added;
     bool looked = !(path->weight < path->cutoff);
-    if (!looked)
+    if (!looked) {
         left = vec3_all(0);
-    else if (area_light)
+        in_scattered = air.source;
+    } else if (area_light)
         colour = light_emitted(area_light, ray, &area_light_hit);
     else if (met)
         colour = shade_hit(state, ray, hit, joint, path);
@@ -345,10 +346,8 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
-    if (affected) {
-        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+    if (affected)
         colour = vec3_add(vec3_mul(colour, left), in_scattered);
-    }
     colour = integrator_clamp_light(state, colour, light_limit);
     OBSERVE(state->observer, OBSERVED_RAY_END, .end = {looked, seen, left, in_scattered, colour});
     return colour;
@@ -384,7 +383,8 @@ static inline struct vec3 radiance_of(struct integrator_state *state, const stru
     return incident_radiance(state, ray, hit, &single, path);
 }
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+static inline __attribute__((always_inline)) struct vec3 trace(struct integrator_state *state, const struct ray *ray,
+                                                               const struct path *path) {
     struct hit hit;
     if (integrator_cancelled(state))
         return vec3_all(0); /* deep paths through glass grow exponentially */

@@ -87,7 +87,7 @@ TEST(the_ends_of_the_range_of_samples_give_directions) {
 
 TEST(the_end_of_a_ray_in_a_medium_answers_by_its_phase_function) {
     for (int i = 0; i < PHASES; i++) {
-        const struct interaction at = {.lobes = 1, .wo = back, .phase = phases[i]};
+        const struct interaction at = {.lobes = 1, .wo = back, .phase = &phases[i]};
         struct bsdf_sample sample;
         CHECK(interaction_sample(&at, BSDF_RADIANCE, (struct sample2){0.6, 0.2}, &sample));
         double f = phase_eval(&phases[i], back, sample.direction);
