@@ -362,9 +362,9 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
                                              .no_black_highlight = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
-    if (OBSERVED)
-        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
-                         state->observer);
+    if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
+                                      observe_material, state->observer))
+        state->scratch->failed = true;
     material_eval(&world->surfaces, hit, path->ray.media, &context, bsdf);
 }
 
