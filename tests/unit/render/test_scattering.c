@@ -235,3 +235,38 @@ TEST(an_open_shape_holds_no_medium) {
     CHECK(strstr(s.error.text, "is open, so it holds no medium") != NULL);
     stage_end(&s);
 }
+
+/* Shares of a normal beam, known values of transport theory (the last one: van de Hulst, "Multiple Light Scattering",
+ * 1980): by reciprocity what the camera sees along the normal of a slab in front of, or behind, a plane of radiance 1.
+ */
+TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
+    static const struct {
+        double albedo, g, depth, reflected, transmitted;
+    } slabs[] = {{1, 0, 1, 0.3413, 0.6587},
+                 {1, 0, 4, 0.6910, 0.3090},
+                 {0.9, 0, 1, 0.2674, 0.5916},
+                 {0.9, 0.75, 2, 0.09740, 0.66096}};
+    const int samples = 4096 * times;
+    for (int i = 0; i < 4; i++) {
+        const struct medium medium =
+            filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, slabs[i].g);
+        for (int behind = 0; behind < 2; behind++) {
+            struct stage s;
+            stage_begin(&s, 2);
+            struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+            glow->phong.emission = vec3_all(1);
+            glow->phong.two_sided = true;
+            struct node *wall = stage_sphere(&s, s.root, glow);
+            wall->shape =
+                (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), behind ? -5 : 20)};
+            struct node *slab = stage_cube(&s, s.root, filled(&s, &medium));
+            stage_move(&s, slab, -0.5, -0.5, 0);
+            stage_scale(&s, slab, 400, 400, 1);
+            s.camera.fov = 0.01;
+            s.settings.integrator = INTEGRATOR_PATH;
+            double seen = mean_of(&s, 4, samples, 1000).y, want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            CHECK_NEAR(seen, want, 4 * 0.48 / sqrt(16.0 * samples) + 0.0002);
+            stage_end(&s);
+        }
+    }
+}
