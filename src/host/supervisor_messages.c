@@ -211,7 +211,8 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    if (!supervisor->waits && clock_now() - supervisor->viewer.window.script_began > patience_open)
+    bool at_once = supervisor->window && supervisor->window->status;
+    if (!supervisor->waits && (at_once || clock_now() - supervisor->viewer.window.script_began > patience_open))
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
@@ -376,6 +377,7 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
     case MESSAGE_FILM:
     case MESSAGE_ANSWER:
     case MESSAGE_PREVIEW_COMMAND:
+    case MESSAGE_WINDOW:
         break;
     }
     supervisor->broken = true;

@@ -95,6 +95,7 @@ struct viewer_edit {
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */
     bool click_waits;
+    bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
     enum material_part part; /* of the material, for which the panel has sliders */
     bool joins;              /* the next change by the mouse is part of the last one */
@@ -138,8 +139,9 @@ struct viewer_display {
 
 /* The mouse. */
 struct viewer_input {
-    bool grabbed;            /* it turns the camera */
-    bool pressed, dragged;   /* the left button is down on the picture, and has moved since */
+    bool grabbed;            /* flying: the mouse turns the camera (with widgets: while a button is held) */
+    int pressed;             /* the button that is down on the picture, or 0 */
+    bool dragged, shift;     /* the mouse has moved since; shift was held */
     double press_x, press_y; /* where */
 };
 

@@ -111,7 +111,8 @@ void viewer_draw_tiles(struct viewer *viewer) {
     struct tone tone = picture_tone(&viewer->request);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        bool shows = film_tile_shows(state);
+        bool in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain && !viewer_has_widgets(viewer);
         /* Only what has changed since the last time. */
         if (shows ? viewer->window.drawn[tile] == state : !in_progress || !film->marked)
             continue;
@@ -415,19 +416,57 @@ static int draw_lines(struct panel *panel, const char *line, bool warns, int bot
     return top;
 }
 
-static void draw_hud(struct viewer *viewer, const struct figures *figures) {
+/* On the picture: the selection and the symbols of the lights. */
+static void draw_symbols(struct viewer *viewer) {
     struct camera_frame frame;
+    if (!viewer->block || !viewer_camera_frame(viewer, &frame))
+        return;
+    draw_selection(viewer, &frame);
+    viewer_draw_lights(viewer, &frame);
+}
+
+/* What a window with widgets shows in them. */
+static void show_widgets(struct viewer *viewer, const struct figures *figures) {
+    const struct window_driver *driver = viewer->window.driver;
+    const struct viewer_notice *notice = &viewer->window.notice;
+    struct window_status status = {.share = figures->share,
+                                   .action_on = viewer_needs_met(viewer),
+                                   .warns = notice->warns,
+                                   .halted = viewer->pass.halted,
+                                   .busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer)),
+                                   .playing = viewer->player.playing,
+                                   .loops = viewer->player.loops,
+                                   .frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0,
+                                   .frame_count = viewer->player.count,
+                                   .exposure = viewer->request.settings.tone.exposure};
+    (void)snprintf(status.file, sizeof status.file, "%.250s", viewer->request.file);
+    (void)snprintf(status.state, sizeof status.state, "%s", figures->state);
+    (void)snprintf(status.figures, sizeof status.figures, "%s, %s, %s, %s, %s", figures->size, figures->rays,
+                   figures->triangles, figures->voxels, figures->frames);
+    (void)snprintf(status.frame, sizeof status.frame, "%s", figures->frame);
+    (void)snprintf(status.message, sizeof status.message, "%s", viewer->message);
+    (void)snprintf(status.notice, sizeof status.notice, "%s", notice->text);
+    driver->status(driver->context, &status);
+    driver->trace(driver->context, viewer->trace.text);
+    viewer_show_form(viewer);
+}
+
+static void draw_hud(struct viewer *viewer, const struct figures *figures) {
     struct panel *panel = &viewer->window.panel;
     panel_begin(panel);
     int bottom = panel->canvas.height;
+    if (viewer_has_widgets(viewer)) {
+        if (!viewer->window.hides_hud)
+            draw_symbols(viewer);
+        show_widgets(viewer, figures);
+        panel_end(panel);
+        return;
+    }
     if (!viewer->window.hides_hud) {
         /* A low window has one row of buttons. From the picture outwards: what is drawn later lies above. */
         bool room = viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel);
         int top = (room && viewer->block ? 30 : 15) * viewer->window.panel.canvas.scale;
-        if (viewer->block && viewer_camera_frame(viewer, &frame)) {
-            draw_selection(viewer, &frame);
-            viewer_draw_lights(viewer, &frame);
-        }
+        draw_symbols(viewer);
         bottom = draw_timeline(viewer, figures);
         draw_menu(viewer);
         if (room && viewer->block)

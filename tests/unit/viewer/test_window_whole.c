@@ -111,8 +111,14 @@ struct setting {
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting, uint8_t *over) {
     struct person person = {.deeds = deeds, .over = over, .large = setting->large, .other_scene = setting->other_scene};
-    const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
-                                         person_title, person_grab, person_nothing, person_close};
+    const struct window_driver driver = {.context = &person,
+                                         .open = person_open,
+                                         .show = person_show,
+                                         .poll = person_poll,
+                                         .title = person_title,
+                                         .grab = person_grab,
+                                         .full_screen = person_nothing,
+                                         .close = person_close};
     struct arena arena = {0};
     struct options options;
     struct error error;
