@@ -35,6 +35,8 @@ struct pass_view {
     double exposure;        /* stops: it decides which pixels are sampled again */
     uint32_t divide;        /* one pixel represents a square with this side; from 1 */
     bool plain;             /* one sample a pixel, coarse soft light */
+    bool headlight;         /* plain, and shaded by a light at the eye (render/headlight.h) */
+    uint32_t samples;       /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
     bool own;               /* the camera, lens and motion of the script */
     uint32_t width, height; /* not 0: so many pixels in place of those of the picture, in the memory of the command */
 };

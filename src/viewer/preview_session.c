@@ -6,6 +6,7 @@
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
+#include "render/headlight.h"
 #include "viewer/view_overlay_internal.h"
 
 #include <stdio.h>
@@ -31,10 +32,10 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->settings.show_refined = true;
     job->settings.tile_order = TILE_ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
-    job->settings.passes = view->divide <= 1 && !view->plain;
+    job->settings.passes = (view->divide <= 1 && !view->plain) || view->samples > 0;
     settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
-    if (!job->settings.passes) {
-        job->settings.path_samples = 1;
+    if (!job->settings.passes || view->samples > 0) {
+        job->settings.path_samples = view->samples > 0 ? (int)view->samples : 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
     if (view->divide > 1 || view->width > 0) { /* the film determines the part */
@@ -91,7 +92,8 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     progress_estimate_reset(progress_estimate, fine);
     job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = render_run(&job, preview->pool, &report->rays, error);
+    bool ok = work->view.headlight ? render_headlight(&job, preview->pool, &report->rays, error)
+                                   : render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
         return false;

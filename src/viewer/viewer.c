@@ -22,6 +22,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .exposure = viewer->request.settings.tone.exposure,
                               .divide = divide,
                               .plain = plain,
+                              .headlight = plain && viewer_has_widgets(viewer) && !viewer_plays(viewer),
                               .own = !viewer->camera_moved};
 }
 
@@ -167,8 +168,8 @@ void viewer_detach(struct viewer *viewer) {
 
 bool viewer_has_tiles(const struct viewer *viewer) {
     const struct viewer_pass *pass = &viewer->pass;
-    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.width == 0 &&
-           !pass->edited;
+    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.samples == 0 &&
+           pass->view.width == 0 && !pass->edited;
 }
 
 void viewer_keep(struct viewer *viewer) {
@@ -221,7 +222,8 @@ bool viewer_is_enlarging(const struct viewer *viewer) {
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
-    viewer->pass.result = report->stopped ? RESULT_STOPPED : viewer->pass.view.plain ? RESULT_COARSE : RESULT_COMPLETE;
+    bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
+    viewer->pass.result = report->stopped ? RESULT_STOPPED : few ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
     /* Tiles that were finished before a pass was stopped may be denoised now. */
@@ -301,6 +303,8 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     if (!resume) {
         viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
+        viewer->pass.view.samples = viewer->pass.draft_samples;
+        viewer->pass.draft_samples = 0;
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
                               is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
@@ -365,10 +369,32 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
+/* Between the preview and the picture of a progressive integrator: few samples, denoised, since many take long. */
+static const struct { uint32_t divide, samples; } drafts[] = {{3, 4}, {2, 8}, {1, 16}};
+
+/* The draft after this pass, or that which comes first. False: the picture itself. */
+static bool begin_draft(struct viewer *viewer, double now) {
+    const struct pass_view *view = &viewer->pass.view;
+    size_t next = 0;
+    while (view->samples > 0 && next < sizeof drafts / sizeof *drafts && drafts[next].samples <= view->samples)
+        next++;
+    if (next == sizeof drafts / sizeof *drafts || !viewer_shows_denoised(viewer) ||
+        drafts[next].samples > settings_path_samples(&viewer->request.settings) / 2)
+        return false;
+    viewer->pass.draft_samples = drafts[next].samples;
+    begin_pass(viewer, drafts[next].divide, false, false, now);
+    return true;
+}
+
+bool viewer_shows_denoised(const struct viewer *viewer) {
+    return viewer_has_widgets(viewer) && (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
+}
+
 static enum viewer_action next_command(struct viewer *viewer, double now) {
     if (viewer_large_is_outdated(viewer) && !viewer->pass.outdated)
         viewer_drop_large(viewer);
-    uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
+    bool first = viewer->pass.from_coarse && !viewer_has_widgets(viewer);
+    uint32_t divide = first ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
         viewer->edit.click_waits = viewer->trace.requested = false;
@@ -396,9 +422,11 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         if (!viewer_wants_large(viewer) || !viewer_begin_large(viewer))
             return VIEWER_NOTHING;
         begin_large_pass(viewer, now);
+    } else if (viewer->pass.view.headlight && viewer->pass.view.divide > 1) {
+        begin_pass(viewer, viewer->pass.view.divide / 2, true, false, now);
     } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
-    } else {
+    } else if (!begin_draft(viewer, now)) {
         begin_pass(viewer, 1, false, false, now);
     }
     if (viewer->command.kind != COMMAND_PASS)

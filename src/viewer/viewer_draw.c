@@ -100,6 +100,42 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
+/* Bytes between those of four pixels of a row of 3 bytes each: part of 256. */
+static void blend_row(uint8_t *out, const uint8_t *above, const uint8_t *below, uint32_t down, uint32_t width) {
+    for (size_t i = 0; i < (size_t)3 * width; i++)
+        out[i] = (uint8_t)((above[i] * (256 - down) + below[i] * down) >> 8);
+}
+
+/* A pass of few samples, enlarged smoothly: what it shows is replaced soon. */
+static bool draw_smooth(struct viewer *viewer) {
+    const struct film *film = &viewer->pass.film;
+    uint32_t width = film->width, divide = viewer->pass.view.divide;
+    struct tone tone = picture_tone(&viewer->request);
+    uint8_t *small = mem_alloc_zero((size_t)3 * width, (size_t)film->height + 1), *row = small;
+    if (!small)
+        return false;
+    for (size_t i = 0; i < (size_t)width * film->height; i++)
+        for (size_t c = 0; c < 3; c++)
+            small[3 * i + c] = png_write_byte(tone_apply(&tone, (double)film->pixels[i].rgb[c]));
+    row += (size_t)3 * width * film->height;
+    /* A row between two of the film, then pixels between two of that; positions in parts of 256, of pixels' middles. */
+    for (uint32_t y = 0; y < viewer->request.height; y++) {
+        uint8_t *out = viewer->window.image + (size_t)3 * viewer->request.width * y;
+        uint32_t v = (256 * y + 128) / divide, v0 = v < 128 ? 0 : (v - 128) >> 8,
+                 v1 = v0 + 1 < film->height ? v0 + 1 : v0;
+        blend_row(row, small + (size_t)3 * width * v0, small + (size_t)3 * width * v1, v < 128 ? 0 : (v - 128) & 255,
+                  width);
+        for (uint32_t x = 0; x < viewer->request.width; x++) {
+            uint32_t u = (256 * x + 128) / divide, u0 = u < 128 ? 0 : (u - 128) >> 8, u1 = u0 + 1 < width ? u0 + 1 : u0;
+            blend_row(out + (size_t)3 * x, row + (size_t)3 * u0, row + (size_t)3 * u1, u < 128 ? 0 : (u - 128) & 255,
+                      1);
+        }
+    }
+    mem_free(small);
+    viewer->window.dirty = true;
+    return true;
+}
+
 /* Draws tiles that are finished or, after a pass over the picture, have more samples than before. In tiles in progress,
  * pixels that are being sampled again are red. */
 void viewer_draw_tiles(struct viewer *viewer) {
@@ -108,10 +144,15 @@ void viewer_draw_tiles(struct viewer *viewer) {
         return;
     }
     const struct film *film = &viewer->pass.film;
+    const struct pass_view *view = &viewer->pass.view;
+    bool smooth = (view->headlight || view->samples > 0) && view->divide > 1 && !viewer->overlay.has_lines;
+    bool denoised = !view->plain && viewer_shows_denoised(viewer);
+    if (smooth && (viewer->pass.result != RESULT_COARSE || draw_smooth(viewer)))
+        return;
     struct tone tone = picture_tone(&viewer->request);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool shows = film_tile_shows(state);
+        bool shows = denoised ? state == FILM_TILE_DONE : film_tile_shows(state);
         bool in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain && !viewer_has_widgets(viewer);
         /* Only what has changed since the last time. */
         if (shows ? viewer->window.drawn[tile] == state : !in_progress || !film->marked)
