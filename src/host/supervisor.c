@@ -8,6 +8,7 @@
 #include "host/supervisor_messages.h"
 #include "host/supervisor_signals.h"
 #include "session/text.h"
+#include "settings/setting.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -223,7 +224,8 @@ static void run_and_watch(struct supervisor *supervisor) {
         supervisor->script.used = 0;
         supervisor->script.frames = 0;
         atomic_store(&supervisor->control->cancel, CANCEL_NOTHING);
-        answer_again(supervisor, !supervisor->watch.assets_differ);
+        answer_again(supervisor, !supervisor->watch.assets_differ && !supervisor->options_differ);
+        supervisor->options_differ = false;
         run_children(supervisor);
     }
     supervisor->waits = false;
@@ -321,14 +323,22 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
 /* Not on the stack, which may be small. */
 int supervisor_run(const struct options *options, const struct program_parts *parts) {
     struct supervisor *supervisor = mem_alloc_zero(1, sizeof *supervisor);
-    if (!supervisor) {
+    struct options own = *options;
+    const char **given = mem_alloc_zero((size_t)setting_count, sizeof *given);
+    if (!supervisor || !given) {
         (void)fputs("gray: out of memory\n", stderr);
+        mem_free(supervisor);
+        mem_free(given);
         return ERROR_MACHINE;
     }
-    supervisor->options = options;
+    for (int i = 0; options->script.given && i < setting_count; i++)
+        given[i] = options->script.given[i];
+    own.script.given = supervisor->given = given;
+    supervisor->options = supervisor->own_options = &own;
     supervisor->window = parts->window;
     supervisor->signals = supervisor->channel.descriptor = -1;
     int status = run(supervisor, parts->transport);
     mem_free(supervisor);
+    mem_free(given);
     return status;
 }

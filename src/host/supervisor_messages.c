@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "settings/setting.h"
 #include "viewer/viewer_save.h"
 
 #include <poll.h>
@@ -170,6 +171,14 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* As if its option were given from now on: another child runs the scripts. */
+static void change_setting(struct supervisor *supervisor, const struct viewer_setting *change) {
+    setting_store(&setting_table[change->index], &supervisor->own_options->settings, change->number);
+    supervisor->given[change->index] = "";
+    supervisor->options_differ = true;
+    supervisor_restart(supervisor);
+}
+
 /* ok: a file with that name was written. */
 static void show_written(struct supervisor *supervisor, bool ok, const char *name, const struct error *error) {
     char line[NAME_LIMIT + 64];
@@ -241,6 +250,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
         case VIEWER_SAVE_EDITS:
             save_from_window(supervisor, viewer_save_edits);
             break;
+        case VIEWER_CHANGE_SETTING:
+            change_setting(supervisor, &viewer->setting);
+            return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
             viewer->note[0] = '\0';

@@ -44,7 +44,10 @@ static void show_values(struct gui *gui, struct form_row *row) {
         break;
     }
     case FIELD_CHOICE:
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(row->inputs[0]), (guint)field->numbers[0]);
+        break;
     case FIELD_FLAG:
+        gtk_switch_set_active(GTK_SWITCH(row->inputs[0]), field->numbers[0] != 0);
         break;
     }
     gui->updates = false;
@@ -83,6 +86,31 @@ static void colour_changed(GtkWidget *widget, gpointer data) {
     send_field(gui, row);
 }
 
+/* Of a choice or a flag: the property that has changed. */
+static void choice_changed(GObject *widget, GParamSpec *property, gpointer data) {
+    struct gui *gui = g_object_get_data(widget, "gui");
+    struct form_row *row = data;
+    (void)property;
+    if (gui->updates)
+        return;
+    if (row->field.kind == FIELD_FLAG)
+        row->field.numbers[0] = gtk_switch_get_active(GTK_SWITCH(widget));
+    else
+        row->field.numbers[0] = gtk_drop_down_get_selected(GTK_DROP_DOWN(widget));
+    send_field(gui, row);
+}
+
+static GtkWidget *choice_input(struct gui *gui, struct form_row *row) {
+    bool flag = row->field.kind == FIELD_FLAG;
+    char **words = g_strsplit(row->field.text, "|", -1);
+    GtkWidget *input = flag ? gtk_switch_new() : gtk_drop_down_new_from_strings((const char *const *)words);
+    g_strfreev(words);
+    gtk_widget_set_halign(input, GTK_ALIGN_START);
+    g_object_set_data(G_OBJECT(input), "gui", gui);
+    g_signal_connect(input, flag ? "notify::active" : "notify::selected", G_CALLBACK(choice_changed), row);
+    return input;
+}
+
 /* A comma is accepted, too; what is no number keeps the old value. */
 static int parse_number(GtkSpinButton *button, double *out, gpointer data) {
     char *text = g_strdelimit(g_strdup(gtk_editable_get_text(GTK_EDITABLE(button))), ",", '.'), *end;
@@ -93,15 +121,25 @@ static int parse_number(GtkSpinButton *button, double *out, gpointer data) {
     return ok ? TRUE : GTK_INPUT_ERROR;
 }
 
+/* As few digits as the number needs. */
+static gboolean show_number(GtkSpinButton *button, gpointer data) {
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    (void)data;
+    gtk_editable_set_text(GTK_EDITABLE(button),
+                          g_ascii_formatd(text, sizeof text, "%.6g", gtk_spin_button_get_value(button)));
+    return TRUE;
+}
+
 static GtkWidget *number_input(struct gui *gui, struct form_row *row, double low, double high) {
     bool share = high - low <= 1, whole = row->field.unit[0] == '#';
     double step = whole ? 1 : share ? 0.05 : 0.1;
     GtkWidget *button = gtk_spin_button_new_with_range(fmax(low, -1e9), fmin(high, 1e9), step);
-    gtk_spin_button_set_digits(GTK_SPIN_BUTTON(button), whole ? 0 : 3);
+    gtk_spin_button_set_digits(GTK_SPIN_BUTTON(button), whole ? 0 : 12);
     gtk_editable_set_width_chars(GTK_EDITABLE(button), 5);
     gtk_widget_set_hexpand(button, TRUE);
     g_object_set_data(G_OBJECT(button), "gui", gui);
     g_signal_connect(button, "input", G_CALLBACK(parse_number), NULL);
+    g_signal_connect(button, "output", G_CALLBACK(show_number), NULL);
     return button;
 }
 
@@ -116,7 +154,7 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
         row->inputs[i] = number_input(gui, row, field->low, field->high);
         g_signal_connect(row->inputs[i], "value-changed", G_CALLBACK(number_changed), row);
     }
-    if (field->kind == FIELD_NUMBER && field->high - field->low <= 1) {
+    if (field->kind == FIELD_NUMBER && field->high - field->low <= 1 && field->unit[0] != '#') {
         GtkAdjustment *adjustment = gtk_spin_button_get_adjustment(GTK_SPIN_BUTTON(row->inputs[0]));
         GtkWidget *slider = gtk_scale_new(GTK_ORIENTATION_HORIZONTAL, adjustment);
         gtk_widget_set_size_request(slider, 70, -1);
@@ -132,6 +170,8 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
         g_signal_connect(row->inputs[0], "color-set", G_CALLBACK(colour_changed), row);
         g_signal_connect(row->inputs[1], "value-changed", G_CALLBACK(colour_changed), row);
     }
+    if (field->kind == FIELD_CHOICE || field->kind == FIELD_FLAG)
+        row->inputs[0] = choice_input(gui, row);
     if (!row->inputs[0]) {
         row->inputs[0] = gtk_label_new(NULL);
         gtk_label_set_xalign(GTK_LABEL(row->inputs[0]), 0);
@@ -200,6 +240,9 @@ static void make_form(struct gui *gui, uint32_t count) {
     GtkWidget *child;
     const char *group = "";
     GtkGrid *grid = NULL;
+    GtkWidget *focus = gtk_window_get_focus(GTK_WINDOW(gui->window));
+    if (focus && gtk_widget_is_ancestor(focus, gui->inspector))
+        gtk_widget_grab_focus(gui->picture);
     while ((child = gtk_widget_get_first_child(gui->inspector)))
         gtk_box_remove(box, child);
     for (uint32_t i = 0; i < count; i++) {

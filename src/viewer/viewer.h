@@ -25,16 +25,17 @@ struct outline_side {
 
 enum viewer_action {
     VIEWER_NOTHING,
-    VIEWER_STOP_PASS,     /* the current pass is obsolete */
-    VIEWER_SEND_COMMAND,  /* viewer->command must be sent */
-    VIEWER_WRITE_PICTURE, /* the script's own picture is complete for the first time: write it */
-    VIEWER_SAVE_IMAGE,    /* the displayed image must be saved: viewer->window.image */
-    VIEWER_SAVE_CAMERA,   /* the camera must be saved */
-    VIEWER_SAVE_EDITS,    /* the edits must be saved */
-    VIEWER_LOG_NOTE,      /* viewer->note is a line for the log */
-    VIEWER_NEXT_FRAME,    /* the same, and the animation goes to viewer_next_frame */
-    VIEWER_NEXT_PICTURE,  /* this picture is finished: the script continues */
-    VIEWER_QUIT,          /* the window was closed, or Q */
+    VIEWER_STOP_PASS,      /* the current pass is obsolete */
+    VIEWER_SEND_COMMAND,   /* viewer->command must be sent */
+    VIEWER_WRITE_PICTURE,  /* the script's own picture is complete for the first time: write it */
+    VIEWER_SAVE_IMAGE,     /* the displayed image must be saved: viewer->window.image */
+    VIEWER_SAVE_CAMERA,    /* the camera must be saved */
+    VIEWER_SAVE_EDITS,     /* the edits must be saved */
+    VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
+    VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
+    VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
+    VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
+    VIEWER_QUIT,           /* the window was closed, or Q */
 };
 
 /* The window, and the position of the picture in it, in pixels of the screen. */
@@ -182,6 +183,12 @@ struct viewer_notice {
     double until; /* 0: it is new */
 };
 
+/* A setting that the user has changed, as if its option were given. */
+struct viewer_setting {
+    int index; /* of setting_table */
+    double number;
+};
+
 /* The window and its state: what stays from one picture to the next. */
 struct viewer_window {
     const struct window_driver *driver;
@@ -232,6 +239,7 @@ struct viewer {
 
     double stepped;                 /* time of the last call of viewer_step */
     struct preview_command command; /* for VIEWER_SEND_COMMAND */
+    struct viewer_setting setting;  /* for VIEWER_CHANGE_SETTING */
     enum viewer_action action;      /* requested by a key or a button */
     bool next, quit;                /* likewise: the next picture, the end */
 };

@@ -3,8 +3,7 @@
 #include "viewer/viewer_internal.h"
 
 #include "light/light_edit.h"
-#include "math/elementary.h"
-#include "settings/setting.h"
+#include "session/options_table.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -126,37 +125,42 @@ static void add_light(const struct viewer *viewer, struct window_form *form) {
     set_range(field, 0, HUGE_VAL, "");
 }
 
-/* The value of a setting in words. */
-static void describe_setting(const struct setting *row, const void *settings, char *out, size_t size) {
-    uint64_t bits = setting_bits(row, settings);
-    const char *word = row->words;
-    double number;
-    memcpy(&number, &bits, sizeof number);
-    for (uint64_t i = 0; i < bits && row->kind != SETTING_NUMBER && word && *word; i++)
-        word += strcspn(word, "|") + (word[strcspn(word, "|")] == '|');
-    if (row->kind == SETTING_FLAG)
-        (void)snprintf(out, size, bits ? "yes" : "no");
-    else if (row->kind == SETTING_NUMBER)
-        (void)snprintf(out, size, "%.6g", number);
-    else if (word && *word)
-        (void)snprintf(out, size, "%.*s", (int)strcspn(word, "|"), word);
-    else
-        (void)snprintf(out, size, "%lld", (long long)bits);
-}
-
-/* Every setting of the picture that has an option, as script and command line have set it. */
+/* Every setting of the picture that has an option, as script and command line have set it, but those that have a field
+ * of their own or no single number. */
 static void add_settings(const struct viewer *viewer, struct window_form *form) {
     for (int i = 0; i < setting_count; i++) {
         const struct setting *row = &setting_table[i];
+        bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
         char name[32];
-        if (!row->option || row->kind == SETTING_LAYERS || row->kind == SETTING_CROP)
+        if (!row->option || row->kind == SETTING_LAYERS || row->kind == SETTING_CROP || own)
             continue;
         size_t dashes = strspn(row->option, "-");
         (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(row->option + dashes, "|"), row->option + dashes);
-        struct window_field *field = add(form, "Settings", name, FIELD_TEXT, FIELD_NONE);
-        describe_setting(row, &viewer->request.settings, field->text, sizeof field->text);
+        bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
+        bool words = !flag && !number && row->words && row->words[0] != '\0';
+        struct window_field *field = add(form, option_group_title(row->group), name,
+                                         flag    ? FIELD_FLAG
+                                         : words ? FIELD_CHOICE
+                                                 : FIELD_NUMBER,
+                                         FIELD_SETTING + (uint32_t)i);
+        uint64_t bits = setting_bits(row, &viewer->request.settings);
+        field->numbers[0] = (double)bits;
+        if (number)
+            memcpy(&field->numbers[0], &bits, sizeof bits);
+        set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+        if (words)
+            (void)snprintf(field->text, sizeof field->text, "%s", row->words);
         set_help(field, row->help);
     }
+}
+
+/* The scripts run again, as with its option. */
+static void change_setting(struct viewer *viewer, int index, double number) {
+    const struct setting *row = &setting_table[index];
+    if (row->kind == SETTING_NUMBER || row->kind == SETTING_WHOLE || row->kind == SETTING_CAUSTICS)
+        number = fmin(fmax(number, row->low), row->high);
+    viewer->setting = (struct viewer_setting){index, number};
+    viewer->action = VIEWER_CHANGE_SETTING;
 }
 
 static void add_picture(const struct viewer *viewer, struct window_form *form) {
@@ -250,7 +254,9 @@ void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
             viewer_select_light(viewer, (uint32_t)number);
         return;
     default:
-        if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
+        if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)
+            change_setting(viewer, (int)(event->field - FIELD_SETTING), number);
+        else if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
             set_selected(viewer, event);
     }
 }

@@ -72,7 +72,7 @@ enum window_field_kind {
     FIELD_CHOICE, /* one of the words in `text`, divided by '|' */
     FIELD_FLAG,
 };
-enum { FORM_FIELDS = 64, FORM_TEXT = 192, WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */ };
+enum { FORM_FIELDS = 80, FORM_TEXT = 192, WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */ };
 struct window_field {
     enum window_field_kind kind;
     uint32_t number;                    /* what the field is, to the receiver of its events */
