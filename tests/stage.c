@@ -68,11 +68,13 @@ const struct scene_light *stage_lights(struct stage *s) {
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);
+    const struct medium outside = medium_outside(s->fog);
     const struct world_input input = {.scene = &s->scene,
                                       .root = root,
                                       .lights = stage_lights(s),
                                       .light_count = s->light_count,
                                       .sky = &s->sky,
+                                      .outside = &outside,
                                       .shutter = s->settings.shutter,
                                       .accel = accel,
                                       .warn = count_warning,
@@ -88,7 +90,6 @@ struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height) {
                                .width = width,
                                .height = height,
                                .ambient = s->ambient,
-                               .fog = s->fog,
                                .background_lights = true,
                                .film = &s->film};
 }

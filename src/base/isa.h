@@ -21,4 +21,18 @@ static inline enum cpu_isa cpu_isa(void) {
     return cpu_isa_chosen;
 }
 
+/* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. */
+#define CPU_ISA_CALL(name, ...)                                                                                        \
+    switch (cpu_isa()) {                                                                                               \
+    case CPU_ISA_BASE:                                                                                                 \
+        name##_base(__VA_ARGS__);                                                                                      \
+        break;                                                                                                         \
+    case CPU_ISA_AVX2:                                                                                                 \
+        name##_avx2(__VA_ARGS__);                                                                                      \
+        break;                                                                                                         \
+    case CPU_ISA_AVX512:                                                                                               \
+        name##_avx512(__VA_ARGS__);                                                                                    \
+        break;                                                                                                         \
+    }
+
 #endif

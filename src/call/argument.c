@@ -538,9 +538,9 @@ static const struct expr_program *recorded_program(struct script_context *contex
     lua_State *L = context->sandbox.lua;
     const struct handle *handle = handle_at(L, index);
     const struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
-    if (texture && texture->texture->kind == TEXTURE_FUNCTION) {
-        *source = texture->texture->recorded.source;
-        return texture->texture->recorded.program;
+    if (texture && texture->texture->operation.kind == TEXTURE_FUNCTION) {
+        *source = texture->texture->source;
+        return texture->texture->operation.recorded.program;
     }
     if (lua_type(L, index) != LUA_TFUNCTION)
         return NULL;

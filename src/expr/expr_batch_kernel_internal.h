@@ -3,6 +3,7 @@
  * of at least four points, linked instructions (expr_link_internal.h) keep results in processor registers. No result
  * depends on the number of points in a vector. */
 #include "expr/expr_batch_internal.h"
+#include "expr/expr_frames_internal.h"
 #include "expr/expr_link_internal.h"
 #include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"
@@ -87,9 +88,7 @@ static inline bool is_common(enum expr_operation operation) {
             as = (const TYPE_##A *)(const void *)ra;                                                                   \
             bs = (const TYPE_##B *)(const void *)rb;                                                                   \
             cs = (const TYPE_##C *)(const void *)rc;                                                                   \
-            if (lanes_functions[member])                                                                               \
-                lanes_functions[member](ra, rb, rc, width, to);                                                        \
-            else                                                                                                       \
+            if (!run_lanes(member, ra, rb, rc, width, to))                                                             \
                 LOOP(width, 0, A, B, C, expression)                                                                    \
         }                                                                                                              \
         break;                                                                                                         \
@@ -159,6 +158,26 @@ static void run_noise(const double *as, const double *bs, const double *cs, uint
     run_noise_lanes(as, bs, cs, width, out);
 }
 
+#define CASE(member, name)                                                                                             \
+    case member:                                                                                                       \
+        name(as, bs, cs, width, out);                                                                                  \
+        return true;
+/* False: it is none of these. */
+static inline bool run_lanes(enum expr_operation operation, const double *as, const double *bs, const double *cs,
+                             uint32_t width, double *out) {
+    switch ((unsigned)operation) {
+        CASE(EXPR_SIN, run_sin)
+        CASE(EXPR_COS, run_cos)
+        CASE(EXPR_TAN, run_tan)
+        CASE(EXPR_EXP, run_exp)
+        CASE(EXPR_LOG, run_log)
+        CASE(EXPR_POWER, run_power)
+        CASE(EXPR_NOISE, run_noise)
+    }
+    return false;
+}
+#else
+#define run_lanes(...) false
 #endif
 
 /* The sine and the cosine of one number. */
@@ -179,14 +198,6 @@ static void run_sincos(const double *from, uint32_t width, double *sines, double
         el_sincos(copies[i], &sines[i], &cosines[i]);
 }
 
-typedef void lanes_function(const double *, const double *, const double *, uint32_t, double *);
-static lanes_function *const lanes_functions[EXPR_OPERATION_COUNT] = {
-#ifdef __AVX2__
-    [EXPR_SIN] = run_sin, [EXPR_COS] = run_cos,     [EXPR_TAN] = run_tan,     [EXPR_EXP] = run_exp,
-    [EXPR_LOG] = run_log, [EXPR_POWER] = run_power, [EXPR_NOISE] = run_noise,
-#endif
-    [EXPR_INPUT] = NULL};
-
 /* An operand: the beginning of its row, or the constant. */
 static inline const double *operand(const struct expr_program *program, uint16_t value, double *rows) {
     if (value >= program->constant_count)
@@ -195,6 +206,20 @@ static inline const double *operand(const struct expr_program *program, uint16_t
 }
 
 /* --- loops --- */
+
+/* See EXPR_DEFINE_RUN. Of a loop, the points: `kept` has a row for each state, in the order at the start. Of the first
+ * `width` lanes, points[i] is the point of lane i; alive[i] has all bits set if it has not ended. */
+struct batch_frame {
+    const struct expr_program *program;
+    const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    const struct expr_direct *direct;
+    double *rows, *kept;
+    uint32_t width, at;   /* `at`: the first lane of the vectors that are computed */
+    uint32_t step, whole; /* the next one; the width at the start */
+    uint32_t points[EXPR_BATCH];
+    int64_t alive[EXPR_BATCH];
+};
 
 /* The states of points that have ended stay: `alive` has all bits set for the others. */
 static void write_state(const struct expr_loop *loop, uint32_t k, uint32_t width, double *rows, const int64_t *alive) {
@@ -227,88 +252,41 @@ static uint32_t keep_alive(const struct expr_loop *loop, uint32_t width, const d
     return (uint32_t)count;
 }
 
-/* The points of a loop: `kept` has a row for each state, in the order at the start. Of the first `width` lanes,
- * points[i] is the point of lane i. */
-struct packing {
-    double *kept;
-    uint32_t width, points[EXPR_BATCH];
-    bool is_packed;
-};
-
-static void keep_states(const struct expr_loop *loop, const struct packing *p, const double *rows) {
-    for (uint32_t k = 0; k < loop->state_count; k++)
-        for (uint32_t i = 0; i < p->width; i++)
-            p->kept[k * EXPR_BATCH + p->points[i]] = rows[k * EXPR_BATCH + i];
+static void keep_states(const struct batch_frame *f) {
+    for (uint32_t k = 0; k < f->loop->state_count; k++)
+        for (uint32_t i = 0; i < f->width; i++)
+            f->kept[k * EXPR_BATCH + f->points[i]] = f->rows[k * EXPR_BATCH + i];
 }
 
 /* Moves the `count` points that have not ended to the first lanes; lanes up to a multiple of 16 repeat the first. */
-static void pack(const struct expr_loop *loop, uint32_t count, struct packing *p, double *rows, int64_t *alive) {
+static void pack(struct batch_frame *f, uint32_t count) {
     uint32_t from[EXPR_BATCH], filled = 0, width = (count + 15) & ~15U;
-    keep_states(loop, p, rows);
-    for (uint32_t i = 0; i < p->width; i++)
-        if (alive[i])
+    keep_states(f);
+    for (uint32_t i = 0; i < f->width; i++)
+        if (f->alive[i])
             from[filled++] = i;
     for (; filled < width; filled++)
         from[filled] = from[0];
-    for (uint32_t k = 0; k < loop->argument_count; k++) {
-        double row[EXPR_BATCH], *values = rows + (size_t)k * EXPR_BATCH;
+    for (uint32_t k = 0; k < f->loop->argument_count; k++) {
+        double row[EXPR_BATCH], *values = f->rows + (size_t)k * EXPR_BATCH;
         for (uint32_t i = 0; i < width; i++)
             row[i] = values[from[i]];
         memcpy(values, row, width * sizeof *row);
     }
-    for (uint32_t i = 0, first = p->points[from[0]]; i < width; i++) {
-        p->points[i] = i < count ? p->points[from[i]] : first;
-        alive[i] = -1;
+    for (uint32_t i = 0, first = f->points[from[0]]; i < width; i++) {
+        f->points[i] = i < count ? f->points[from[i]] : first;
+        f->alive[i] = -1;
     }
-    p->width = width;
-    p->is_packed = true;
+    f->width = width;
 }
 
-/* Repeats the body until all points have ended, with those that have not in fewer vectors. rows: of the loop. */
-static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows) {
-    static const struct expr_direct none = {.output = NULL};
-    int64_t alive[EXPR_BATCH];
-    row_integer *steps = (row_integer *)(void *)(rows + (size_t)loop->argument_count * EXPR_BATCH);
-    struct packing p = {.kept = rows + (size_t)(expr_loop_rows(loop) / 2) * EXPR_BATCH, .width = width};
-    /* All points begin. */
-    for (uint32_t i = 0; i < width; i++) {
-        p.points[i] = i;
-        alive[i] = -1;
-    }
-    for (uint32_t step = loop->first; step <= loop->last; step++) {
-        /* Points that have ended are left out; if half have, the others move together. */
-        const bool is_checked = loop->ends && step > 1;
-        const uint32_t count = is_checked ? keep_alive(loop, p.width, rows, alive) : p.width;
-        if (count == 0)
-            break;
-        if (((count + 15) & ~15U) <= p.width / 2)
-            pack(loop, count, &p, rows, alive);
-        /* One step of all. */
-        for (uint32_t i = 0; i < p.width; i++)
-            steps[i] = step;
-        KERNEL(run)(&loop->body, p.width, rows, &none);
-        for (uint32_t k = 0; k < loop->state_count; k++)
-            write_state(loop, k, p.width, rows, alive);
-    }
-    /* The states return to their points. */
-    if (!p.is_packed)
-        return;
-    keep_states(loop, &p, rows);
-    for (uint32_t k = 0; k < loop->state_count; k++)
-        memcpy(rows + (size_t)k * EXPR_BATCH, p.kept + (size_t)k * EXPR_BATCH, width * sizeof *rows);
-}
-
-static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in, uint32_t width,
-                               double *rows) {
-    const enum expr_operation operation = (enum expr_operation)in->operation;
+/* One of the instructions before and after a loop. */
+static void run_loop_access(const struct expr_program *program, const struct expr_instruction *in, uint32_t width,
+                            double *rows) {
     const struct expr_loop_access at = expr_loop_access(program, in);
-    const struct expr_loop *loop = at.loop;
-    double *of_loop = rows + (size_t)loop->offset * EXPR_BATCH;
-    double *slot = of_loop + (size_t)at.slot * EXPR_BATCH;
+    double *slot = rows + (size_t)(at.loop->offset + at.slot) * EXPR_BATCH;
     double *out = rows + (size_t)(in->out - program->constant_count) * EXPR_BATCH;
-    if (operation == EXPR_LOOP)
-        run_loop(loop, width, of_loop);
-    else if (!at.puts)
+    if (!at.puts)
         memcpy(out, slot, width * sizeof *slot);
     else if (in->b >= program->constant_count)
         memcpy(slot, operand(program, in->b, rows), width * sizeof *slot);
@@ -326,7 +304,7 @@ run_instruction(const struct expr_program *program, const struct expr_instructio
     switch ((enum expr_operation)in->operation) {
         EXPR_OPERATIONS(RUN)
     EXPR_LOOP_CASES:
-        run_loop_operation(program, in, width, rows);
+        run_loop_access(program, in, width, rows);
         break;
     case EXPR_ALL_OPERATIONS:
     case EXPR_CONSTANT:
@@ -389,22 +367,129 @@ run_rows(const struct expr_program *program, const struct expr_instruction *in, 
 #define RUN_LINKED run_many
 #include "expr/expr_linked_kernel_internal.h"
 
-void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows, const struct expr_direct *direct) {
-    uint32_t at = 0;
-    for (; at + 8 * WIDTH <= width; at += 8 * WIDTH)
-        run_many(program, at, rows, direct);
-    for (; at + 16 <= width; at += 16)
-        run_few(program, at, rows, direct);
-    for (; at < width; at += WIDTH)
-        run_one(program, at, rows, direct);
+/* How many of the points that are left are computed together. */
+static inline uint32_t part_of(uint32_t left) {
+    return left >= 8 * WIDTH ? 8 * WIDTH : left >= 16 ? 16 : WIDTH;
+}
+
+/* Runs the part of the points from number `at` on: up to the next loop, or to the end: NULL. */
+static inline const struct expr_instruction *run_part(const struct expr_program *program,
+                                                      const struct expr_instruction *in, uint32_t at, uint32_t part,
+                                                      double *rows, const struct expr_direct *direct) {
+    return part == 8 * WIDTH ? run_many(program, in, at, rows, direct)
+           : part == 16      ? run_few(program, in, at, rows, direct)
+                             : run_one(program, in, at, rows, direct);
 }
 
 #else
 
-void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows, const struct expr_direct *direct) {
-    (void)direct; /* for links only */
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++)
-        in = run_instruction(program, in, width, rows);
+static inline uint32_t part_of(uint32_t left) {
+    return left;
+}
+
+static const struct expr_instruction *run_part(const struct expr_program *program, const struct expr_instruction *in,
+                                               uint32_t at, uint32_t part, double *rows,
+                                               const struct expr_direct *direct) {
+    (void)at, (void)direct; /* for links only */
+    for (const struct expr_instruction *end = program->code + program->count; in < end; in++) {
+        if (in->operation == EXPR_LOOP)
+            return in;
+        in = run_instruction(program, in, part, rows);
+    }
+    return NULL;
 }
 
 #endif
+
+/* --- programs --- */
+
+static const struct expr_instruction *batch_continue(struct batch_frame *f) {
+    const struct expr_instruction *in = f->in;
+    while (f->at < f->width) {
+        const uint32_t part = part_of(f->width - f->at);
+        in = run_part(f->program, in, f->at, part, f->rows, f->direct);
+        if (in)
+            return in;
+        in = f->program->code;
+        f->at += part;
+    }
+    return NULL;
+}
+
+/* All points begin. */
+static void batch_begin_loop(const struct batch_frame *f, struct batch_frame *inner) {
+    static const struct expr_direct none = {.output = NULL};
+    const struct expr_loop *loop = expr_loop_access(f->program, f->in).loop;
+    inner->program = &loop->body;
+    inner->loop = loop;
+    inner->direct = &none;
+    inner->rows = f->rows + f->at + (size_t)loop->offset * EXPR_BATCH;
+    inner->width = part_of(f->width - f->at);
+    inner->kept = inner->rows + (size_t)(expr_loop_rows(loop) / 2) * EXPR_BATCH;
+    inner->step = loop->first;
+    inner->whole = inner->width;
+    for (uint32_t i = 0; i < inner->width; i++) {
+        inner->points[i] = i;
+        inner->alive[i] = -1;
+    }
+}
+
+/* A step of the points that have not ended, in fewer vectors if half have. At the end the states return to their
+ * points. */
+static bool batch_begin_step(struct batch_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    row_integer *steps = (row_integer *)(void *)(f->rows + (size_t)loop->argument_count * EXPR_BATCH);
+    const bool is_checked = loop->ends && f->step > 1;
+    const uint32_t count = f->step > loop->last ? 0
+                           : is_checked         ? keep_alive(loop, f->width, f->rows, f->alive)
+                                                : f->width;
+    if (count == 0) {
+        if (f->width < f->whole)
+            keep_states(f);
+        for (uint32_t k = 0; k < loop->state_count && f->width < f->whole; k++)
+            memcpy(f->rows + (size_t)k * EXPR_BATCH, f->kept + (size_t)k * EXPR_BATCH, f->whole * sizeof *f->rows);
+        return false;
+    }
+    if (((count + 15) & ~15U) <= f->width / 2)
+        pack(f, count);
+    const uint32_t step = f->step++, width = f->width;
+    for (uint32_t i = 0; i < width; i++)
+        steps[i] = step;
+    f->at = 0;
+    f->in = loop->body.code;
+    return true;
+}
+
+static void batch_end_step(const struct batch_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    const uint32_t width = f->width & ~(WIDTH - 1U); /* which the compiler knows to be whole vectors */
+    double *rows = f->rows;
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        write_state(loop, k, width, rows, f->alive);
+}
+
+EXPR_DEFINE_RUN(batch)
+
+__attribute__((noinline)) static void run_loops(const struct expr_program *program, uint32_t width, double *rows,
+                                                const struct expr_direct *direct) {
+    struct batch_frame frames[EXPR_FRAMES];
+    frames[0].program = program;
+    frames[0].loop = NULL;
+    frames[0].in = program->code;
+    frames[0].direct = direct;
+    frames[0].rows = rows;
+    frames[0].width = width;
+    frames[0].at = 0;
+    batch_run(frames);
+}
+
+void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows, const struct expr_direct *direct) {
+    if (program->loop_count > 0) {
+        run_loops(program, width, rows, direct);
+        return;
+    }
+    for (uint32_t at = 0, part; at < width; at += part) {
+        part = part_of(width - at);
+        (void)run_part(program, program->code, at, part, rows, direct);
+    }
+}

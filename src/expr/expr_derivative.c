@@ -5,6 +5,7 @@
 #include "expr/expr_derivative.h"
 
 #include "expr/expr_derivative_internal.h"
+#include "expr/expr_frames_internal.h"
 #include "expr/expr_slopes_internal.h"
 
 #include <float.h>
@@ -207,46 +208,26 @@ static void texel_partials(const struct dual *from[3], double out[3]) {
         break;                                                                                                         \
     }
 
-static void run_duals(const struct expr_program *program, struct dual *values);
+/* As expr_evaluate does, with derivatives. See EXPR_DEFINE_RUN. */
+struct dual_frame {
+    const struct expr_program *program;
+    const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    struct dual *values;
+    uint32_t step; /* the next one */
+};
 
-/* As expr_evaluate does, with derivatives. values: of the body. */
-static void run_dual_loop(const struct expr_loop *loop, struct dual *values) {
-    struct dual *registers = values + loop->body.constant_count, next[EXPR_STATES];
-    bool is_float = loop->type[0] == EXPR_TYPE_F;
-    for (uint32_t i = 0; i < loop->body.constant_count; i++)
-        values[i] = (struct dual){loop->body.constants[i], {0}};
-    for (uint32_t step = loop->first; step <= loop->last; step++) {
-        if (loop->ends && step > 1 && !(is_float ? registers[0].value.f > 0 : registers[0].value.i > 0))
-            break;
-        registers[loop->argument_count] = (struct dual){{.i = step}, {0}};
-        run_duals(&loop->body, values);
-        for (uint32_t k = 0; k < loop->state_count; k++)
-            next[k] = values[loop->next[k]];
-        memcpy(registers, next, loop->state_count * sizeof *next);
-    }
-}
-
-static void run_dual_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
-                                    struct dual *values) {
-    const enum expr_operation operation = (enum expr_operation)in->operation;
-    const struct expr_loop_access at = expr_loop_access(program, in);
-    const struct expr_loop *loop = at.loop;
-    struct dual *of_loop = values + program->constant_count + loop->offset;
-    struct dual *slot = of_loop + loop->body.constant_count + at.slot;
-    if (at.puts)
-        *slot = values[in->b];
-    else if (operation == EXPR_LOOP)
-        run_dual_loop(loop, of_loop);
-    else
-        values[in->out] = *slot;
-}
-
-static void run_duals(const struct expr_program *program, struct dual *values) {
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+static const struct expr_instruction *dual_continue(const struct dual_frame *f) {
+    const struct expr_program *program = f->program;
+    struct dual *values = f->values;
+    for (const struct expr_instruction *in = f->in, *end = program->code + program->count; in < end; in++) {
         static const struct dual none = {.d = {0}};
         enum expr_operation operation = (enum expr_operation)in->operation;
+        if (operation == EXPR_LOOP)
+            return in;
         if (operation > EXPR_OPERATION_COUNT) {
-            run_dual_loop_operation(program, in, values);
+            const struct expr_loop_access at = expr_loop_access(program, in);
+            values[at.puts ? at.value : in->out] = values[at.puts ? in->b : at.value];
             continue;
         }
         const struct dual *from[3] = {&values[in->a], &values[in->b], &values[in->c]};
@@ -268,12 +249,41 @@ static void run_duals(const struct expr_program *program, struct dual *values) {
             chain(from, by, result.d);
         values[in->out] = result;
     }
+    return NULL;
 }
+
+static void dual_begin_loop(const struct dual_frame *f, struct dual_frame *inner) {
+    const struct expr_loop *loop = expr_loop_access(f->program, f->in).loop;
+    struct dual *values = f->values + f->program->constant_count + loop->offset;
+    for (uint32_t i = 0; i < loop->body.constant_count; i++)
+        values[i] = (struct dual){loop->body.constants[i], {0}};
+    *inner = (struct dual_frame){&loop->body, loop, NULL, values, loop->first};
+}
+
+static bool dual_begin_step(struct dual_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    struct dual *registers = f->values + loop->body.constant_count;
+    const union expr_value first = registers[0].value;
+    if (f->step > loop->last ||
+        (loop->ends && f->step > 1 && !(loop->type[0] == EXPR_TYPE_F ? first.f > 0 : first.i > 0)))
+        return false;
+    registers[loop->argument_count] = (struct dual){{.i = f->step++}, {0}};
+    f->in = loop->body.code;
+    return true;
+}
+
+static void dual_end_step(const struct dual_frame *f) {
+    for (uint32_t k = 0; k < f->loop->state_count; k++)
+        f->values[f->program->constant_count + k] = f->values[f->loop->next[k]];
+}
+
+EXPR_DEFINE_RUN(dual)
 
 void expr_evaluate_gradient(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                             const double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS], double outputs[EXPR_OUTPUTS],
                             double gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS], void *rows) {
     struct dual *values = rows;
+    struct dual_frame frames[EXPR_FRAMES] = {{program, NULL, program->code, values, 0}};
     for (uint32_t i = 0; i < program->constant_count; i++)
         values[i] = (struct dual){program->constants[i], {0}};
     for (int i = 0; i < program->input_count; i++) {
@@ -282,7 +292,7 @@ void expr_evaluate_gradient(const struct expr_program *program, const double inp
         for (int k = 0; k < D; k++)
             value->d[k] = seeds[program->inputs[i].input][k];
     }
-    run_duals(program, values);
+    dual_run(frames);
     for (int i = 0; i < program->output_count; i++) {
         outputs[i] = values[program->outputs[i]].value.f;
         for (int k = 0; k < D; k++)
@@ -702,88 +712,111 @@ static struct expr_rooted constant_of(struct expr_interval value) {
     return (struct expr_rooted){{value, {zero, zero, zero}, false}, {INFINITY, INFINITY, INFINITY}};
 }
 
-static void run_rooted(const struct expr_program *program, int directions, struct expr_rooted *values,
-                       struct expr_choice *choices);
+/* See EXPR_DEFINE_RUN. */
+struct rooted_frame {
+    const struct expr_program *program;
+    const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    struct expr_rooted *values;
+    struct expr_interval *scratch; /* of a loop, for the bounds of all values of its body */
+    struct expr_choice *choices;
+    int directions;
+    uint32_t step; /* the next one */
+};
 
 /* The states may jump where some points have ended: bounds of the values, with any slopes. */
-static void run_without_slopes(const struct expr_loop *loop, uint32_t step, struct expr_rooted *registers,
-                               struct expr_interval *scratch) {
+static void run_without_slopes(const struct rooted_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    struct expr_rooted *registers = f->values + loop->body.constant_count;
+    struct expr_interval *bounds = f->scratch + loop->body.constant_count;
     for (uint32_t k = 0; k < loop->argument_count; k++)
-        scratch[loop->body.constant_count + k] = registers[k].range.value;
-    expr_interval_loop(loop, step, scratch);
+        bounds[k] = registers[k].range.value;
+    expr_interval_loop(loop, f->step, f->scratch);
     for (uint32_t k = 0; k < loop->state_count; k++) {
-        registers[k] = constant_of(scratch[loop->body.constant_count + k]);
+        registers[k] = constant_of(bounds[k]);
         for (int d = 0; d < D; d++)
             registers[k].range.slopes[d] = any_slope;
     }
 }
 
-void expr_rooted_loop(const struct expr_loop *loop, int directions, struct expr_rooted *values,
-                      struct expr_interval *scratch) {
-    const struct expr_program *body = &loop->body;
-    struct expr_rooted *registers = values + body->constant_count, next[EXPR_STATES];
-    for (uint32_t step = loop->first; step <= loop->last; step++) {
-        const struct expr_interval first = registers[0].range.value;
-        const bool is_checked = loop->ends && step > 1;
-        if (is_checked && !expr_may_go_on(first))
-            return;
-        if ((is_checked && expr_may_end(first)) || step - loop->first >= EXPR_EXACT_STEPS) {
-            run_without_slopes(loop, step, registers, scratch);
-            return;
-        }
-        registers[loop->argument_count] = constant_of((struct expr_interval){step, step, false});
-        run_rooted(body, directions, values, NULL);
-        for (uint32_t k = 0; k < loop->state_count; k++)
-            next[k] = loop->next[k] >= body->constant_count
-                          ? values[loop->next[k]]
-                          : constant_of(expr_interval_of_constant(loop->type[k], body->constants[loop->next[k]]));
-        memcpy(registers, next, loop->state_count * sizeof *next);
-    }
+static struct expr_rooted rooted_value(const struct rooted_frame *f, enum expr_type type, uint16_t value) {
+    const struct expr_program *program = f->program;
+    return value >= program->constant_count ? f->values[value]
+                                            : constant_of(expr_interval_of_constant(type, program->constants[value]));
 }
 
-static void run_rooted_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
-                                      int directions, struct expr_rooted *values) {
-    const enum expr_operation operation = (enum expr_operation)in->operation;
-    const struct expr_loop_access at = expr_loop_access(program, in);
-    const struct expr_loop *loop = at.loop;
-    struct expr_rooted *of_loop = values + program->constant_count + loop->offset;
-    struct expr_rooted *slot = of_loop + loop->body.constant_count + at.slot;
-    if (operation == EXPR_LOOP)
-        expr_rooted_loop(loop, directions, of_loop,
-                         (struct expr_interval *)(void *)(of_loop + expr_loop_rows(loop) / 2));
-    else if (!at.puts)
-        values[in->out] = *slot;
-    else if (in->b >= program->constant_count)
-        *slot = values[in->b];
-    else
-        *slot = constant_of(expr_interval_of_constant(expr_operand_type(operation, 1), program->constants[in->b]));
-}
-
-static void run_rooted(const struct expr_program *program, int directions, struct expr_rooted *values,
-                       struct expr_choice *choices) {
-    struct expr_rooted constants[3];
+static const struct expr_instruction *rooted_continue(const struct rooted_frame *f) {
+    const struct expr_program *program = f->program;
+    struct expr_rooted constants[3], *values = f->values;
+    struct expr_choice *choices = f->choices;
     for (int k = 0; k < 3; k++)
         constants[k] = constant_of(zero);
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+    for (const struct expr_instruction *in = f->in, *end = program->code + program->count; in < end; in++) {
         const struct expr_rooted *from[3];
         if (in->operation > EXPR_OPERATION_COUNT) {
-            run_rooted_loop_operation(program, in, directions, values);
             if (choices)
                 choices[in - program->code] = (struct expr_choice){0, 0};
+            if (in->operation == EXPR_LOOP)
+                return in;
+            const struct expr_loop_access at = expr_loop_access(program, in);
+            const enum expr_type type = expr_operand_type((enum expr_operation)in->operation, 1);
+            values[at.puts ? at.value : in->out] = at.puts ? rooted_value(f, type, in->b) : values[at.value];
             continue;
         }
         find_operands(program, in, values, constants, from);
         if (choices)
             choices[in - program->code] =
                 expr_interval_decide((enum expr_operation)in->operation, from[0]->range.value, from[1]->range.value);
-        expr_rooted_apply(in, from, directions, &values[in->out]);
+        expr_rooted_apply(in, from, f->directions, &values[in->out]);
     }
+    return NULL;
+}
+
+static void rooted_begin_loop(const struct rooted_frame *f, struct rooted_frame *inner) {
+    const struct expr_loop *loop = expr_loop_access(f->program, f->in).loop;
+    struct expr_rooted *values = f->values + f->program->constant_count + loop->offset;
+    struct expr_interval *scratch = (struct expr_interval *)(void *)(values + expr_loop_rows(loop) / 2);
+    *inner = (struct rooted_frame){&loop->body, loop, NULL, values, scratch, NULL, f->directions, loop->first};
+}
+
+static bool rooted_begin_step(struct rooted_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    struct expr_rooted *registers = f->values + loop->body.constant_count;
+    const struct expr_interval first = registers[0].range.value;
+    const bool is_checked = loop->ends && f->step > 1;
+    if (f->step > loop->last || (is_checked && !expr_may_go_on(first)))
+        return false;
+    if ((is_checked && expr_may_end(first)) || f->step - loop->first >= EXPR_EXACT_STEPS) {
+        run_without_slopes(f);
+        return false;
+    }
+    registers[loop->argument_count] = constant_of((struct expr_interval){f->step, f->step, false});
+    f->in = loop->body.code;
+    f->step++;
+    return true;
+}
+
+static void rooted_end_step(const struct rooted_frame *f) {
+    for (uint32_t k = 0; k < f->loop->state_count; k++)
+        f->values[f->program->constant_count + k] = rooted_value(f, f->loop->type[k], f->loop->next[k]);
+}
+
+EXPR_DEFINE_RUN(rooted)
+
+void expr_rooted_loop(const struct expr_loop *loop, int directions, struct expr_rooted *values,
+                      struct expr_interval *scratch) {
+    struct rooted_frame frames[EXPR_FRAMES] = {
+        {&loop->body, loop, NULL, values, scratch, NULL, directions, loop->first}};
+    if (rooted_begin_step(frames))
+        rooted_run(frames);
 }
 
 void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows) {
     struct expr_rooted *values = rows;
+    struct rooted_frame frames[EXPR_FRAMES] = {
+        {program, NULL, program->code, values, NULL, choices, directions->count, 0}};
     for (int i = 0; i < program->input_count; i++) {
         struct expr_rooted *value = &values[program->inputs[i].value];
         value->range.value = inputs[program->inputs[i].input];
@@ -794,7 +827,7 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
             value->roots[k] = INFINITY;
         }
     }
-    run_rooted(program, directions->count, values, choices);
+    rooted_run(frames);
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;
@@ -842,10 +875,6 @@ static void read_lanes(const struct expr_program *program, uint16_t output, int 
 void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct expr_lane_inputs *inputs,
                                 const struct expr_directions *directions, struct expr_lane_range outputs[EXPR_OUTPUTS],
                                 struct expr_choice *choices, void *rows) {
-    static void (*const run[])(const struct expr_program *, int, bool, struct expr_lanes *,
-                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_slopes_base,
-                                                        [CPU_ISA_AVX2] = expr_run_slopes_avx2,
-                                                        [CPU_ISA_AVX512] = expr_run_slopes_avx512};
     struct expr_lanes *values = rows;
     for (int i = 0; i < program->input_count; i++) {
         enum expr_input input = (enum expr_input)program->inputs[i].input;
@@ -858,7 +887,7 @@ void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct
             for (int n = 0; n < EXPR_LANES; n++)
                 value->slopes[k].low[n] = value->slopes[k].high[n] = directions->seeds[input][k];
     }
-    run[cpu_isa()](program, directions->count, inputs->are_cases, values, choices);
+    CPU_ISA_CALL(expr_run_slopes, program, directions->count, inputs->are_cases, values, choices)
     for (int i = 0; i < program->output_count; i++)
         read_lanes(program, program->outputs[i], directions->count, values, &outputs[i]);
 }

@@ -30,7 +30,8 @@
 #define EXPR_INPUT_MEMBER(member, word) member,
 enum expr_input { EXPR_INPUTS(EXPR_INPUT_MEMBER) EXPR_INPUT_COUNT };
 
-enum { EXPR_NODES = 100000, EXPR_STATES = 64 /* of a loop */ };
+/* EXPR_STATES: of a loop. EXPR_DEPTH: loops in each other. */
+enum { EXPR_NODES = 100000, EXPR_STATES = 64, EXPR_DEPTH = 3 };
 #define EXPR_NONE UINT32_MAX
 
 struct expr_node {
@@ -46,7 +47,7 @@ struct expr_node {
  * and does not depend on its steps is computed once, before the loop. */
 struct expr_graph_loop {
     uint32_t first, last; /* steps */
-    uint32_t depth;       /* from 1: one more than the depth of what surrounds it */
+    uint32_t depth;       /* from 1 to EXPR_DEPTH: one more than the depth of what surrounds it */
     uint32_t state_count;
     const uint32_t *initial, *next; /* the states before the first step, and the results of the body; types agree */
     bool ends;                      /* after a step whose first state is not > 0, and before all steps if one step

@@ -5,6 +5,7 @@
  * and zero is possible, the bounds allow every result. */
 #include "expr/expr_interval_internal.h"
 
+#include "expr/expr_frames_internal.h"
 #include "math/exact.h"
 
 #include <float.h>
@@ -152,14 +153,24 @@ static inline struct expr_interval maximum(struct expr_interval a, struct expr_i
 
 /* --- elementary functions --- */
 
-typedef double function_of_one(double);
-
-/* For a function that increases from `first` to `last` and is undefined elsewhere. */
-static struct expr_interval growing(struct expr_interval a, function_of_one *f, double first, double last) {
-    struct expr_interval inside = within(a, first, last);
-    if (!(inside.low <= inside.high))
-        return anything;
-    return widened(f(inside.low), f(inside.high), a.may_be_nan || a.low < first || a.high > last);
+/* A function that increases from `first` to `last` and is undefined elsewhere. */
+#define GROWING(member, function, first, last)                                                                         \
+    case member:                                                                                                       \
+        if (!(larger(a.low, first) <= smaller(a.high, last)))                                                          \
+            return anything;                                                                                           \
+        return widened(function(larger(a.low, first)), function(smaller(a.high, last)),                                \
+                       a.may_be_nan || a.low < (first) || a.high > (last));
+__attribute__((noinline)) static struct expr_interval growing(enum expr_operation operation, struct expr_interval a) {
+    switch ((unsigned)operation) {
+        GROWING(EXPR_ASIN, el_asin, -1, 1)
+        GROWING(EXPR_EXP, el_exp, -INFINITY, INFINITY)
+        GROWING(EXPR_LOG, el_log, 0, INFINITY)
+        GROWING(EXPR_LOG2, el_log2, 0, INFINITY)
+        GROWING(EXPR_LOG10, el_log10, 0, INFINITY)
+        GROWING(EXPR_SINH, el_sinh, -INFINITY, INFINITY)
+        GROWING(EXPR_TANH, el_tanh, -INFINITY, INFINITY)
+    }
+    return anything;
 }
 
 /* Whether start + n * 2 pi is in the interval, or closer to it than rounding errors. Angles are below 10^6. */
@@ -168,15 +179,16 @@ static bool contains_angle(struct expr_interval a, double start) {
     return ceil((a.low - start - slack) / turn) <= floor((a.high - start + slack) / turn);
 }
 
-/* For the sine or the cosine, with its maximum at `top`. */
-static struct expr_interval wave(struct expr_interval a, function_of_one *f, double top) {
+/* The sine or the cosine. */
+static struct expr_interval wave(struct expr_interval a, bool is_sine) {
+    const double top = is_sine ? PI / 2 : 0;
     bool may_be_nan = a.may_be_nan || isinf(a.low) || isinf(a.high);
     if (!(a.high - a.low < 2 * PI) || fabs(a.low) > 1e6 || fabs(a.high) > 1e6)
         return (struct expr_interval){-1, 1, may_be_nan};
     bool to_bottom = contains_angle(a, top + PI), to_top = contains_angle(a, top);
     if (to_bottom && to_top)
         return (struct expr_interval){-1, 1, may_be_nan};
-    double p = f(a.low), q = f(a.high);
+    double p = is_sine ? el_sin(a.low) : el_cos(a.low), q = is_sine ? el_sin(a.high) : el_cos(a.high);
     return within(widened(to_bottom ? -1 : smaller(p, q), to_top ? 1 : larger(p, q), may_be_nan), -1, 1);
 }
 
@@ -411,13 +423,11 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_MAX:
         return maximum(a, b);
     case EXPR_SIN:
-        return wave(a, el_sin, PI / 2);
+        return wave(a, true);
     case EXPR_COS:
-        return wave(a, el_cos, 0);
+        return wave(a, false);
     case EXPR_TAN:
         return tangent(a);
-    case EXPR_ASIN:
-        return growing(a, el_asin, -1, 1);
     case EXPR_ACOS: {
         struct expr_interval inside = within(a, -1, 1);
         if (!(inside.low <= inside.high))
@@ -427,19 +437,17 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_ATAN:
         return arc_tangent(a, b);
     case EXPR_EXP:
-        return within(growing(a, el_exp, -INFINITY, INFINITY), 0, INFINITY);
+        return within(growing(operation, a), 0, INFINITY);
+    case EXPR_ASIN:
     case EXPR_LOG:
-        return growing(a, el_log, 0, INFINITY);
     case EXPR_LOG2:
-        return growing(a, el_log2, 0, INFINITY);
     case EXPR_LOG10:
-        return growing(a, el_log10, 0, INFINITY);
     case EXPR_SINH:
-        return growing(a, el_sinh, -INFINITY, INFINITY);
+        return growing(operation, a);
     case EXPR_COSH:
         return hyperbolic_cosine(a);
     case EXPR_TANH:
-        return within(growing(a, el_tanh, -INFINITY, INFINITY), -1, 1);
+        return within(growing(operation, a), -1, 1);
     case EXPR_NOISE:
         return noise((struct expr_interval[3]){a, b, c});
     case EXPR_HASH:
@@ -549,33 +557,56 @@ struct expr_interval expr_interval_of_integer(int64_t i) {
         break;                                                                                                         \
     }
 
-static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
-                               struct expr_interval *values) {
-    const enum expr_operation operation = (enum expr_operation)in->operation;
-    const struct expr_loop_access at = expr_loop_access(program, in);
-    const struct expr_loop *loop = at.loop;
-    struct expr_interval *of_loop = values + program->constant_count + loop->offset;
-    struct expr_interval *slot = of_loop + loop->body.constant_count + at.slot;
-    if (operation == EXPR_PUT_FLOAT)
-        *slot = OPERAND_F(in->b);
-    else if (operation == EXPR_PUT_INTEGER)
-        *slot = OPERAND_I(in->b);
-    else if (operation == EXPR_PUT_TRUTH)
-        *slot = OPERAND_B(in->b);
-    else if (operation == EXPR_LOOP)
-        expr_interval_loop(loop, loop->first, of_loop);
-    else
-        values[in->out] = *slot;
+/* See EXPR_DEFINE_RUN. Of a loop over one box: the states of the points that have not ended, and all that those that
+ * have may have. */
+struct interval_frame {
+    const struct expr_program *program;
+    const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    struct expr_interval *values;
+    struct expr_choice *choices;
+    uint32_t first, step;    /* the steps are bounded one by one from `first` on; `step` is the next one, */
+    bool is_rest, has_ended; /* or the first of all others, bounded at once; whether a point may have ended */
+    struct expr_interval next[EXPR_STATES], ended[EXPR_STATES];
+};
+
+static inline struct expr_interval value_of(const struct expr_program *program, const struct expr_interval *values,
+                                            enum expr_type type, uint16_t value) {
+    switch (type) {
+    case EXPR_TYPE_F:
+        return OPERAND_F(value);
+    case EXPR_TYPE_I:
+        return OPERAND_I(value);
+    case EXPR_TYPE_B:
+        return OPERAND_B(value);
+    case EXPR_TYPE_N:
+        break;
+    }
+    return OPERAND_N(value);
 }
 
-static void run_code(const struct expr_program *program, struct expr_interval *values, struct expr_choice *choices) {
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+/* One of the instructions before and after a loop. */
+static void run_loop_access(const struct expr_program *program, const struct expr_instruction *in,
+                            struct expr_interval *values) {
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const enum expr_type type = expr_operand_type((enum expr_operation)in->operation, 1);
+    values[at.puts ? at.value : in->out] = at.puts ? value_of(program, values, type, in->b) : values[at.value];
+}
+
+static const struct expr_instruction *interval_continue(const struct interval_frame *f) {
+    const struct expr_program *program = f->program;
+    struct expr_interval *values = f->values;
+    struct expr_choice *choices = f->choices;
+    for (const struct expr_instruction *in = f->in, *end = program->code + program->count; in < end; in++) {
         switch ((enum expr_operation)in->operation) {
             EXPR_OPERATIONS(EVALUATE)
         EXPR_LOOP_CASES:
-            run_loop_operation(program, in, values);
             if (choices)
                 choices[in - program->code] = (struct expr_choice){0, 0};
+            if (in->operation == EXPR_LOOP)
+                return in;
+            run_loop_access(program, in, values);
+            end = program->code + program->count; /* it does not stay in a processor register over the call */
             break;
         case EXPR_CONSTANT:
         case EXPR_INPUT:
@@ -584,85 +615,48 @@ static void run_code(const struct expr_program *program, struct expr_interval *v
             break;
         }
     }
-}
-
-void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
-                            struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
-    struct expr_interval *values = rows;
-    for (int i = 0; i < program->input_count; i++)
-        values[program->inputs[i].value] = inputs[program->inputs[i].input];
-    run_code(program, values, choices);
-    for (int i = 0; i < program->output_count; i++)
-        outputs[i] = OPERAND_F(program->outputs[i]);
+    return NULL;
 }
 
 /* --- loops --- */
 
-/* A loop over one box: the states of the points that have not ended, and all that those that have may have. */
-struct looping {
-    const struct expr_loop *loop;
-    struct expr_interval *values, *states, next[EXPR_STATES], ended[EXPR_STATES];
-    bool has_ended; /* a point may have */
-};
-
-static struct expr_interval either_of(struct expr_interval a, struct expr_interval b) {
-    return (struct expr_interval){fmin(a.low, b.low), fmax(a.high, b.high), a.may_be_nan || b.may_be_nan};
-}
-
-static void end_with(struct looping *l, const struct expr_interval *states) {
-    for (uint32_t k = 0; k < l->loop->state_count; k++)
-        l->ended[k] = l->has_ended ? either_of(l->ended[k], states[k]) : states[k];
-    l->has_ended = true;
+static void end_with(struct interval_frame *f, const struct expr_interval *states) {
+    const uint32_t count = f->loop->state_count;
+    for (uint32_t k = 0; k < count; k++)
+        f->ended[k] = f->has_ended ? enclosure(f->ended[k], states[k]) : states[k];
+    f->has_ended = true;
 }
 
 /* Ends the points whose first state is not > 0. False: no point goes on. */
-static bool end_some(struct looping *l, struct expr_interval *states) {
+static bool end_some(struct interval_frame *f, struct expr_interval *states) {
     struct expr_interval first = states[0];
-    if (!l->loop->ends || !expr_may_end(first))
+    if (!f->loop->ends || !expr_may_end(first))
         return true;
     states[0].high = fmin(first.high, fmax(first.low, 0)); /* or NaN */
-    end_with(l, states);
-    states[0] = (struct expr_interval){fmax(first.low, l->loop->type[0] == EXPR_TYPE_I), first.high, false};
+    end_with(f, states);
+    states[0] = (struct expr_interval){fmax(first.low, f->loop->type[0] == EXPR_TYPE_I), first.high, false};
     return expr_may_go_on(first);
 }
 
-static void run_step(struct looping *l, double first, double last) {
-    const struct expr_program *program = &l->loop->body;
-    struct expr_interval *values = l->values;
-    l->states[l->loop->argument_count] = (struct expr_interval){first, last, false};
-    run_code(program, values, NULL);
-    for (uint32_t k = 0; k < l->loop->state_count; k++)
-        switch (l->loop->type[k]) {
-        case EXPR_TYPE_F:
-            l->next[k] = OPERAND_F(l->loop->next[k]);
-            break;
-        case EXPR_TYPE_I:
-            l->next[k] = OPERAND_I(l->loop->next[k]);
-            break;
-        case EXPR_TYPE_B:
-        case EXPR_TYPE_N:
-            l->next[k] = OPERAND_B(l->loop->next[k]);
-            break;
-        }
-}
-
 /* Nothing is known of one of the numbers, so that single steps hardly tell more than all of them. */
-static bool is_lost(const struct looping *l) {
-    for (uint32_t k = 0; k < l->loop->state_count; k++)
-        if (l->loop->type[k] == EXPR_TYPE_F && l->states[k].low == -INFINITY && l->states[k].high == INFINITY)
+static bool is_lost(const struct interval_frame *f) {
+    const struct expr_interval *states = f->values + f->program->constant_count;
+    for (uint32_t k = 0; k < f->loop->state_count; k++)
+        if (f->loop->type[k] == EXPR_TYPE_F && states[k].low == -INFINITY && states[k].high == INFINITY)
             return true;
     return false;
 }
 
 /* Extends the bounds of the states to those after another step, at once to 0 or without end, so that few repetitions
  * reach bounds which a step does not leave (P. Cousot and R. Cousot, "Abstract interpretation", POPL 1977: widening).
- * False: they contain them already. */
-static bool widen(struct looping *l) {
+ * Each repetition extends an end of a state to the next of few values, so there are at most 5 for each state. False:
+ * they contain them already. */
+static bool widen(struct interval_frame *f) {
     bool has_grown = false;
-    for (uint32_t k = 0; k < l->loop->state_count; k++) {
-        struct expr_interval *state = &l->states[k], next = l->next[k];
-        const double end = l->loop->type[k] == EXPR_TYPE_F   ? (double)INFINITY
-                           : l->loop->type[k] == EXPR_TYPE_I ? 0x1p63
+    for (uint32_t k = 0; k < f->loop->state_count; k++) {
+        struct expr_interval *state = &f->values[f->program->constant_count + k], next = f->next[k];
+        const double end = f->loop->type[k] == EXPR_TYPE_F   ? (double)INFINITY
+                           : f->loop->type[k] == EXPR_TYPE_I ? 0x1p63
                                                              : 1;
         bool grows = next.low < state->low || next.high > state->high || (next.may_be_nan && !state->may_be_nan);
         if (next.low < state->low)
@@ -675,47 +669,92 @@ static bool widen(struct looping *l) {
     return has_grown;
 }
 
-/* All steps from `step` on at once: bounds of the states that no step leaves. Each repetition extends an end of a state
- * to the next of few values, so there are at most 5 for each state. */
-static void run_others(struct looping *l, uint32_t step) {
-    for (;;) {
-        run_step(l, step, l->loop->last);
-        if (!end_some(l, l->next))
-            return;
-        if (!widen(l))
-            break;
-    }
-    end_with(l, l->next);
+static void begin_loop(struct interval_frame *f, const struct expr_loop *loop, uint32_t step,
+                       struct expr_interval *values) {
+    f->program = &loop->body;
+    f->loop = loop;
+    f->values = values;
+    f->choices = NULL;
+    f->first = f->step = step;
+    f->is_rest = f->has_ended = false;
 }
 
-void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr_interval *values) {
-    struct looping l = {.loop = loop, .values = values, .states = values + loop->body.constant_count};
-    const uint32_t first = step, size = loop->state_count;
-    for (;; step++) {
-        if (step > 1 && !end_some(&l, l.states))
-            break;
-        if (step > loop->last) {
-            end_with(&l, l.states);
-            break;
-        }
-        if (step - first >= EXPR_EXACT_STEPS || (step - first >= 32 && is_lost(&l))) {
-            run_others(&l, step);
-            break;
-        }
-        run_step(&l, step, step);
-        memcpy(l.states, l.next, size * sizeof *l.next);
+static void interval_begin_loop(const struct interval_frame *f, struct interval_frame *inner) {
+    const struct expr_loop *loop = expr_loop_access(f->program, f->in).loop;
+    begin_loop(inner, loop, loop->first, f->values + f->program->constant_count + loop->offset);
+}
+
+/* Begins a step, or all others at once. */
+static void begin_body(struct interval_frame *f) {
+    const double last = f->is_rest ? f->loop->last : f->step;
+    f->values[f->program->constant_count + f->loop->argument_count] = (struct expr_interval){f->step, last, false};
+    f->in = f->program->code;
+}
+
+/* All other steps at once have bounds that no step leaves. */
+static bool interval_begin_step(struct interval_frame *f) {
+    struct expr_interval *states = f->values + f->program->constant_count, *reached = f->is_rest ? f->next : states;
+    const uint32_t steps = f->step - f->first;
+    bool goes_on = f->step == 1 || end_some(f, reached);
+    if (goes_on && !(f->is_rest ? widen(f) : f->step <= f->loop->last)) {
+        end_with(f, reached);
+        goes_on = false;
     }
-    memcpy(l.states, l.ended, size * sizeof *l.ended);
+    if (!goes_on) {
+        memcpy(states, f->ended, f->loop->state_count * sizeof *states);
+        return false;
+    }
+    f->is_rest = f->is_rest || steps >= EXPR_EXACT_STEPS || (steps >= 32 && is_lost(f));
+    begin_body(f);
+    return true;
+}
+
+static void interval_end_step(struct interval_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    struct expr_interval *next = f->is_rest ? f->next : f->values + loop->body.constant_count;
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        next[k] = value_of(&loop->body, f->values, loop->type[k], loop->next[k]);
+    f->step += !f->is_rest;
+}
+
+EXPR_DEFINE_RUN(interval)
+
+void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr_interval *values) {
+    struct interval_frame frames[EXPR_FRAMES];
+    begin_loop(frames, loop, step, values);
+    if (interval_begin_step(frames))
+        interval_run(frames);
 }
 
 void expr_interval_loop_rest(const struct expr_loop *loop, uint32_t step, bool has_ended, struct expr_interval *ended,
                              struct expr_interval *values) {
-    struct looping l = {
-        .loop = loop, .values = values, .states = values + loop->body.constant_count, .has_ended = has_ended};
+    struct interval_frame frames[EXPR_FRAMES];
+    begin_loop(frames, loop, step, values);
+    frames[0].is_rest = true;
+    frames[0].has_ended = has_ended;
     if (has_ended)
-        memcpy(l.ended, ended, loop->state_count * sizeof *ended);
-    run_others(&l, step);
-    memcpy(ended, l.ended, loop->state_count * sizeof *ended);
+        memcpy(frames[0].ended, ended, loop->state_count * sizeof *ended);
+    begin_body(frames);
+    interval_run(frames);
+    memcpy(ended, frames[0].ended, loop->state_count * sizeof *ended);
+}
+
+/* --- one box --- */
+
+void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
+                            struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
+    struct expr_interval *values = rows;
+    struct interval_frame frames[EXPR_FRAMES];
+    for (int i = 0; i < program->input_count; i++)
+        values[program->inputs[i].value] = inputs[program->inputs[i].input];
+    frames[0].program = program;
+    frames[0].loop = NULL;
+    frames[0].in = program->code;
+    frames[0].values = values;
+    frames[0].choices = choices;
+    interval_run(frames);
+    for (int i = 0; i < program->output_count; i++)
+        outputs[i] = OPERAND_F(program->outputs[i]);
 }
 
 /* --- many boxes --- */
@@ -739,15 +778,11 @@ static void put_inputs(const struct expr_program *program, const struct expr_box
 
 void expr_evaluate_intervals(const struct expr_program *program, const struct expr_boxes *boxes,
                              struct expr_bounds outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
-    static void (*const run[])(const struct expr_program *, uint32_t, double *, struct expr_flags *,
-                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_intervals_base,
-                                                        [CPU_ISA_AVX2] = expr_run_intervals_avx2,
-                                                        [CPU_ISA_AVX512] = expr_run_intervals_avx512};
     uint32_t width = (boxes->count + 7) & ~7U;
     double *values = rows;
     struct expr_flags *flags = (struct expr_flags *)(void *)(values + (size_t)program->row_count * 2 * EXPR_BOXES);
     put_inputs(program, boxes, width, values, flags);
-    run[cpu_isa()](program, width, values, flags, choices);
+    CPU_ISA_CALL(expr_run_intervals, program, width, values, flags, choices)
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;

@@ -1,6 +1,7 @@
 /* Bounds over many boxes, compiled for the instruction set of the file that includes this one: arithmetic and choices
  * on vectors of boxes, everything else box by box with expr_interval_apply. Loops repeat their bodies over all boxes.
  * The steps are those of expr_interval.c, and so are the results. */
+#include "expr/expr_frames_internal.h"
 #include "expr/expr_interval_internal.h"
 #include "expr/expr_vector_internal.h"
 
@@ -105,14 +106,14 @@ static struct expr_flags run_singly(const struct machine *m, const struct expr_i
 
 /* One of the instructions before and after a loop. The ends of its arguments are in rows, those of truth values too.
  * low: of the result. */
-static struct expr_flags run_loop_access(const struct machine *m, const struct expr_instruction *in,
-                                         const struct expr_loop_access *at, double *low) {
+static struct expr_flags run_loop_access(const struct machine *m, const struct expr_instruction *in, double *low) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const uint32_t slot = at->loop->offset + at->slot;
+    const struct expr_loop_access at = expr_loop_access(m->program, in);
+    const uint32_t slot = at.loop->offset + at.slot;
     double *rows = m->rows + (size_t)slot * 2 * EXPR_BOXES;
     struct expr_flags out = {0, 0};
     /* Takes: the row of the state is the result. */
-    if (!at->puts) {
+    if (!at.puts) {
         memcpy(low, rows, 2 * EXPR_BOXES * sizeof *low);
         out.first = operation == EXPR_TAKE_TRUTH ? 0 : m->flags[slot].first;
         for (uint32_t box = 0; operation == EXPR_TAKE_TRUTH && box < m->width; box++) {
@@ -138,30 +139,33 @@ static struct expr_flags run_loop_access(const struct machine *m, const struct e
 
 /* --- loops --- */
 
-/* A loop over many boxes. Lane i of the first m.width is the box boxes[i]. As in a batch of points, boxes that have
- * ended leave: the others move to the first lanes. */
-struct looping {
+/* See EXPR_DEFINE_RUN. A loop over many boxes: lane i of the first m.width is the box boxes[i]. As in a batch of
+ * points, boxes that have ended leave: the others move to the first lanes. */
+struct boxes_frame {
     const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    struct expr_choice *choices;
     struct machine m;                            /* of the body; its first rows are the states */
+    uint32_t step;                               /* the next one */
     double *ended;                               /* rows of the final states, by box */
     uint64_t may_be_nan[EXPR_STATES], has_ended; /* of `ended`, by box */
     uint64_t active;                             /* lanes whose boxes have points that go on */
     uint32_t boxes[EXPR_BOXES];
 };
 
-static inline double *state_row(const struct looping *l, uint32_t k) {
+static inline double *state_row(const struct boxes_frame *l, uint32_t k) {
     return l->m.rows + (size_t)k * 2 * EXPR_BOXES;
 }
 
 /* An argument in a lane. The second flag is that of truth values only, and set where the first one is. */
-static inline struct expr_interval argument_of(const struct looping *l, uint32_t k, uint32_t lane) {
+static inline struct expr_interval argument_of(const struct boxes_frame *l, uint32_t k, uint32_t lane) {
     const double *row = state_row(l, k);
     const struct expr_flags flags = l->m.flags[k];
     return (struct expr_interval){row[lane], row[lane + EXPR_BOXES], (flags.first & ~flags.second) >> lane & 1};
 }
 
 /* The final states of a box, with those that points have which end now in this lane. */
-static void end_with(struct looping *l, uint32_t lane, const struct expr_interval *first) {
+static void end_with(struct boxes_frame *l, uint32_t lane, const struct expr_interval *first) {
     const uint32_t box = l->boxes[lane];
     const bool has_ended = l->has_ended >> box & 1;
     for (uint32_t k = 0; k < l->loop->state_count; k++) {
@@ -183,7 +187,7 @@ static inline uint64_t lanes_beyond(const double *row, double sign, double limit
 }
 
 /* Ends the points whose first state is not > 0. */
-static void end_some(struct looping *l) {
+static void end_some(struct boxes_frame *l) {
     double *low = state_row(l, 0), *high = low + EXPR_BOXES;
     const bool is_integer = l->loop->type[0] == EXPR_TYPE_I;
     const uint64_t may_be_nan = is_integer ? 0 : l->m.flags[0].first;
@@ -204,7 +208,7 @@ static void end_some(struct looping *l) {
 }
 
 /* Lanes with a number of which nothing is known. */
-static uint64_t lost_lanes(const struct looping *l) {
+static uint64_t lost_lanes(const struct boxes_frame *l) {
     uint64_t lost = 0;
     for (uint32_t k = 0; k < l->loop->state_count; k++)
         if (l->loop->type[k] == EXPR_TYPE_F)
@@ -214,7 +218,7 @@ static uint64_t lost_lanes(const struct looping *l) {
 }
 
 /* All other steps at once in these lanes, one after the other. */
-static void run_rest(struct looping *l, uint64_t lanes, uint32_t step) {
+static void run_rest(struct boxes_frame *l, uint64_t lanes, uint32_t step) {
     const struct expr_loop *loop = l->loop;
     struct expr_interval ended[EXPR_STATES];
     struct expr_interval *values =
@@ -239,7 +243,7 @@ static void run_rest(struct looping *l, uint64_t lanes, uint32_t step) {
 }
 
 /* Moves the active lanes to the first ones; those up to a multiple of 8 repeat the first. */
-static void pack(struct looping *l) {
+static void pack(struct boxes_frame *l) {
     uint32_t from[EXPR_BOXES], count = 0;
     for (uint64_t lanes = l->active; lanes; lanes &= lanes - 1)
         from[count++] = (uint32_t)__builtin_ctzll(lanes);
@@ -265,7 +269,7 @@ static void pack(struct looping *l) {
 }
 
 /* The next value of a state becomes the state. */
-static void write_state(struct looping *l, uint32_t k) {
+static void write_state(struct boxes_frame *l, uint32_t k) {
     const struct expr_program *body = &l->loop->body;
     const uint16_t next = l->loop->next[k];
     const enum expr_type type = l->loop->type[k];
@@ -287,41 +291,23 @@ static void write_state(struct looping *l, uint32_t k) {
     l->m.flags[k] = flags;
 }
 
-static void run_step(struct looping *l, uint32_t step) {
-    double *row = state_row(l, l->loop->argument_count);
-    for (uint32_t lane = 0; lane < l->m.width; lane++)
-        row[lane] = row[lane + EXPR_BOXES] = step;
-    l->m.flags[l->loop->argument_count] = (struct expr_flags){0, 0};
-    KERNEL(run_intervals)(&l->loop->body, l->m.width, l->m.rows, l->m.flags, NULL);
-    for (uint32_t k = 0; k < l->loop->state_count; k++)
-        write_state(l, k);
-}
-
-/* The steps are those of expr_interval_loop in each box. */
-static void run_steps(struct looping *l) {
+/* Ends the boxes that do not begin this step. The steps are those of expr_interval_loop in each box. */
+static void end_boxes(struct boxes_frame *l, uint32_t step) {
     const struct expr_loop *loop = l->loop;
-    for (uint32_t step = loop->first;; step++) {
-        if (step > 1 && loop->ends)
-            end_some(l);
-        if (step > loop->last) {
-            for (; l->active; l->active &= l->active - 1)
-                end_with(l, (uint32_t)__builtin_ctzll(l->active), NULL);
-            return;
-        }
-        if (step - loop->first >= EXPR_EXACT_STEPS)
-            run_rest(l, l->active, step);
-        else if (step - loop->first >= 32)
-            run_rest(l, lost_lanes(l), step);
-        if (!l->active)
-            return;
-        if (((uint32_t)__builtin_popcountll(l->active) + 7) / 8 <= l->m.width / 16)
-            pack(l);
-        run_step(l, step);
+    if (step > 1 && loop->ends)
+        end_some(l);
+    if (step > loop->last) {
+        for (; l->active; l->active &= l->active - 1)
+            end_with(l, (uint32_t)__builtin_ctzll(l->active), NULL);
+    } else if (step - loop->first >= EXPR_EXACT_STEPS) {
+        run_rest(l, l->active, step);
+    } else if (step - loop->first >= 32) {
+        run_rest(l, lost_lanes(l), step);
     }
 }
 
 /* One box after the other, which is faster without vectors. */
-static void run_box_by_box(struct looping *l) {
+static void run_box_by_box(struct boxes_frame *l) {
     const struct expr_loop *loop = l->loop;
     struct expr_interval *values =
         (struct expr_interval *)(void *)(l->ended + (size_t)loop->state_count * 2 * EXPR_BOXES);
@@ -337,24 +323,55 @@ static void run_box_by_box(struct looping *l) {
             l->may_be_nan[k] |= (uint64_t)arguments[k].may_be_nan << box;
         }
     }
+    l->active = 0;
 }
 
-static void run_loop(const struct machine *m, const struct expr_loop *loop) {
-    double *rows = m->rows + (size_t)loop->offset * 2 * EXPR_BOXES;
-    struct expr_flags *flags = m->flags + loop->offset;
-    struct looping l = {.loop = loop,
-                        .m = {.program = &loop->body, .rows = rows, .flags = flags, .width = m->width},
-                        .ended = rows + (size_t)(expr_loop_rows(loop) / 2) * 2 * EXPR_BOXES,
-                        .active = m->width < EXPR_BOXES ? ((uint64_t)1 << m->width) - 1 : UINT64_MAX};
+static void boxes_begin_loop(const struct boxes_frame *outer, struct boxes_frame *l) {
+    const struct machine *m = &outer->m;
+    const struct expr_loop *loop = expr_loop_access(m->program, outer->in).loop;
+    l->loop = loop;
+    l->choices = NULL;
+    l->m.program = &loop->body;
+    l->m.rows = m->rows + (size_t)loop->offset * 2 * EXPR_BOXES;
+    l->m.flags = m->flags + loop->offset;
+    l->m.width = m->width;
+    l->step = loop->first;
+    l->ended = l->m.rows + (size_t)(expr_loop_rows(loop) / 2) * 2 * EXPR_BOXES;
+    memset(l->may_be_nan, 0, loop->state_count * sizeof *l->may_be_nan);
+    l->has_ended = 0;
+    l->active = m->width < EXPR_BOXES ? ((uint64_t)1 << m->width) - 1 : UINT64_MAX;
     for (uint32_t i = 0; i < m->width; i++)
-        l.boxes[i] = i;
+        l->boxes[i] = i;
+}
+
+static bool boxes_begin_step(struct boxes_frame *l) {
+    const struct expr_loop *loop = l->loop;
     if (WIDTH > 1)
-        run_steps(&l);
+        end_boxes(l, l->step);
     else
-        run_box_by_box(&l);
-    memcpy(rows, l.ended, (size_t)loop->state_count * 2 * EXPR_BOXES * sizeof *rows);
-    for (uint32_t k = 0; k < loop->state_count; k++)
-        flags[k] = (struct expr_flags){l.may_be_nan[k], 0};
+        run_box_by_box(l);
+    /* All have ended. */
+    if (!l->active) {
+        memcpy(l->m.rows, l->ended, (size_t)loop->state_count * 2 * EXPR_BOXES * sizeof *l->ended);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            l->m.flags[k] = (struct expr_flags){l->may_be_nan[k], 0};
+        return false;
+    }
+    /* The others. */
+    if (((uint32_t)__builtin_popcountll(l->active) + 7) / 8 <= l->m.width / 16)
+        pack(l);
+    double *row = state_row(l, loop->argument_count);
+    for (uint32_t lane = 0; lane < l->m.width; lane++)
+        row[lane] = row[lane + EXPR_BOXES] = l->step;
+    l->m.flags[loop->argument_count] = (struct expr_flags){0, 0};
+    l->in = loop->body.code;
+    l->step++;
+    return true;
+}
+
+static void boxes_end_step(struct boxes_frame *l) {
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        write_state(l, k);
 }
 
 /* Where the flag is set any number is possible, and NaN. */
@@ -409,10 +426,10 @@ static void set_unknown(uint64_t unknown, double *low) {
     struct ends a = number_of(m, in->a, 0), b = a;                                                                     \
     out.first = a.may_be_nan
 
-static inline __attribute__((always_inline)) void run_boxes(struct machine *m, const uint32_t width,
-                                                            struct expr_choice *choices) {
+static inline __attribute__((always_inline)) const struct expr_instruction *
+run_boxes(struct machine *m, const struct expr_instruction *in, const uint32_t width, struct expr_choice *choices) {
     const struct expr_program *program = m->program;
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+    for (const struct expr_instruction *end = program->code + program->count; in < end; in++) {
         const uint32_t number = (uint32_t)in->out - program->constant_count;
         double *low = m->rows + (size_t)number * 2 * EXPR_BOXES;
         struct expr_flags out = {0, 0};
@@ -520,11 +537,11 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
             break;
         }
         EXPR_LOOP_CASES : {
-            const struct expr_loop_access at = expr_loop_access(program, in);
+            if (choices)
+                choices[in - program->code] = decided;
             if (in->operation == EXPR_LOOP)
-                run_loop(m, at.loop);
-            else
-                out = run_loop_access(m, in, &at, low);
+                return in;
+            out = run_loop_access(m, in, low);
             break;
         }
         default:
@@ -538,13 +555,26 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
         if (choices)
             choices[in - program->code] = decided;
     }
+    return NULL;
 }
+
+static const struct expr_instruction *boxes_continue(struct boxes_frame *l) {
+    if (l->m.width == EXPR_BOXES)
+        return run_boxes(&l->m, l->in, EXPR_BOXES, l->choices);
+    return run_boxes(&l->m, l->in, l->m.width, l->choices);
+}
+
+EXPR_DEFINE_RUN(boxes)
 
 void KERNEL(run_intervals)(const struct expr_program *program, uint32_t width, double *rows, struct expr_flags *flags,
                            struct expr_choice *choices) {
-    struct machine m = {.program = program, .rows = rows, .flags = flags, .width = width};
-    if (width == EXPR_BOXES)
-        run_boxes(&m, EXPR_BOXES, choices);
-    else
-        run_boxes(&m, width, choices);
+    struct boxes_frame frames[EXPR_FRAMES];
+    frames[0].loop = NULL;
+    frames[0].in = program->code;
+    frames[0].choices = choices;
+    frames[0].m.program = program;
+    frames[0].m.rows = rows;
+    frames[0].m.flags = flags;
+    frames[0].m.width = width;
+    boxes_run(frames);
 }

@@ -2,7 +2,7 @@
  * evaluators keep that result in processor registers, and store it only if another instruction reads it too. The link
  * of an instruction is one number for its operation, the origins of its operands, and whether its result is stored, so
  * that evaluators need one jump. An instruction whose link is EXPR_UNLINKED reads and writes registers of the program
- * only. */
+ * only. EXPR_LOOP always has the link of one operand from R whose result is stored; evaluators stop there. */
 #ifndef GRAY_EXPR_EXPR_LINK_INTERNAL_H
 #define GRAY_EXPR_EXPR_LINK_INTERNAL_H
 
@@ -17,14 +17,14 @@ enum { EXPR_FROM_R, EXPR_FROM_K, EXPR_FROM_L, EXPR_FROM_I };
 #define EXPR_LINKED_2(X) X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(MIN) X(MAX) X(LESS) X(LESS_EQUAL)
 #define EXPR_LINKS_1(operation) EXPR_LINK_##operation, EXPR_LINK_END_##operation = EXPR_LINK_##operation + 5,
 #define EXPR_LINKS_2(operation) EXPR_LINK_##operation, EXPR_LINK_END_##operation = EXPR_LINK_##operation + 31,
-enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EXPR_LINK_SELECT };
+enum { EXPR_UNLINKED, EXPR_LINKS_1(LOOP) EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EXPR_LINK_SELECT };
 #define EXPR_LINK_1(operation, a, stored) (EXPR_LINK_##operation + 2 * EXPR_FROM_##a + (stored))
 #define EXPR_LINK_2(operation, a, b, stored)                                                                           \
     (EXPR_LINK_##operation + 2 * (4 * EXPR_FROM_##a + EXPR_FROM_##b) + (stored))
 #define EXPR_LINK_3(a, b, c, stored)                                                                                   \
     (EXPR_LINK_SELECT + 2 * (9 * EXPR_FROM_##a + 3 * EXPR_FROM_##b + EXPR_FROM_##c) + (stored))
 
-/* All links but EXPR_UNLINKED: X1(operation, origin, stored), X2(operation, two origins, stored), X3(three origins,
+/* All other links: X1(operation, origin, stored), X2(operation, two origins, stored), X3(three origins,
  * stored) of the selection. */
 #define EXPR_CASES_1(X, operation) X(operation, R, 0) X(operation, R, 1) X(operation, L, 0) X(operation, L, 1)
 #define EXPR_CASES_2(X, operation, stored)                                                                             \
@@ -115,7 +115,8 @@ enum { EXPR_LINK_PAIRS = EXPR_LINK_SELECT + 2 * 27 };
 /* The table of jumps of an evaluator: by link, the addresses of the labels that these cases make of the names, such as
  * ADD_L_R_1. */
 #define EXPR_LINK_ADDRESSES                                                                                            \
-    [EXPR_UNLINKED] = &&UNLINKED, EXPR_LINK_CASES(EXPR_ADDRESS_1, EXPR_ADDRESS_2, EXPR_ADDRESS_3)
+    [EXPR_UNLINKED] = &&UNLINKED, [EXPR_LINK_1(LOOP, R, 1)] = &&LOOP,                                                  \
+    EXPR_LINK_CASES(EXPR_ADDRESS_1, EXPR_ADDRESS_2, EXPR_ADDRESS_3)
 #define EXPR_ADDRESS_1(operation, oa, stored) [EXPR_LINK_1(operation, oa, stored)] = &&operation##_##oa##_##stored,
 #define EXPR_ADDRESS_2(operation, oa, ob, stored)                                                                      \
     [EXPR_LINK_2(operation, oa, ob, stored)] = &&operation##_##oa##_##ob##_##stored,
@@ -133,7 +134,7 @@ struct expr_link_range {
 #define EXPR_RANGE_1(operation) [EXPR_##operation] = {EXPR_LINK_##operation, 1},
 #define EXPR_RANGE_2(operation) [EXPR_##operation] = {EXPR_LINK_##operation, 2},
 static const struct expr_link_range expr_link_ranges[EXPR_ALL_OPERATIONS] = {
-    EXPR_LINKED_1(EXPR_RANGE_1) EXPR_LINKED_2(EXPR_RANGE_2)[EXPR_SELECT] = {EXPR_LINK_SELECT, 3}};
+    EXPR_RANGE_1(LOOP) EXPR_LINKED_1(EXPR_RANGE_1) EXPR_LINKED_2(EXPR_RANGE_2)[EXPR_SELECT] = {EXPR_LINK_SELECT, 3}};
 
 /* The state of a pass that sets links from the last instruction to the first. Zero-initialise but for
  * constant_count and input_end. */

@@ -64,15 +64,15 @@
 #define FORGET(k, zero) x##k = zero;
 #define PUT(k, to) STORE_ANY(to + (k)*WIDTH, x##k);
 
-/* Points from number `at` on; rows: of the first point. */
-static void RUN_LINKED(const struct expr_program *program, uint32_t at, double *rows,
-                       const struct expr_direct *direct) {
+/* Points from number `at` on, up to the next loop, or to the end: NULL. rows: of the first point. */
+static const struct expr_instruction *RUN_LINKED(const struct expr_program *program, const struct expr_instruction *in,
+                                                 uint32_t at, double *rows, const struct expr_direct *direct) {
     static const void *const targets[] = {EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(PAIR_ADDRESS)};
     const double *const *const inputs = direct->inputs;
     const uint32_t input_begin = program->constant_count;
     const union expr_value *const constants = program->constants;
     double *const values = rows + at - (size_t)program->constant_count * EXPR_BATCH;
-    const struct expr_instruction *in = program->code, *const end = in + program->count;
+    const struct expr_instruction *const end = program->code + program->count;
     EACH(DECLARE, ALL(0.0))
     if (in < end)
         goto *targets[in->link];
@@ -80,7 +80,9 @@ done:
     if (direct->output) {
         EACH(PUT, direct->output + at)
     }
-    return;
+    return NULL;
+LOOP:
+    return in;
 UNLINKED:
     in = run_rows(program, in, VECTORS * WIDTH, rows + at);
     EACH(FORGET, ALL(0.0)) /* not saved over the call */

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "expr/expr_batch_internal.h"
+#include "expr/expr_frames_internal.h"
 #include "expr/expr_link_internal.h"
 
 #include <stdio.h>
@@ -429,6 +430,9 @@ static bool compile_loops(const struct layout *layout, struct expr_program *prog
     program->loops = loops;
     for (uint32_t k = 0; k < program->loop_count; k++) {
         const struct expr_kept_loop *kept = &layout->graph->loops[layout->numbers[k]];
+        if (kept->loop.depth > EXPR_DEPTH)
+            return error_set(error, ERROR_SCENE, "the function has loops that are more than %d deep in each other",
+                             EXPR_DEPTH);
         struct layout body = {.graph = layout->graph,
                               .loop = kept,
                               .outputs = kept->loop.next,
@@ -492,7 +496,7 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
 /* Each instruction jumps to the next one itself: with one jump for all of them, a point takes 1.5 times as long. */
 #define NEXT                                                                                                           \
     if (++in >= end)                                                                                                   \
-        return;                                                                                                        \
+        return NULL;                                                                                                   \
     goto *targets[in->link];
 #define SINGLE_1(operation, oa, stored)                                                                                \
     operation##_##oa##_##stored : values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a));                       \
@@ -516,51 +520,17 @@ static inline bool is_true(double x) {
     return value.i != 0;
 }
 
-static void run_code(const struct expr_program *program, union expr_value *values);
-
-/* Repeats the body. The states are written in order, which changes no result (see struct expr_loop). values: of the
- * body. */
-static void run_loop(const struct expr_loop *loop, union expr_value *values) {
-    union expr_value *registers = values + loop->body.constant_count;
-    const bool is_float = loop->type[0] == EXPR_TYPE_F;
-    const uint32_t states = loop->state_count;
-    const uint16_t *next = loop->next;
-    memcpy(values, loop->body.constants, loop->body.constant_count * sizeof *values);
-    for (uint32_t step = loop->first; step <= loop->last; step++) {
-        if (loop->ends && step > 1 && !(is_float ? registers[0].f > 0 : registers[0].i > 0))
-            break;
-        registers[loop->argument_count].i = step;
-        run_code(&loop->body, values);
-        for (uint32_t k = 0; k < states; k++)
-            registers[k] = values[next[k]];
-    }
-}
-
-/* One of the operations of a loop. */
-static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
-                               union expr_value *values) {
-    const enum expr_operation operation = (enum expr_operation)in->operation;
-    const struct expr_loop_access at = expr_loop_access(program, in);
-    const struct expr_loop *loop = at.loop;
-    union expr_value *of_loop = values + program->constant_count + loop->offset;
-    union expr_value *slot = of_loop + loop->body.constant_count + at.slot;
-    if (at.puts)
-        *slot = values[in->b];
-    else if (operation == EXPR_LOOP)
-        run_loop(loop, of_loop);
-    else
-        values[in->out] = *slot;
-}
-
 /* Runs an instruction, or the two of a sine and a cosine; returns the last one. */
 static const struct expr_instruction *run_unlinked(const struct expr_program *program,
                                                    const struct expr_instruction *in, union expr_value *values) {
     const struct expr_instruction *end = program->code + program->count;
     switch ((enum expr_operation)in->operation) {
         EXPR_OPERATIONS(EVALUATE)
-    EXPR_LOOP_CASES:
-        run_loop_operation(program, in, values);
+    EXPR_LOOP_CASES : {
+        const struct expr_loop_access at = expr_loop_access(program, in);
+        values[at.puts ? at.value : in->out] = values[at.puts ? in->b : at.value];
         break;
+    }
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
@@ -573,13 +543,17 @@ static const struct expr_instruction *run_unlinked(const struct expr_program *pr
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic" /* addresses of labels */
 
-static void run_code(const struct expr_program *program, union expr_value *values) {
+/* Up to the next loop, or to the end: NULL. */
+static const struct expr_instruction *run_code(const struct expr_program *program, const struct expr_instruction *in,
+                                               union expr_value *values) {
     static const void *const targets[] = {EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(EXPR_ADDRESS_FIRST)};
-    const struct expr_instruction *in = program->code, *const end = in + program->count;
+    const struct expr_instruction *const end = program->code + program->count;
     double last = 0;
     if (in >= end)
-        return;
+        return NULL;
     goto *targets[in->link];
+LOOP:
+    return in;
 UNLINKED:
     in = run_unlinked(program, in, values);
     NEXT EXPR_LINK_CASES(SINGLE_1, SINGLE_2, SINGLE_3)
@@ -587,14 +561,63 @@ UNLINKED:
 
 #pragma GCC diagnostic pop
 
+/* See EXPR_DEFINE_RUN. */
+struct point_frame {
+    const struct expr_program *program;
+    const struct expr_loop *loop;
+    const struct expr_instruction *in;
+    union expr_value *values;
+    uint32_t step; /* the next one */
+};
+
+static const struct expr_instruction *point_continue(const struct point_frame *f) {
+    return run_code(f->program, f->in, f->values);
+}
+
+static void point_begin_loop(const struct point_frame *f, struct point_frame *inner) {
+    const struct expr_loop *loop = expr_loop_access(f->program, f->in).loop;
+    union expr_value *values = f->values + f->program->constant_count + loop->offset;
+    memcpy(values, loop->body.constants, loop->body.constant_count * sizeof *values);
+    *inner = (struct point_frame){&loop->body, loop, NULL, values, loop->first};
+}
+
+static bool point_begin_step(struct point_frame *f) {
+    const struct expr_loop *loop = f->loop;
+    union expr_value *registers = f->values + loop->body.constant_count;
+    const bool is_float = loop->type[0] == EXPR_TYPE_F;
+    if (f->step > loop->last || (loop->ends && f->step > 1 && !(is_float ? registers[0].f > 0 : registers[0].i > 0)))
+        return false;
+    registers[loop->argument_count].i = f->step++;
+    f->in = loop->body.code;
+    return true;
+}
+
+/* The states are written in order, which changes no result (see struct expr_loop). */
+static void point_end_step(const struct point_frame *f) {
+    union expr_value *registers = f->values + f->loop->body.constant_count;
+    const uint32_t states = f->loop->state_count;
+    const uint16_t *next = f->loop->next;
+    for (uint32_t k = 0; k < states; k++)
+        registers[k] = f->values[next[k]];
+}
+
+EXPR_DEFINE_RUN(point)
+
+__attribute__((noinline)) static void run_loops(const struct expr_program *program, union expr_value *values) {
+    struct point_frame frames[EXPR_FRAMES] = {{program, NULL, program->code, values, 0}};
+    point_run(frames);
+}
+
 void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                    double outputs[EXPR_OUTPUTS]) {
     union expr_value values[EXPR_VALUES];
-    for (uint32_t i = 0; i < program->constant_count; i++)
-        values[i] = program->constants[i];
+    memcpy(values, program->constants, program->constant_count * sizeof *values);
     for (int i = 0; i < program->input_count; i++)
         values[program->inputs[i].value].f = inputs[program->inputs[i].input];
-    run_code(program, values);
+    if (program->loop_count > 0)
+        run_loops(program, values);
+    else
+        (void)run_code(program, program->code, values);
     for (int i = 0; i < program->output_count; i++)
         outputs[i] = values[program->outputs[i]].f;
 }
@@ -628,8 +651,6 @@ static void put_inputs(const struct expr_program *program, uint32_t count, uint3
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS],
                          void *rows) {
-    static void (*const run[])(const struct expr_program *, uint32_t, double *, const struct expr_direct *) = {
-        [CPU_ISA_BASE] = expr_run_base, [CPU_ISA_AVX2] = expr_run_avx2, [CPU_ISA_AVX512] = expr_run_avx512};
     static const uint32_t steps[] = {[CPU_ISA_BASE] = 4, [CPU_ISA_AVX2] = 4, [CPU_ISA_AVX512] = 8};
     const uint32_t step = steps[cpu_isa()], width = (count + step - 1) & ~(step - 1);
     const int last = cpu_isa() == CPU_ISA_BASE ? -1 : program->direct_output - 1;
@@ -639,7 +660,7 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
         direct.inputs[i] = inputs[program->inputs[i].input];
     put_inputs(program, count, width, values, &direct);
     direct.output = last < 0 ? NULL : width == count ? outputs[last] : row_of(program, program->outputs[last], values);
-    run[cpu_isa()](program, width, values, &direct);
+    CPU_ISA_CALL(expr_run, program, width, values, &direct)
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         if (value >= program->constant_count) {

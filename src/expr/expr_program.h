@@ -17,7 +17,7 @@ enum { EXPR_VALUES = 8192, EXPR_OUTPUTS = 4, EXPR_BATCH = 64 };
 struct expr_instruction {
     uint16_t operation;    /* enum expr_operation */
     uint16_t out, a, b, c; /* `out` for operands that the operation does not have */
-    uint16_t link;         /* for the evaluators of points, see expr_link_internal.h; 0 is always right */
+    uint16_t link;         /* for the evaluators of points, see expr_link_internal.h; 0 is right but for EXPR_LOOP */
 };
 
 struct expr_loop;
@@ -61,11 +61,12 @@ static inline uint32_t expr_loop_rows(const struct expr_loop *loop) {
 }
 
 /* What an instruction of a loop names by a constant: the loop, and the slot of its memory, after the constants of its
- * body. An instruction that puts a value there has the constant as its operand c, others as b. */
+ * body; `value` is that slot by its number among the values of the program. An instruction that puts a value there has
+ * the constant as its operand c, others as b. */
 struct expr_loop_access {
     bool puts;
     const struct expr_loop *loop;
-    uint32_t slot;
+    uint32_t slot, value;
 };
 
 static inline struct expr_loop_access expr_loop_access(const struct expr_program *program,
@@ -73,7 +74,10 @@ static inline struct expr_loop_access expr_loop_access(const struct expr_program
     const enum expr_operation operation = (enum expr_operation)in->operation;
     const bool puts = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
     const int64_t named = program->constants[puts ? in->c : in->b].i;
-    return (struct expr_loop_access){puts, &program->loops[named >> 16], (uint32_t)(named & 0xffff)};
+    const struct expr_loop *loop = &program->loops[named >> 16];
+    const uint32_t slot = (uint32_t)(named & 0xffff);
+    return (struct expr_loop_access){puts, loop, slot,
+                                     program->constant_count + loop->offset + loop->body.constant_count + slot};
 }
 
 /* How many instructions a point needs at most, with the steps of loops. */
@@ -88,7 +92,7 @@ static inline bool expr_is_pair(const struct expr_instruction *in, const struct 
 }
 
 /* Compiles the program that computes these nodes, which are floats and at most EXPR_OUTPUTS. False and an error: no
- * memory, or more than EXPR_VALUES values. */
+ * memory, more than EXPR_VALUES values, or loops deeper in each other than EXPR_DEPTH. */
 bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,
                   struct expr_program *program, struct error *error);
 

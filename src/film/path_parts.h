@@ -44,6 +44,7 @@ enum { PATH_SCATTERINGS = (PATH_LIGHT_GROUPS - 1) / 2 };
 /* Of one camera ray. */
 struct path_parts {
     bool surface_known; /* the features are there */
+    double travelled;   /* along the line of sight, to its last surface */
     double reflected;   /* the share of light that the first smooth glass reflects; 0 without glass */
     struct vec3 seen;   /* this share of the path's weight at the glass, which may be seen in a mirror */
     float features[PATH_FEATURES];

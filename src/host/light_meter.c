@@ -76,7 +76,6 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
                              .camera = work->job.camera,
                              .settings = work->job.settings,
                              .ambient = work->job.ambient,
-                             .fog = work->job.fog,
                              .background_lights = work->job.background_lights,
                              .film = &film};
     /* A small, quick picture without what the brightness does not depend on. */

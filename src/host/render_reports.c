@@ -115,15 +115,17 @@ void render_process_warn_at(struct render_process *process, const char *where, c
 /* After a picture: reports the functions that returned NaN at a hit. */
 void render_process_warn_of_nan(struct render_process *process, const struct world *world) {
     char line[1024];
-    for (uint32_t i = 0; i < world->texture_count; i++) {
-        const struct texture *texture = &world->textures[i];
-        const struct texture_nan *nan = texture->kind == TEXTURE_FUNCTION ? texture->recorded.nan : NULL;
+    const struct texture_tables *textures = &world->surfaces.textures;
+    for (uint32_t i = 0; i < textures->count; i++) {
+        const struct texture_operation *operation = &textures->operations[i];
+        const struct texture_nan *nan = operation->kind == TEXTURE_FUNCTION ? operation->recorded.nan : NULL;
+        const char *source = world->authored.textures[i]->source;
         if (!nan || !nan->found)
             continue;
         (void)snprintf(line, sizeof line,
                        "the function of %.400s is not a number (NaN) at p = {%.6g, %.6g, %.6g}; it counts as 0 there",
-                       texture->recorded.source, nan->point[0], nan->point[1], nan->point[2]);
-        warn_once(process, texture->recorded.source, line);
+                       source, nan->point[0], nan->point[1], nan->point[2]);
+        warn_once(process, source, line);
     }
 }
 

@@ -104,12 +104,12 @@ static void dump_geometry(struct functions *functions, const struct geometry *ge
 
 void inspect_functions(const struct inspected *picture, struct text_writer *writer) {
     const struct world *world = picture->job->world;
-    const struct fog *fog = picture->job->fog;
+    const struct fog *fog = world_outside(world)->fog;
     struct functions functions = {.writer = writer, .json = picture->json};
     text_writer_put(writer, picture->json ? "{\"picture\":%q,\"functions\":[" : "%n: functions\n", picture->file);
-    for (uint32_t i = 0; i < world->texture_count; i++)
-        if (world->textures[i].kind == TEXTURE_FUNCTION)
-            dump_function(&functions, world->textures[i].recorded.program);
+    for (uint32_t i = 0; i < world->surfaces.textures.count; i++)
+        if (world->surfaces.textures.operations[i].kind == TEXTURE_FUNCTION)
+            dump_function(&functions, world->surfaces.textures.operations[i].recorded.program);
     for (uint32_t i = 0; i < world->prototype_count; i++)
         dump_geometry(&functions, &world->prototypes[i].geometry);
     for (uint32_t i = 0; i < world->light_count; i++)

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "csg/csg.h"
+#include "material/material_eval.h"
 #include "render/camera.h"
 
 #include <stdio.h>
@@ -200,19 +201,22 @@ static bool same_inputs(const struct surface_inputs *a, const struct surface_inp
 }
 
 /* Found by trial: each part gets another value, and the inputs at the hit are compared. */
-static uint32_t idle_parts(const struct material *material, const struct hit *hit) {
+static uint32_t idle_parts(const struct surface_tables *tables, const struct hit *hit) {
+    const struct surface_material *material = &tables->materials[hit->material];
     struct surface_inputs before, after;
     uint32_t idle = 0;
-    material_inputs_at(material, hit, &before);
+    material_inputs_at(tables, material, hit, &before);
     for (int k = 0; k < MATERIAL_PART_PARTS; k++) {
         enum material_part part = (enum material_part)k;
-        struct material other = *material;
+        struct surface_material other = *material;
+        struct material base = {.phong = material->phong};
         double numbers[3];
-        material_part_get(&other, part, numbers);
+        material_part_get(&base, part, numbers);
         for (int i = 0; i < 3; i++)
             numbers[i] = numbers[i] > 0.5 ? 0.25 : 0.75;
-        material_part_set(&other, part, numbers);
-        material_inputs_at(&other, hit, &after);
+        material_part_set(&base, part, numbers);
+        other.phong = base.phong;
+        material_inputs_at(tables, &other, hit, &after);
         idle |= same_inputs(&before, &after) ? 1U << k : 0;
     }
     return idle;
@@ -241,7 +245,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     pick_copy_name(out->shape, shape_description(p, node));
     /* Of the material, what can be changed, and which changes would not be seen. */
     describe_material(p->world->authored.materials[hit->material], out);
-    out->idle_parts = idle_parts(&p->world->materials[hit->material], hit);
+    out->idle_parts = idle_parts(&p->world->surfaces, hit);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
     return box_node(p, root, error);

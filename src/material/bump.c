@@ -21,7 +21,7 @@ struct bump bump_make(enum material_kind kind, const struct texture *texture) {
     return (struct bump){.kind = kind,
                          .height = is_normal ? 1 : BUMP_HEIGHT,
                          .relative = !is_normal && texture_as_image(texture),
-                         .texture.authored = texture};
+                         .texture = texture};
 }
 
 static double height_at(const struct texture_image *image, struct texcoord at, double du, double dv) {
@@ -37,7 +37,7 @@ static double step_of(double width, uint32_t texels) {
     return width > texel ? fmin(width, 1) : texel;
 }
 
-static void turn_by_heights(const struct bump *bump, const struct texture_image *image, const struct hit *hit,
+static void turn_by_heights(const struct surface_bump *bump, const struct texture_image *image, const struct hit *hit,
                             struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
@@ -84,8 +84,8 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
 
 /* The slopes of the surface along the tangents of the object's space. The differences are as wide as the footprint, at
  * least 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
-static bool slopes_by_differences(const struct bump *bump, const struct texture *textures, const struct hit *hit,
-                                  double slopes[2]) {
+static bool slopes_by_differences(const struct surface_bump *bump, const struct texture_tables *textures,
+                                  const struct hit *hit, double slopes[2]) {
     struct vec3 a, b;
     double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
     if (!(step > 0))
@@ -97,7 +97,7 @@ static bool slopes_by_differences(const struct bump *bump, const struct texture 
     for (int i = 0; i < 4; i++) {
         struct texture_reader reader;
         texture_reader_init(&reader, &at[i], textures, NULL);
-        height[i] = texture_read_scalar(texture_at(textures, bump->texture), &reader);
+        height[i] = texture_read(bump->program, &reader).x;
     }
     slopes[0] = scale * (height[0] - height[1]);
     slopes[1] = scale * (height[2] - height[3]);
@@ -106,15 +106,14 @@ static bool slopes_by_differences(const struct bump *bump, const struct texture 
 
 /* The same formula with the tangents of the object's space. A recorded function has derivatives, except where it
  * jumps. */
-static void turn_by_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
-                            struct vec3 *normal) {
-    const struct texture *texture = texture_at(textures, bump->texture);
+static void turn_by_texture(const struct surface_bump *bump, const struct texture_tables *textures,
+                            const struct hit *hit, struct vec3 *normal) {
     struct vec3 n = vec3_cross(hit->along_a, hit->along_b);
     double area = vec3_length(n), slopes[2];
     if (!(area > 0) || !isfinite(area))
         return;
-    bool has_derivatives =
-        texture->kind == TEXTURE_FUNCTION && texture_function_slopes(texture, hit, bump->height, slopes);
+    bool has_derivatives = bump->texture != TEXTURE_NONE &&
+                           texture_function_slopes(&textures->operations[bump->texture], hit, bump->height, slopes);
     if (!has_derivatives && !slopes_by_differences(bump, textures, hit, slopes))
         return;
     if (slopes[0] == 0 && slopes[1] == 0)
@@ -142,7 +141,7 @@ static void turn_along(double x, double y, double z, struct vec3 dpdu, struct ve
         *normal = vec3_normalize(turned);
 }
 
-static void turn_to_colours(const struct bump *bump, const struct texture_image *image, const struct hit *hit,
+static void turn_to_colours(const struct surface_bump *bump, const struct texture_image *image, const struct hit *hit,
                             struct vec3 *normal) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
@@ -157,30 +156,33 @@ static void turn_to_colours(const struct bump *bump, const struct texture_image 
 }
 
 /* The same with the coordinates that the shape supplies; no slope is 0.5, since no file has rounded it. */
-static void turn_to_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
-                            struct vec3 *normal) {
+static void turn_to_texture(const struct surface_bump *bump, const struct texture_tables *textures,
+                            const struct hit *hit, struct vec3 *normal) {
     struct texture_reader reader;
     texture_reader_init(&reader, hit, textures, NULL);
-    struct vec3 colour = texture_read_colour(texture_at(textures, bump->texture), &reader);
+    struct vec3 colour = texture_read(bump->program, &reader);
     double x = 2 * bump->height * (colour.x - 0.5), y = 2 * bump->height * (colour.y - 0.5);
     struct vec3 down = bump->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
     turn_along(x, y, 2 * colour.z - 1, hit->dpdu, down, normal);
 }
 
-static void turn(const struct bump *bump, const struct material *material, const struct hit *hit, struct vec3 *normal) {
-    const struct bump *below = bump_at(material->bumps, bump->below);
-    if (below)
-        turn(below, material, hit, normal);
-    const struct texture_image *image = texture_as_image(texture_at(material->textures, bump->texture));
-    bool by_colours = bump->kind == MATERIAL_NORMAL;
-    if (image)
-        (by_colours ? turn_to_colours : turn_by_heights)(bump, image, hit, normal);
+static void turn(const struct surface_bump *bump, const struct texture_tables *textures, const struct hit *hit,
+                 struct vec3 *normal) {
+    const struct texture_operation *single =
+        bump->texture != TEXTURE_NONE ? &textures->operations[bump->texture] : NULL;
+    bool by_colours = bump->kind == MATERIAL_NORMAL, is_image = single && single->kind == TEXTURE_IMAGE;
+    if (by_colours && is_image)
+        turn_to_colours(bump, &single->image, hit, normal);
+    else if (by_colours)
+        turn_to_texture(bump, textures, hit, normal);
+    else if (is_image)
+        turn_by_heights(bump, &single->image, hit, normal);
     else
-        (by_colours ? turn_to_texture : turn_by_texture)(bump, material->textures, hit, normal);
+        turn_by_texture(bump, textures, hit, normal);
 }
 
-void bump_turn_normal(const struct material *material, const struct hit *hit, struct vec3 *normal) {
-    const struct bump *bump = bump_at(material->bumps, material->bump);
-    if (bump)
-        turn(bump, material, hit, normal);
+void bump_turn_normal(const struct surface_tables *tables, const struct surface_material *material,
+                      const struct hit *hit, struct vec3 *normal) {
+    for (uint32_t i = 0; i < material->bump_count; i++)
+        turn(&tables->bumps[material->first_bump + i], &tables->textures, hit, normal);
 }

@@ -3,24 +3,48 @@
 #ifndef GRAY_MATERIAL_MATERIAL_EVAL_H
 #define GRAY_MATERIAL_MATERIAL_EVAL_H
 
+#include "geometry/hit.h"
 #include "material/bsdf.h"
-#include "material/material.h"
+#include "material/surface_material.h"
+#include "settings/settings.h"
 
-/* Settings of the picture for all surfaces, and the observer. All zero: the defaults. */
+/* The inputs at a hit; material_eval turns them into a BSDF. */
+struct surface_inputs {
+    struct vec3 kd, ks;
+    double shininess, reflect, refract, ior;
+    bool has_ior, two_sided;
+    bool unlit;         /* kd is shown unchanged, without light */
+    struct vec3 normal; /* unit, world, on the outward side: the hit's, or changed by bumps */
+    double opacity;     /* of a surface with holes; objects behind it have the weight 1 - opacity */
+    enum material_highlight highlight;
+    struct vec3 emission;   /* added to reflected light */
+    struct vec3 absorption; /* inside: the logarithm of light decreases by this per unit */
+    double roughness;       /* of reflection and refraction; 0: a mirror */
+    int glossy_samples;     /* N x N rays where it is rough; 0: the default */
+    bool fresnel;           /* material_eval, which has the media, replaces reflect and refract by F and 1 - F */
+};
+
+/* Settings of the picture for all surfaces. All zero: the defaults. */
 struct material_context {
     enum specular_kind specular;
     bool ambient_plain;             /* the ambient colour is not multiplied by kd */
     bool total_reflection;          /* at total reflection, refracted light is reflected; else it is lost */
     bool no_black_highlight;        /* matte surfaces do not have a highlight with weight 0 */
     const struct bsdf_joint *joint; /* or NULL: no other surface is there */
-    material_observer *observer;    /* called for every link of `authored`, or NULL */
-    void *observer_context;
-    bool thin;                       /* the surface is a wall without thickness, with the same medium on both sides */
-    const struct material *authored; /* if observer is set: the material of the scene that `material` was made from */
+    bool thin;                      /* the surface is a wall without thickness, with the same medium on both sides */
 };
 
-/* media: those that contain the ray; NULL: none. A surface with opacity 0 has no lobes. */
-void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+void material_inputs_at(const struct surface_tables *tables, const struct surface_material *material,
+                        const struct hit *hit, struct surface_inputs *out);
+/* By the material of the hit. media: those that contain the ray; NULL: none. A surface with opacity 0 has no lobes. */
+void material_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,
                    const struct material_context *context, struct bsdf *out);
+
+/* Is called for every material of a chain, from the base on, with its inputs. */
+typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);
+/* For pixel traces: what material_eval of this context reads, and the links below, which it makes tables of.
+ * authored: the material of the scene that the one of the hit was made from. */
+void material_observe(const struct surface_tables *tables, const struct hit *hit, const struct material *authored,
+                      const struct material_context *context, material_observer *observer, void *observer_context);
 
 #endif

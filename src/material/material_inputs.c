@@ -17,7 +17,7 @@ void material_derive(struct material *material, enum material_kind kind, const s
 
 /* The texture of an input; where it is a number, the texture of that number. */
 static const struct texture *material_input(const struct material *material, enum material_input input) {
-    return material->inputs[input].authored ? material->inputs[input].authored : texture_parameter(input);
+    return material->inputs[input] ? material->inputs[input] : texture_parameter(input);
 }
 
 static bool put(struct material *material, enum material_input input, struct texture texture, struct arena *arena,
@@ -25,7 +25,7 @@ static bool put(struct material *material, enum material_input input, struct tex
     const struct texture *kept = texture_keep(arena, texture, error);
     if (!kept)
         return false;
-    material->inputs[input].authored = kept;
+    material->inputs[input] = kept;
     return true;
 }
 
@@ -88,7 +88,7 @@ bool material_add_bump(struct material *material, const struct bump *bump, struc
         return error_no_memory(error, "a bump map");
     *own = *bump;
     own->below = material->bump;
-    material->bump.authored = own;
+    material->bump = own;
     return true;
 }
 

@@ -52,28 +52,26 @@ static const void *remember(struct material_mapping *mapping, const void *of, en
 static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
                                         enum surface_layout layout) {
     const struct texture *on = known(mapping, texture, layout);
-    union texture_ref *parts[TEXTURE_PARTS];
     if (on || !texture->has_image)
         return on ? on : texture;
     struct texture own = *texture, *kept = NULL;
     bool changed = false;
     /* Its own mapping, then those of its parts. A texture that stays as it is needs no copy. */
-    if (own.kind == TEXTURE_IMAGE) {
-        own.image.lookup.mapping = texture_mapping_on(own.image.lookup.mapping, layout);
-        changed = own.image.lookup.mapping != texture->image.lookup.mapping;
+    if (own.operation.kind == TEXTURE_IMAGE) {
+        own.operation.image.mapping = texture_mapping_on(own.operation.image.mapping, layout);
+        changed = own.operation.image.mapping != texture->operation.image.mapping;
     }
-    if (own.kind == TEXTURE_FUNCTION) {
-        own.recorded.mapping = texture_mapping_on(own.recorded.mapping, layout);
-        changed = own.recorded.mapping != texture->recorded.mapping;
+    if (own.operation.kind == TEXTURE_FUNCTION) {
+        own.operation.recorded.mapping = texture_mapping_on(own.operation.recorded.mapping, layout);
+        changed = own.operation.recorded.mapping != texture->operation.recorded.mapping;
     }
-    for (int i = texture_parts(&own, parts); i-- > 0;) {
-        if (!parts[i]->authored)
+    for (int i = 0; i < TEXTURE_PARTS; i++) {
+        if (!own.parts[i])
             continue;
-        const struct texture *part = texture_on(mapping, parts[i]->authored, layout);
-        if (!part)
+        own.parts[i] = texture_on(mapping, texture->parts[i], layout);
+        if (!own.parts[i])
             return NULL;
-        changed = changed || part != parts[i]->authored;
-        parts[i]->authored = part;
+        changed = changed || own.parts[i] != texture->parts[i];
     }
     if (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept)))
         return NULL;
@@ -93,10 +91,10 @@ static const struct bump *bump_has_mapping(struct material_mapping *mapping, con
         return NULL;
     *own = *bump;
     own->from_above = layout != LAYOUT_UV;
-    own->texture.authored = texture_on(mapping, bump->texture.authored, layout);
-    if (bump->below.authored)
-        own->below.authored = bump_has_mapping(mapping, bump->below.authored, layout);
-    bool whole = own->texture.authored && (own->below.authored || !bump->below.authored);
+    own->texture = texture_on(mapping, bump->texture, layout);
+    if (bump->below)
+        own->below = bump_has_mapping(mapping, bump->below, layout);
+    bool whole = own->texture && (own->below || !bump->below);
     return remember(mapping, bump, layout, whole ? own : NULL);
 }
 
@@ -115,16 +113,16 @@ static const struct material *material_on(struct material_mapping *mapping, cons
             return NULL;
     }
     for (int i = 0; i < INPUT_COUNT; i++) {
-        const struct texture *texture = material->inputs[i].authored;
-        own.inputs[i].authored = texture ? texture_on(mapping, texture, layout) : NULL;
-        changed = changed || own.inputs[i].authored != texture;
-        if (texture && !own.inputs[i].authored)
+        const struct texture *texture = material->inputs[i];
+        own.inputs[i] = texture ? texture_on(mapping, texture, layout) : NULL;
+        changed = changed || own.inputs[i] != texture;
+        if (texture && !own.inputs[i])
             return NULL;
     }
-    if (material->bump.authored) {
-        own.bump.authored = bump_has_mapping(mapping, material->bump.authored, layout);
+    if (material->bump) {
+        own.bump = bump_has_mapping(mapping, material->bump, layout);
         changed = true;
-        if (!own.bump.authored)
+        if (!own.bump)
             return NULL;
     }
     own.origin = material_origin(material);

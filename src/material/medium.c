@@ -1,29 +1,39 @@
 /* See medium.h. */
 #include "material/medium.h"
 
-#include "material/fog_cells_internal.h"
 #include "material/fog_field.h"
 #include "math/elementary.h"
 
 #include <string.h>
 
+struct medium medium_outside(const struct fog *fog) {
+    return (struct medium){.ior = 1, .tint = {1, 1, 1}, .fog = fog, .affects = fog ? MEDIUM_RAY_SIGHT : 0};
+}
+
+struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+    const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
+    bool absorbs = absorption.x > 0 || absorption.y > 0 || absorption.z > 0;
+    return (struct medium){.ior = ior, .tint = tint, .extinction = absorption, .affects = absorbs ? all : 0};
+}
+
 /* The law of Beer, Lambert and Bouguer. */
-static struct vec3 absorption_transmittance(const struct medium *medium, double distance) {
-    struct vec3 a = medium->absorption;
+static struct vec3 uniform_transmittance(struct vec3 a, double distance) {
     return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
                          a.z > 0 ? el_exp(-a.z * distance) : 1};
 }
 
-bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const struct ray *ray, double distance,
-                          struct medium_effect *out) {
-    out->transmittance = vec3_all(1);
-    out->source = vec3_all(0);
-    if (!medium_affects(kind, fog, ray))
-        return false;
-    if (ray->media && ray->media->count > 0) {
-        out->transmittance = absorption_transmittance(medium_stack_at(ray->media, ray->media->count - 1), distance);
-        return true;
-    }
+/* The integral of the transmittance over the distance. */
+static double depth_seen(double extinction, double distance) {
+    return extinction > 0 ? -el_expm1(-extinction * distance) / extinction : distance;
+}
+
+struct vec3 medium_emission(const struct medium *medium, double distance) {
+    struct vec3 e = medium->emission, s = medium->extinction;
+    return vec3_make(e.x > 0 ? e.x * depth_seen(s.x, distance) : 0, e.y > 0 ? e.y * depth_seen(s.y, distance) : 0,
+                     e.z > 0 ? e.z * depth_seen(s.z, distance) : 0);
+}
+
+static bool fog_effect(const struct fog *fog, const struct ray *ray, double distance, struct medium_effect *out) {
     if (fog->clear_sky && distance == INFINITY)
         return false;
     struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
@@ -31,98 +41,53 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
     if (fog->kind == FOG_FIELD) {
         const struct fog_line line = {ray->origin, direction, distance, ray->time};
         out->transmittance = vec3_all(fog_field_transmittance(fog->field, &line, &out->source));
-        return true;
+    } else {
+        out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
     }
-    out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
+    out->added = vec3_mul(out->source, vec3_sub(vec3_all(1), out->transmittance));
     return true;
 }
 
-/* Beer's law along a straight line, for densities that can be integrated exactly: no steps, no noise. The grid is
- * traversed cell by cell. */
-
-/* exp(-depth); NaN comes from infinity times 0 in unbounded fog: the transmittance is 0. */
-static double faded(double depth) {
-    return depth <= 0 ? 1 : depth < 1e4 ? el_exp(-depth) : 0;
-}
-
-static double height_depth(const struct fog *fog, double y, double climb, double distance) {
-    double here = fog->density * el_exp(-(y - fog->base) / fog->scale), k = climb / fog->scale;
-    if (here == 0 && k >= 0)
-        return 0;
-    return k == 0 ? here * distance : here * (-el_expm1(-k * distance) / k);
-}
-
-/* Integral of the profile from its first height up to y; below it the sign is negative. */
-static double profile_sum(const struct fog *fog, double y) {
-    uint32_t last = fog->count - 1, low = 0, high = last;
-    if (y <= fog->heights[0])
-        return fog->densities[0] > 0 ? fog->densities[0] * (y - fog->heights[0]) : 0;
-    if (y >= fog->heights[last])
-        return fog->sums[last] + (fog->densities[last] > 0 ? fog->densities[last] * (y - fog->heights[last]) : 0);
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        *(fog->heights[middle] <= y ? &low : &high) = middle;
+bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
+    out->transmittance = vec3_all(1);
+    out->added = out->source = vec3_all(0);
+    if (!medium_affects(kind, ray))
+        return false;
+    const struct medium *medium = medium_stack_current(ray->media);
+    if (medium->fog)
+        return fog_effect(medium->fog, ray, distance, out);
+    out->transmittance = uniform_transmittance(medium->extinction, distance);
+    if (vec3_max_abs(medium->emission) > 0) {
+        struct vec3 e = medium->emission, s = medium->extinction, near = medium_emission(medium, distance);
+        out->added = near;
+        out->source =
+            vec3_make(s.x > 0 ? e.x / s.x : near.x, s.y > 0 ? e.y / s.y : near.y, s.z > 0 ? e.z / s.z : near.z);
     }
-    double step = y - fog->heights[low], share = step / (fog->heights[high] - fog->heights[low]);
-    return fog->sums[low] + step * (fog->densities[low] + 0.5 * share * (fog->densities[high] - fog->densities[low]));
+    return true;
 }
 
-static double profile_at(const struct fog *fog, double y) {
-    uint32_t i = 0;
-    while (i + 1 < fog->count && fog->heights[i + 1] <= y)
-        i++;
-    if (y <= fog->heights[0] || i + 1 == fog->count)
-        return fog->densities[i];
-    double share = (y - fog->heights[i]) / (fog->heights[i + 1] - fog->heights[i]);
-    return fog->densities[i] + share * (fog->densities[i + 1] - fog->densities[i]);
+static double quotient(double part, double all) {
+    return all > 0 ? part / all : 0;
 }
 
-static double profile_depth(const struct fog *fog, double y, double climb, double distance) {
-    double end = y + climb * distance, rise = end - y;
-    /* Nearly horizontal: the difference of two sums would be noise; the density in the middle is accurate. */
-    if (climb == 0 || (isfinite(end) && fabs(rise) <= 0x1p-26 * (fabs(y) + fabs(end)))) {
-        double density = profile_at(fog, climb == 0 ? y : y + 0.5 * rise);
-        return density > 0 ? density * distance : 0;
-    }
-    return (profile_sum(fog, end) - profile_sum(fog, y)) / climb;
+struct vec3 medium_albedo(const struct medium *medium) {
+    struct vec3 s = medium->scattering, e = medium->extinction;
+    return vec3_make(quotient(s.x, e.x), quotient(s.y, e.y), quotient(s.z, e.z));
 }
 
-static double grid_depth(const struct fog *fog, struct vec3 o, struct vec3 d, double distance) {
-    const struct fog_cells cells = {fog->corner, fog->size, {fog->cells[0], fog->cells[1], fog->cells[2]}};
-    struct fog_traversal traversal;
-    uint64_t cell;
-    double from, to, sum = 0;
-    if (!fog_traversal_begin(&traversal, &cells, o, d, distance))
-        return 0;
-    while (fog_traversal_next(&traversal, &cell, &from, &to))
-        sum += fog->densities[cell] * fmax(to - from, 0);
-    return sum;
-}
-
-double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance) {
-    double optical_depth;
-    switch (fog->kind) {
-    case FOG_EXPONENTIAL:
-        return fog->density > 0 ? faded(fog->density * distance) : 1;
-    case FOG_SQUARED:
-        optical_depth = fog->density * distance;
-        return fog->density > 0 ? faded(optical_depth * optical_depth) : 1;
-    case FOG_LINEAR:
-        if (distance <= fog->near)
-            return 1;
-        return distance >= fog->far ? 0 : (fog->far - distance) / (fog->far - fog->near);
-    case FOG_HEIGHT:
-        return faded(height_depth(fog, origin.y, direction.y, distance));
-    case FOG_PROFILE:
-        return faded(profile_depth(fog, origin.y, direction.y, distance));
-    case FOG_GRID:
-        return faded(grid_depth(fog, origin, direction, distance));
-    case FOG_FIELD: {
-        struct vec3 source;
-        return fog_field_transmittance(fog->field, &(struct fog_line){origin, direction, distance, 0}, &source);
-    }
-    }
-    return 1;
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+                                   struct sample2 u) {
+    double sum = throughput.x + throughput.y + throughput.z;
+    struct vec3 share = sum > 0 ? vec3_scale(throughput, 1 / sum) : vec3_all(1.0 / 3), s = medium->extinction;
+    double extinction = u.x < share.x ? s.x : u.x < share.x + share.y ? s.y : s.z;
+    double t = extinction > 0 ? -el_log(1 - u.y) / extinction : INFINITY;
+    struct medium_sample sample = {.scatters = t < distance, .distance = fmin(t, distance)};
+    struct vec3 left = uniform_transmittance(s, sample.distance);
+    /* Passing has a probability, scattering a density; each is the mean over the channels that may have been chosen. */
+    double chance = vec3_dot(share, sample.scatters ? vec3_mul(s, left) : left);
+    sample.weight =
+        vec3_scale(sample.scatters ? vec3_mul(medium->scattering, left) : left, chance > 0 ? 1 / chance : 0);
+    return sample;
 }
 
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from) {
@@ -136,10 +101,10 @@ static bool vectors_equal(struct vec3 a, struct vec3 b) {
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
-    static const struct medium air = {.ior = 1, .tint = {1, 1, 1}};
-    const struct medium *x = a->count ? medium_stack_at(a, a->count - 1) : &air,
-                        *y = b->count ? medium_stack_at(b, b->count - 1) : &air;
-    return x->ior == y->ior && vectors_equal(x->absorption, y->absorption) && vectors_equal(x->tint, y->tint);
+    const struct medium *x = medium_stack_current(a), *y = medium_stack_current(b);
+    return x->ior == y->ior && vectors_equal(x->extinction, y->extinction) && vectors_equal(x->tint, y->tint) &&
+           x->fog == y->fog && vectors_equal(x->scattering, y->scattering) && vectors_equal(x->emission, y->emission) &&
+           x->phase.kind == y->phase.kind && x->phase.g == y->phase.g;
 }
 
 void medium_stack_enter(struct medium_stack *stack, uint32_t solid) {

@@ -1,26 +1,47 @@
-/* The effect of media on the light along a ray: absorption inside transparent solids (the current medium of the ray's
- * stack) and fog outside. This is the only query for integrators. Rays have kinds, and each medium states which of them
- * it affects. Fog attenuates only lines of sight, not the light of lamps. Absorption affects all rays that ask. */
+/* Media and their effect on the light along a ray: they absorb, scatter and emit, each the same everywhere and by
+ * length; or are one of the classic fogs. A ray is in the medium of the solid that it entered last, and outside of all
+ * solids in that of the whole scene. Rays have kinds, and each medium states which of them it affects: fog only lines
+ * of sight, not the light of lamps; absorption all. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
+#include "material/fog.h"
+#include "material/phase.h"
 #include "math/ray.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
+enum medium_ray {
+    MEDIUM_RAY_SIGHT = 1,     /* camera rays and the reflected, refracted and hole rays that follow them */
+    MEDIUM_RAY_SCATTERED = 2, /* of a path, that diffuse or rough lobes have scattered */
+    MEDIUM_RAY_SHADOW = 4,    /* to a light; those of Whitted's integrator ask for no medium */
+    MEDIUM_RAY_PHOTON = 8,    /* of a photon */
+};
+
+struct medium {
+    double ior;
+    struct vec3 tint;       /* of light that passes the surface of the solid */
+    const struct fog *fog;  /* or NULL; then nothing of the following */
+    struct vec3 extinction; /* absorption and scattering: the logarithm of light decreases by this per unit */
+    struct vec3 scattering; /* at most the extinction */
+    struct vec3 emission;   /* radiance per unit */
+    struct phase phase;     /* of scattering */
+    bool scatters;          /* scattering is not black */
+    unsigned affects;       /* the set of enum medium_ray that do not pass it as if nothing were there */
+};
+
+/* Around all solids. fog: or NULL. */
+struct medium medium_outside(const struct fog *fog);
+/* Inside of a solid, without scattering and emission. */
+struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption);
+
 /* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
  * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
  * changes it. */
 
 enum { MEDIUM_STACK_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.md) */
-
-struct medium {
-    double ior;
-    struct vec3 absorption; /* the logarithm of light decreases by this per unit */
-    struct vec3 tint;       /* of light that passes the surface of the solid */
-};
 
 /* The inside of one solid: number of its primitive, and of its medium. */
 struct solid {
@@ -31,6 +52,7 @@ struct solid {
 struct media {
     const struct solid *solids;
     struct medium *all;
+    uint32_t outside; /* number of the medium around all solids */
 };
 #define SOLID_NONE UINT32_MAX
 
@@ -53,6 +75,10 @@ struct medium_boundary {
 static inline const struct medium *medium_stack_at(const struct medium_stack *stack, uint32_t i) {
     return &stack->media->all[stack->media->solids[stack->solids[i]].medium];
 }
+/* Where the ray is. */
+static inline const struct medium *medium_stack_current(const struct medium_stack *stack) {
+    return stack->count ? medium_stack_at(stack, stack->count - 1) : &stack->media->all[stack->media->outside];
+}
 /* Whether nothing shows a surface between the current media of two stacks. */
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b);
 static inline double medium_stack_ior(const struct medium_stack *stack) {
@@ -74,70 +100,39 @@ void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary
 /* The index of refraction on the ray's side over the index behind the surface. */
 double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary);
 
-/* Fog: attenuates light along lines of sight and adds its colour. It is outside of transparent solids only, and does
- * not attenuate the light of lamps. */
-
-enum fog_kind {
-    FOG_EXPONENTIAL, /* exp(-density d) */
-    FOG_SQUARED,     /* exp(-(density d)^2) */
-    FOG_LINEAR,      /* 1 before near, 0 beyond far, linear between */
-    FOG_HEIGHT,      /* density exp(-(y - base) / scale), integrated along the ray */
-    FOG_PROFILE,     /* a density for every height, linear between, constant beyond; integrated */
-    FOG_GRID,        /* a density for every cell of a box, none outside; integrated */
-    FOG_FIELD,       /* a density and perhaps a colour as functions of the point, in a box (fog_field.h) */
-};
-
-struct fog_field;
-
-/* Arrays belong to the script's arena. */
-struct fog {
-    enum fog_kind kind;
-    struct vec3 colour; /* a bound, where the field has colours */
-    bool display;       /* `colour` is a display colour */
-    double density;
-    double near, far;
-    double base, scale;
-    uint32_t count; /* of the profile: heights never decrease */
-    const double *heights, *densities;
-    const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
-    struct vec3 corner, size;
-    uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
-    const struct fog_field *field;
-    bool clear_sky; /* fog does not affect the sky */
-};
-
-/* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. Of FOG_FIELD at time 0. */
-double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
-
-enum medium_ray {
-    MEDIUM_RAY_SIGHT = 1,     /* camera rays and the reflected, refracted and hole rays that follow them */
-    MEDIUM_RAY_SCATTERED = 2, /* of a path, that diffuse or rough lobes have scattered */
-    MEDIUM_RAY_SHADOW = 4,    /* to a light */
-    MEDIUM_RAY_PHOTON = 8,    /* of a photon */
-};
-
-/* Sets of them. Shadow rays of Whitted's integrator ask for no medium. */
-enum {
-    ABSORPTION_AFFECTS = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON,
-    FOG_AFFECTS = MEDIUM_RAY_SIGHT,
-};
-
-/* Whether a ray is affected where it starts, and so on its whole way. */
-static inline bool medium_affects(enum medium_ray kind, const struct fog *fog, const struct ray *ray) {
-    if (ray->media && ray->media->count > 0)
-        return ABSORPTION_AFFECTS & kind;
-    return fog && (FOG_AFFECTS & kind);
+/* Whether a ray is affected where it starts, and so on its whole way. Rays without a stack are not. */
+static inline bool medium_affects(enum medium_ray kind, const struct ray *ray) {
+    return ray->media && (medium_stack_current(ray->media)->affects & kind);
 }
 
-/* Light that was `x` is transmittance * x + source * (1 - transmittance) after it. */
+/* Light that was `x` is transmittance * x + added after it. */
 struct medium_effect {
     struct vec3 transmittance; /* 0..1 */
-    struct vec3 source;        /* the colour of the medium over an infinite distance */
+    struct vec3 added;         /* the light of the medium itself */
+    struct vec3 source;        /* the same over an infinite distance, where that is finite */
 };
 
-/* From the ray's origin over a distance in world units (infinite: no hit). fog: of the scene, or NULL. False: the ray
- * is not affected, and transmittance is 1. */
-bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const struct ray *ray, double distance,
-                          struct medium_effect *out);
+/* From the ray's origin over a distance in world units (infinite: no hit). False: the ray is not affected, and
+ * transmittance is 1. */
+bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out);
+
+/* The radiance that a medium without fog adds over a distance, itself attenuated. */
+struct vec3 medium_emission(const struct medium *medium, double distance);
+
+/* The share of scattering in the extinction. */
+struct vec3 medium_albedo(const struct medium *medium);
+
+/* Where a path is scattered in a medium without fog. */
+struct medium_sample {
+    bool scatters; /* before the distance */
+    double distance;
+    struct vec3 weight; /* transmittance over the probability of coming this far; or with the colour of scattering, over
+                           the density of the distance */
+};
+/* Samples over at most `distance` (may be infinite). The channel whose extinction decides is chosen in proportion to
+ * the throughput of the path, and all channels use the sample with one-sample multiple importance sampling (Wilkie et
+ * al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the throughput never grows. */
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+                                   struct sample2 u);
 
 #endif

@@ -56,17 +56,17 @@ static double reflectance(double ior) {
  * and a quarter of his exponent looks alike in Phong's formula. ks also filters reflections, whose amount makes up for
  * it.
  */
-void openpbr_classic(struct material *material) {
-    static const struct texture black = {.kind = TEXTURE_CONSTANT, .size = 1};
+void openpbr_classic(struct surface_material *material, const struct texture *textures[INPUT_COUNT]) {
+    static const struct texture black = {.operation.kind = TEXTURE_CONSTANT, .source = "", .depth = 1, .size = 1};
     const double largest = 0.8, matt = 0.45; /* weight of a highlight; roughness from where no ray is reflected */
     const double smooth = 0.05;              /* below it a mirror looks alike */
-    const struct openpbr *v = material->openpbr;
+    const struct openpbr *v = &material->openpbr;
     struct phong *out = &material->phong, numbers = *out;
-    bool textured = material->inputs[INPUT_KD].authored != NULL;
+    bool textured = textures[INPUT_KD] != NULL;
     double metal = !textured ? v->base_metalness : v->base_metalness > 0.5, through = (1 - metal) * numbers.refract;
-    if (!v->classic || material->inputs[INPUT_METALNESS].authored || material->inputs[INPUT_REFRACT].authored)
+    if (!v->classic || textures[INPUT_METALNESS] || textures[INPUT_REFRACT])
         return;
-    material->openpbr = NULL;
+    material->has_layers = false;
     double coat = v->coat_weight * reflectance(v->coat_ior);
     double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * vec3_max_abs(numbers.ks);
     double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers.roughness;
@@ -94,15 +94,16 @@ void openpbr_classic(struct material *material) {
     double rays = out->glossy_samples > 0 ? out->glossy_samples : 4; /* N of N x N; fewer show a small share as well */
     out->glossy_samples = (int)fmin(fmax(floor(0.75 * rays * sqrt(metal + (1 - metal) * share) + 0.5), 1), rays);
     if (textured && metal > 0) { /* its colour is that of reflections */
-        material->inputs[INPUT_KS] = material->inputs[INPUT_KD];
-        material->inputs[INPUT_KD].authored = &black;
+        textures[INPUT_KS] = textures[INPUT_KD];
+        textures[INPUT_KD] = &black;
         out->kd = colour;
     }
 }
 
 /* --- inputs --- */
 
-static void read_textures(const struct material *material, const struct hit *hit, struct openpbr *values) {
+static void read_textures(const struct surface_tables *tables, const struct surface_material *material,
+                          const struct hit *hit, struct openpbr *values) {
     static const struct {
         enum material_input input;
         bool is_colour;
@@ -129,16 +130,16 @@ static void read_textures(const struct material *material, const struct hit *hit
         return;
     /* Each input that has a texture is read at the hit. */
     struct texture_reader reader;
-    texture_reader_init(&reader, hit, material->textures, NULL);
+    texture_reader_init(&reader, hit, &tables->textures, NULL);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const struct texture *texture = material_texture(material, rows[i].input);
+        uint32_t program = material->inputs[rows[i].input];
         char *field = (char *)values + rows[i].field;
-        if (!texture)
+        if (program == TEXTURE_NONE)
             continue;
         if (rows[i].is_colour)
-            *(struct vec3 *)(void *)field = texture_read_colour(texture, &reader);
+            *(struct vec3 *)(void *)field = texture_read(program, &reader);
         else
-            *(double *)(void *)field = texture_read_scalar(texture, &reader);
+            *(double *)(void *)field = texture_read(program, &reader).x;
     }
 }
 
@@ -396,7 +397,10 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
             l->mirror = vec3_add_scaled(l->mirror, vec3_mul(boundary, l->turned), 1 - reflected);
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
-        (clear > 0 ? bsdf_facets_glass : bsdf_facets_boundary)(facets, eta);
+        if (clear > 0)
+            bsdf_facets_glass(facets, eta);
+        else
+            bsdf_facets_boundary(facets, eta);
         bsdf_facets_see(facets, l->view);
         reflected = facets->reflected;
         add(l, LOBE_GLOSS, vec3_mul(boundary, l->inputs->ks), reflected);
@@ -416,11 +420,12 @@ static double relative_index(const struct layering *l) {
     return bare + l->coated * (below - bare);
 }
 
-void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,
                   const struct material_context *context, const struct surface_inputs *inputs, struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};
-    struct openpbr values = *material->openpbr;
-    read_textures(material, hit, &values);
+    const struct surface_material *material = &tables->materials[hit->material];
+    struct openpbr values = material->openpbr;
+    read_textures(tables, material, hit, &values);
     values.thin_walled = values.thin_walled || context->thin;
     media = media ? media : &air;
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */

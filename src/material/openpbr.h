@@ -30,14 +30,18 @@ struct openpbr openpbr_defaults(void);
 /* The index that Fresnel's formulas see: specular_weight scales the reflectance head on. */
 double openpbr_ior(double ior, double specular_weight);
 
-/* Makes a flattened material one of gr.material that looks like its layers, and never reflects more light than arrives,
- * if it wants that. Materials whose share of metal or of transmission is a texture keep their layers; where the colour
- * is one, the share of metal counts as all or nothing. */
-void openpbr_classic(struct material *material);
+/* Makes a material, and the textures of its inputs, one of gr.material that looks like its layers, and never reflects
+ * more light than arrives, if it wants that. Materials whose share of metal or of transmission is a texture keep their
+ * layers; where the colour is one, the share of metal counts as all or nothing. */
+struct surface_material;
+void openpbr_classic(struct surface_material *material, const struct texture *textures[INPUT_COUNT]);
 
 struct material_context;
-/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
-void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+struct surface_inputs;
+struct surface_tables;
+/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set, by the material of the hit. media: of
+ * the ray. */
+void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,
                   const struct material_context *context, const struct surface_inputs *inputs, struct bsdf *bsdf);
 
 #endif

@@ -5,8 +5,8 @@
  * textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
  *
  * Every texture can be read as a colour and as a number. The number of a colour is the mean of its three components;
- * the number of a product is the product of the numbers, and likewise for mixes. Reading is recursive and allocates
- * nothing; a tree has at most TEXTURE_SIZE textures, counted once for every path to them, which bounds its time. */
+ * the number of a product is the product of the numbers, and likewise for mixes. A tree has at most TEXTURE_SIZE
+ * textures, counted once for every path to them, which bounds the time and the memory of its evaluation. */
 #ifndef GRAY_MATERIAL_TEXTURE_H
 #define GRAY_MATERIAL_TEXTURE_H
 
@@ -149,14 +149,6 @@ struct phong {
 enum material_input { MATERIAL_INPUTS(LIST_MEMBER) };
 enum { INPUT_COUNT = LIST_COUNT(MATERIAL_INPUTS) };
 
-/* A texture that another one or a material reads: authored, a pointer, or NULL for none; in a table, an index or
- * TEXTURE_NONE. texture_at finds it. */
-union texture_ref {
-    const struct texture *authored;
-    uint32_t index;
-};
-#define TEXTURE_NONE UINT32_MAX
-
 /* The point where a recorded function returned NaN. Of several points it is the smallest one, so that it does not
  * depend on the order of threads. */
 struct texture_nan {
@@ -165,12 +157,9 @@ struct texture_nan {
     double point[3];
 };
 
-struct texture {
+/* What a texture does by itself, without its parts. */
+struct texture_operation {
     enum texture_kind kind;
-    bool shared;       /* several inputs of a material use it: evaluated once per hit */
-    bool has_image;    /* of the whole tree: it needs the footprint of the ray */
-    bool has_function; /* of the whole tree: it needs the tangents of the pattern */
-    uint32_t size;     /* of the tree */
     union {
         struct {
             struct vec3 colour;
@@ -178,10 +167,7 @@ struct texture {
             bool display; /* decoded from sRGB in linear colours */
         } constant;
         enum material_input parameter;
-        struct {
-            struct texture_image lookup;
-            union texture_ref below; /* also used if the surface has no coordinates; none: black */
-        } image;
+        struct texture_image image;
         struct {
             double f, multiplier, vein_frequency;
             int interpolation;
@@ -191,33 +177,33 @@ struct texture {
             int interpolation;
         } wood;
         struct {
-            union texture_ref a, b, ratio;
-        } mix;
-        struct {
-            union texture_ref a, b;
-        } multiply;
-        struct {
-            union texture_ref of;
             enum texture_function function;
             double amount;
         } map;
         struct {
             const struct expr_program *program; /* one output or three; of the script's arena */
-            const char *source;                 /* "scene.lua:12", or "" */
             struct texture_nan *nan;            /* of a world, where all workers report; NULL: nowhere */
             enum texture_mapping mapping;       /* of u and v */
+            bool has_coordinates;               /* it reads u or v */
             int points;                         /* of a footprint at most: a power of two up to FUNCTION_POINTS */
             struct vec3 average, largest;       /* of some points: estimates */
         } recorded;
     };
 };
 
-/* The referenced texture, or NULL. textures: the table of it; NULL: it is authored. */
-static inline const struct texture *texture_at(const struct texture *textures, union texture_ref ref) {
-    if (!textures)
-        return ref.authored;
-    return ref.index != TEXTURE_NONE ? &textures[ref.index] : NULL;
-}
+/* MIX: a, b, ratio. MULTIPLY: a, b. MAP: what it is a function of. IMAGE: the texture below, which is also used if the
+ * surface has no coordinates; NULL: black. */
+enum { TEXTURE_PARTS = 3, PART_A = 0, PART_B = 1, PART_RATIO = 2 };
+struct texture {
+    struct texture_operation operation;
+    const struct texture *parts[TEXTURE_PARTS];
+    const char *source; /* of a recorded function: "scene.lua:12", or "" */
+    bool shared;        /* several inputs of a material use it: evaluated once per hit */
+    bool has_image;     /* of the whole tree: it needs the footprint of the ray */
+    bool has_function;  /* of the whole tree: it needs the tangents of the pattern */
+    uint8_t depth;      /* so many values are known at a time while it is evaluated (texture_tables.h) */
+    uint32_t size;      /* of the tree */
+};
 
 struct texture texture_constant(struct vec3 colour);
 /* A colour as a screen shows it: decoded from sRGB where colours are linear. */
@@ -239,50 +225,36 @@ struct texture texture_function(const struct expr_program *program, bool has_coo
 const struct texture *texture_parameter(enum material_input input);
 /* The image if the texture is only an image; else NULL. */
 static inline const struct texture_image *texture_as_image(const struct texture *texture) {
-    return texture->kind == TEXTURE_IMAGE && texture->size == 1 ? &texture->image.lookup : NULL;
+    return texture->operation.kind == TEXTURE_IMAGE && texture->size == 1 ? &texture->operation.image : NULL;
 }
 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
 
-/* The references of a texture to its parts; returns their number. That of an image may be empty. */
-enum { TEXTURE_PARTS = 3 };
-int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PARTS]);
+/* The number of parts; that of an image may be NULL. */
+int texture_part_count(enum texture_kind kind);
 /* So many of them, the first ones, are read as colours if the texture is: not the ratio of a mix, and not what a
  * function is of. */
-int texture_colour_parts(const struct texture *texture);
+int texture_colour_parts(enum texture_kind kind);
 
-/* Estimates of a texture without a hit, for a material with these numbers. textures: as in texture_at. */
+/* The value of an input among the numbers of a material, which may be NULL. */
+struct vec3 texture_parameter_colour(enum material_input input, const struct phong *numbers);
+/* One component. */
+double texture_map_number(const struct texture_operation *map, double x);
+/* Whether the function selects one component of a colour; which. */
+bool texture_map_component(const struct texture_operation *map, struct vec3 colour, double *out);
+struct vec3 texture_map_colour(const struct texture_operation *map, struct vec3 of);
+
+/* Estimates of a texture without a hit, for a material with these numbers. */
 enum texture_estimate {
     TEXTURE_AVERAGE,      /* of images: of all texels; of patterns: one half */
     TEXTURE_LARGEST,      /* a bound of each component if none is negative and no texel above 1 */
     TEXTURE_LARGEST_TEXEL /* a closer bound, which reads all texels of images */
 };
-struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
-                             enum texture_estimate which);
-
-/* Reads several textures at one hit; `shared` ones are evaluated once. */
-enum { TEXTURE_SHARED = 4 };
-struct texture_reader {
-    const struct hit *hit;
-    const struct texture *textures; /* the table, as in texture_at */
-    const struct phong *numbers;    /* of the material, for TEXTURE_PARAMETER; NULL: white */
-    int count;                      /* of values that are known */
-    struct {
-        const struct texture *of;
-        bool is_number;
-        struct vec3 value;
-    } known[TEXTURE_SHARED];
-};
-
-static inline void texture_reader_init(struct texture_reader *reader, const struct hit *hit,
-                                       const struct texture *textures, const struct phong *numbers) {
-    reader->hit = hit;
-    reader->textures = textures;
-    reader->numbers = numbers;
-    reader->count = 0;
-}
-struct vec3 texture_read_colour(const struct texture *texture, struct texture_reader *reader);
-double texture_read_scalar(const struct texture *texture, struct texture_reader *reader);
+struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which);
+/* From the estimates of its parts. */
+struct vec3 texture_operation_estimate(const struct texture_operation *operation,
+                                       const struct vec3 parts[TEXTURE_PARTS], const struct phong *numbers,
+                                       enum texture_estimate which);
 
 #endif

@@ -90,14 +90,14 @@ static void slopes_along(const struct texcoord *at, int k, struct vec3 world, st
     out[EXPR_V][k] = -(uu * wv - uv * wu) / determinant;
 }
 
-static const struct texcoord *coordinates_at(const struct texture *texture, const struct hit *hit,
+static const struct texcoord *coordinates_at(const struct texture_operation *texture, const struct hit *hit,
                                              struct texcoord *at) {
     const struct texture_image image = {.mapping = texture->recorded.mapping, .wrap = IMAGE_REPEAT};
-    return texture->has_image && texture_coordinates(&image, hit, at) ? at : NULL;
+    return texture->recorded.has_coordinates && texture_coordinates(&image, hit, at) ? at : NULL;
 }
 
 /* The inputs at the hit, with a region of size 0. */
-static void region_at(const struct texture *texture, const struct hit *hit, const struct texcoord *at,
+static void region_at(const struct texture_operation *texture, const struct hit *hit, const struct texcoord *at,
                       const struct tangents *tangents, struct region *out) {
     inputs_at(hit, at, out->inputs);
     memset(out->slopes, 0, sizeof out->slopes);
@@ -132,7 +132,7 @@ static int points_for(struct expr_interval bounds, int max) {
     return count;
 }
 
-static int count_points(const struct texture *texture, const struct region *region) {
+static int count_points(const struct texture_operation *texture, const struct region *region) {
     const struct expr_program *program = texture->recorded.program;
     struct expr_interval box[EXPR_INPUT_COUNT], bounds[EXPR_OUTPUTS];
     _Alignas(64) struct expr_interval rows[EXPR_VALUES];
@@ -192,7 +192,7 @@ static bool is_before(const double a[3], const double b[3]) {
 }
 
 /* NaN counts as 0 and is reported with the pattern point of the hit. */
-static double not_nan(const struct texture *texture, const struct region *region, double x) {
+static double not_nan(const struct texture_operation *texture, const struct region *region, double x) {
     struct texture_nan *nan = texture->recorded.nan;
     const double *point = &region->inputs[EXPR_POINT_X];
     if (x == x)
@@ -221,7 +221,8 @@ static void evaluate_each(const struct expr_program *program, const double *cons
 }
 
 /* The sums of the outputs at the points; NaN counts as 0. */
-static void sum_points(const struct texture *texture, const struct region *region, int count, double sums[3]) {
+static void sum_points(const struct texture_operation *texture, const struct region *region, int count,
+                       double sums[3]) {
     const struct expr_program *program = texture->recorded.program;
     double inputs[EXPR_INPUT_COUNT][FUNCTION_POINTS], values[EXPR_OUTPUTS][FUNCTION_POINTS];
     const double *from[EXPR_INPUT_COUNT];
@@ -246,7 +247,7 @@ static void sum_points(const struct texture *texture, const struct region *regio
             sums[k] += not_nan(texture, region, values[k][i]);
 }
 
-struct vec3 texture_function_colour(const struct texture *texture, const struct hit *hit) {
+struct vec3 texture_function_colour(const struct texture_operation *texture, const struct hit *hit) {
     const struct expr_program *program = texture->recorded.program;
     struct texcoord coordinates;
     const struct texcoord *at = coordinates_at(texture, hit, &coordinates);
@@ -276,7 +277,7 @@ struct vec3 texture_function_colour(const struct texture *texture, const struct 
 /* --- slopes --- */
 
 /* The number of points for the mean slope; 0: the function may be discontinuous. */
-static int count_slope_points(const struct texture *texture, const struct region *region,
+static int count_slope_points(const struct texture_operation *texture, const struct region *region,
                               const struct expr_directions *directions, double height) {
     const struct expr_program *program = texture->recorded.program;
     struct expr_interval box[EXPR_INPUT_COUNT];
@@ -325,7 +326,8 @@ static void sum_gradients(const struct expr_program *program, const struct regio
     }
 }
 
-bool texture_function_slopes(const struct texture *texture, const struct hit *hit, double height, double slopes[2]) {
+bool texture_function_slopes(const struct texture_operation *texture, const struct hit *hit, double height,
+                             double slopes[2]) {
     const struct expr_program *program = texture->recorded.program;
     struct texcoord coordinates;
     const struct texcoord *at = coordinates_at(texture, hit, &coordinates);

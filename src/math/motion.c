@@ -158,18 +158,11 @@ static struct vec3 translation_at(const struct motion *motion, double time) {
     return vec3_add(by, vec3_add(motion->from, offset));
 }
 
-struct transform motion_at(const struct motion *motion, double time) {
+/* All but the spin. */
+static struct transform pose_at(const struct motion *motion, double time) {
     struct transform moved = transform_translate(translation_at(motion, time));
-    if (motion->spins) {
-        struct motion still = *motion;
-        still.spins = false;
-        struct transform spin =
-            transform_rotate_about(motion->spin_axis, fmod(motion->spin_start + motion->spin * time, 360));
-        struct transform pose = motion->has_end ? motion_at(&still, time) : transform_compose(&moved, &motion->rest);
-        return transform_compose(&pose, &spin);
-    }
     if (!motion->has_end)
-        return moved;
+        return motion->spins ? transform_compose(&moved, &motion->rest) : moved;
     double share = clamped(time);
     struct affine linear = stretch_at(motion, share);
     struct transform stretch;
@@ -181,6 +174,15 @@ struct transform motion_at(const struct motion *motion, double time) {
         stretch = transform_compose(&turn, &stretch);
     }
     return transform_compose(&moved, &stretch);
+}
+
+struct transform motion_at(const struct motion *motion, double time) {
+    struct transform pose = pose_at(motion, time);
+    if (!motion->spins)
+        return pose;
+    struct transform spin =
+        transform_rotate_about(motion->spin_axis, fmod(motion->spin_start + motion->spin * time, 360));
+    return transform_compose(&pose, &spin);
 }
 
 static bool is_finite(const struct box *box) {

@@ -58,7 +58,7 @@ static double primitive_strength(const struct world *world, uint32_t index) {
         uint32_t material = csg ? csg->leaves[leaf].material : prototype->material;
         uint32_t slots = csg ? csg->leaves[leaf].slot_count : prototype->slot_count;
         for (uint32_t slot = 0; slot < (slots > 1 ? slots : 1); slot++) {
-            double strength = material_specular(&world->materials[material + slot]);
+            double strength = surface_specular(&world->surfaces.materials[material + slot]);
             max = strength > max ? strength : max;
         }
     }

@@ -20,7 +20,6 @@ enum { BATCH = 1024 };
 
 struct photon_job {
     const struct world *world;
-    const struct fog *fog; /* or NULL */
     const struct settings *settings;
     const struct photon_targets *targets;
     struct pool *pool;
@@ -130,20 +129,22 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct hit hit;
         struct bsdf bsdf;
         joint.joined = JOINED_NOT;
-        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit) ||
-            (world_touches(s->world, &hit) &&
-             !world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint)))
+        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit))
             return;
+        if (world_touches(s->world, &hit))
+            world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint);
+        if (joint.joined == JOINED_AWAY)
+            continue;
         path.length += hit.t;
         struct medium_effect effect;
-        if (medium_transmittance(MEDIUM_RAY_PHOTON, s->fog, &path.ray, hit.t, &effect))
+        if (medium_transmittance(MEDIUM_RAY_PHOTON, &path.ray, hit.t, &effect))
             path.left = vec3_mul(path.left, effect.transmittance);
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,
                                                  .thin = primitive_is_thin(s->world, hit.primitive),
                                                  .joint = joint_boundary(&joint)};
-        material_eval(&s->world->materials[hit.material], &hit, &path.media, &context, &bsdf);
+        material_eval(&s->world->surfaces, &hit, &path.media, &context, &bsdf);
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
             path.ray = joint_ray_through_hole(&joint, &hit, &path.ray, &path.media);
@@ -212,7 +213,6 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
     double begin = clock_now();
     const struct settings *settings = scene->settings;
     struct photon_job s = {.world = scene->world,
-                           .fog = scene->fog,
                            .settings = settings,
                            .pool = pool,
                            .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};

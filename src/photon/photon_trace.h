@@ -4,7 +4,6 @@
 #define GRAY_PHOTON_PHOTON_TRACE_H
 
 #include "film/render_statistics.h"
-#include "material/medium.h"
 #include "photon/photon_map.h"
 #include "settings/settings.h"
 
@@ -19,7 +18,6 @@ struct photon_statistics {
 /* What photons are sent through; borrowed. */
 struct photon_scene {
     const struct world *world;
-    const struct fog *fog; /* or NULL */
     const struct settings *settings;
 };
 

@@ -632,7 +632,7 @@ static struct texture texture_of(const struct work *work) {
     struct vec3 largest = vec3_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
     struct texture out = texture_function(work->program, reads_coordinates(work->program),
                                           vec3_scale(sum, 1.0 / RECORD_POINTS), largest);
-    out.recorded.source = work->source;
+    out.source = work->source;
     return out;
 }
 

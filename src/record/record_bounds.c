@@ -61,19 +61,17 @@ void record_use(struct sandbox *sandbox, const struct expr_program *program, con
 static void use_texture(struct sandbox *sandbox, const struct texture *texture, const struct box *bounds) {
     if (!texture || !texture->has_function)
         return;
-    if (texture->kind == TEXTURE_FUNCTION)
-        record_use(sandbox, texture->recorded.program, bounds);
-    struct texture own = *texture;
-    union texture_ref *parts[TEXTURE_PARTS];
-    for (int k = texture_parts(&own, parts); k-- > 0;)
-        use_texture(sandbox, parts[k]->authored, bounds);
+    if (texture->operation.kind == TEXTURE_FUNCTION)
+        record_use(sandbox, texture->operation.recorded.program, bounds);
+    for (int k = TEXTURE_PARTS; k-- > 0;)
+        use_texture(sandbox, texture->parts[k], bounds);
 }
 
 static void use_material(struct sandbox *sandbox, const struct material *material, const struct box *bounds) {
     for (int k = 0; material && k < INPUT_COUNT; k++)
-        use_texture(sandbox, material->inputs[k].authored, bounds);
-    for (const struct bump *bump = material ? material->bump.authored : NULL; bump; bump = bump->below.authored)
-        use_texture(sandbox, bump->texture.authored, bounds);
+        use_texture(sandbox, material->inputs[k], bounds);
+    for (const struct bump *bump = material ? material->bump : NULL; bump; bump = bump->below)
+        use_texture(sandbox, bump->texture, bounds);
 }
 
 /* An operand without a material has the material of a solid above it. */
@@ -95,7 +93,7 @@ static void use_node(struct sandbox *sandbox, const struct scene_traversal *t) {
     for (uint32_t k = 0; k < node->slot_count; k++)
         use_material(sandbox, node->slots[k], &bounds);
     if (node->bump)
-        use_texture(sandbox, node->bump->texture.authored, &bounds);
+        use_texture(sandbox, node->bump->texture, &bounds);
 }
 
 /* Visits every node once, because instances may be on millions of paths. */

@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-/* UNROLLED: operations of all steps that are recorded one by one. FEWEST_STEPS: of a loop. DEPTH: of loops in loops. */
-enum { UNROLLED = 1000, FEWEST_STEPS = 4, DEPTH = 3 };
+/* UNROLLED: operations of all steps that are recorded one by one. FEWEST_STEPS: of a loop. */
+enum { UNROLLED = 1000, FEWEST_STEPS = 4 };
 
 /* The states: numbers or vectors, and their components. */
 struct states {
@@ -375,7 +375,7 @@ static void try_loop(lua_State *L, int function, struct looping *l) {
 static int record_steps(lua_State *L) {
     struct recorder *recorder = recorder_of(L);
     struct looping *l = lua_touserdata(L, 2);
-    bool may_loop = !recorder->unrolls && recorder->loop_depth < DEPTH;
+    bool may_loop = !recorder->unrolls && recorder->loop_depth < EXPR_DEPTH;
     while (l->step <= l->last) {
         bool is_long = l->last - l->step + 1 >= FEWEST_STEPS;
         if (may_loop && is_long && !is_plain(recorder, &l->states)) {

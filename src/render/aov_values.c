@@ -50,7 +50,7 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
     memset(out, 0, AOV_COUNT * sizeof *out);
     if (!world_nearest(world, ray, scratch, &hit))
         return;
-    material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+    material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
     double depth = hit.t * vec3_length(ray->direction), node = primitive_node(world, hit.primitive)->serial + 1.0;
     set(out[AOV_DEPTH], depth, depth, depth);
     set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);

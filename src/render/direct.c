@@ -50,9 +50,13 @@ static struct sample_set samples_on_light(const struct integrator_state *state, 
     return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
+/* So few rays search alone in less time than it takes to find their occluders together. */
+enum { FEW_RAYS = 4 };
+
 /* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front. */
-static struct occluder_candidates
-light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {
+static struct occluder_candidates light_occluder_candidates(const struct world *world,
+                                                            const struct light_context *context, const struct hit *hit,
+                                                            uint32_t rays) {
     struct vec3 corner = context->corner, edge1 = context->edge1, edge2 = context->edge2;
     double side = side_of(hit, context->from);
     uint32_t skip_primitive = hit_skip_primitive_from(hit, side, vec3_sub(corner, context->from));
@@ -60,6 +64,8 @@ light_occluder_candidates(const struct world *world, const struct light_context 
         struct vec3 other = vec3_add(i & 1 ? vec3_add(corner, edge1) : corner, i & 2 ? edge2 : vec3_all(0));
         skip_primitive = hit_skip_primitive_from(hit, side, vec3_sub(other, context->from));
     }
+    if (rays <= FEW_RAYS)
+        return (struct occluder_candidates){.skip_primitive = skip_primitive, .known = false};
     return world_occluder_candidates(world, context->from, corner, edge1, edge2, skip_primitive);
 }
 
@@ -76,7 +82,7 @@ static double visible_share(struct integrator_state *state, const struct light *
         return target_is_free(state, hit, from, middle);
     struct sample_set positions = samples_on_light(state, light, &context, number, key);
     uint32_t all = positions.side * positions.side, seen = 0, have = 0;
-    struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit);
+    struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit, all);
     state->shadow_rays += all;
     /* Nothing lies between the point and the whole lamp. */
     if (occluder_candidates.known && occluder_candidates.count == 0) {
@@ -112,7 +118,7 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
     uint32_t count = targets->count;
     if (context->bounded) {
         const struct world *world = state->job->world;
-        struct occluder_candidates occluder_candidates = light_occluder_candidates(world, context, hit);
+        struct occluder_candidates occluder_candidates = light_occluder_candidates(world, context, hit, count);
         uint32_t seen =
             world_visible(world, &occluder_candidates,
                           &(struct shadow_rays){context->from, hit->time, targets->at, count}, state->scratch, visible);

@@ -83,7 +83,7 @@ struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker
     case INTEGRATOR_WHITTED:
         return whitted_trace(&renderer->integrator->whitted, &worker->state, ray, key);
     case INTEGRATOR_PATH:
-        return path_trace(&renderer->integrator->path, &worker->state, ray, key);
+        return path_trace(&renderer->integrator->path, &worker->state, ray, NULL, true, key);
     }
     UNREACHABLE(no_kind);
 }
@@ -94,7 +94,7 @@ struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *wo
     case INTEGRATOR_WHITTED:
         return whitted_trace_met(&renderer->integrator->whitted, &worker->state, ray, met, key);
     case INTEGRATOR_PATH:
-        return path_trace_met(&renderer->integrator->path, &worker->state, ray, met, key);
+        return path_trace(&renderer->integrator->path, &worker->state, ray, met, false, key);
     }
     UNREACHABLE(no_kind);
 }

@@ -132,7 +132,7 @@ struct observer {
             (who)->notice((who)->context, &(struct observation){__VA_ARGS__});                                         \
     } while (0)
 
-/* For struct material_context. */
+/* For material_observe. */
 static inline void observe_material(void *context, const struct material *link, const struct surface_inputs *inputs) {
     const struct observer *observer = context;
     OBSERVE(observer, OBSERVED_MATERIAL, .material = {link, inputs});

@@ -102,6 +102,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
+    tracer->in_medium = world_outside(world)->affects != 0;
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
@@ -114,7 +115,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
         return tracer->built;
     if (!find_photon_lights(tracer, world))
         return error_no_memory(error, "the lights of the scene");
-    const struct photon_scene scene = {world, renderer->job->fog, settings};
+    const struct photon_scene scene = {world, settings};
     return photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error);
 }
 
@@ -168,6 +169,14 @@ struct sample_plan {
     uint32_t before, expected;
 };
 
+/* The last piece of path i of the batch (path_pieces_internal.h). */
+static void add(struct path_pixel *pixel, const struct batch *batch, uint32_t i) {
+    double weight = batch->positions[i].weight;
+    if (batch->parts)
+        path_pixel_add_parts(pixel, &batch->parts[i], batch->colours[i], weight);
+    path_pixel_add(pixel, batch->colours[i], batch->seen_through[i], weight);
+}
+
 /* Adds these samples to the pixels of a row of the film, pixel by pixel and batch by batch. A batch may contain samples
  * of several pixels. */
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
@@ -191,9 +200,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
         /* Samples are added in their order, so the sums do not depend on the batches. */
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
-            if (batch->parts)
-                path_pixel_add_parts(&pixel, &batch->parts[i], batch->colours[i], batch->positions[i].weight);
-            path_pixel_add(&pixel, batch->colours[i], batch->seen_through[i], batch->positions[i].weight);
+            add(&pixel, batch, i);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);
@@ -338,8 +345,8 @@ static const char *user_of(const struct world *world, uint32_t material) {
 static bool has_emission(const struct world *world, uint32_t material, uint32_t slots) {
     bool any = false;
     for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
-        any = any || vec3_max_abs(material_emission(&world->materials[i])) > 0 ||
-              vec3_max_abs(material_emission_bound(&world->materials[i])) > 0;
+        any = any || vec3_max_abs(surface_emission(&world->surfaces, &world->surfaces.materials[i])) > 0 ||
+              vec3_max_abs(surface_emission_bound(&world->surfaces, &world->surfaces.materials[i])) > 0;
     return any;
 }
 
@@ -375,14 +382,15 @@ void path_tracer_warn(const struct render_job *job, world_warning *warn, void *c
     if (vec3_max_abs(job->ambient) > 0)
         warn(context, "--integrator path ignores ambient: it computes indirect light instead");
     for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = &world->materials[i];
-        double albedo = material_albedo_bound(material);
+        const struct surface_material *material = &world->surfaces.materials[i];
+        const char *name = world->authored.materials[i]->name;
+        double albedo = surface_albedo_bound(&world->surfaces, material);
         if (!(albedo > 1 + 0x1p-20))
             continue;
         (void)snprintf(text, sizeof text,
                        "warning: --integrator path: the material of '%.100s' reflects more light than it receives "
                        "(%.3g times); only --max-depth and Russian roulette end its paths",
-                       material->name && material->name[0] ? material->name : user_of(world, i), albedo);
+                       name && name[0] ? name : user_of(world, i), albedo);
         warn(context, text);
         return;
     }

@@ -3,7 +3,7 @@
  * with the power heuristic, and Russian roulette ends paths (E. Veach, "Robust Monte Carlo Methods for Light Transport
  * Simulation", 1997, chapters 9 and 10). The vocabulary is that of pbrt-v4.
  *
- * path.c: pixels and their samples. path_trace.c: one path. path_light.c: the light that reaches a vertex. */
+ * path.c: pixels and their samples. path_pieces_internal.h: one path. path_light.c: the light that reaches a vertex. */
 #ifndef GRAY_RENDER_PATH_INTERNAL_H
 #define GRAY_RENDER_PATH_INTERNAL_H
 
@@ -22,10 +22,11 @@ struct path_tracer {
     int roulette_depth; /* scattering events after which roulette may end a path */
     enum path_strategy strategy;
     struct filter filter;
-    double noise;  /* a tile with this noise is finished; 0: every tile takes all samples */
-    double clamp;  /* the limit on components of a sample; 0: no limit */
-    double bright; /* of struct path_pixel */
-    bool built;    /* the lights are prepared */
+    double noise;   /* a tile with this noise is finished; 0: every tile takes all samples */
+    double clamp;   /* the limit on components of a sample; 0: no limit */
+    double bright;  /* of struct path_pixel */
+    bool built;     /* the lights are prepared */
+    bool in_medium; /* the medium around all solids affects rays */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;

@@ -34,62 +34,69 @@ static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t lig
 /* --- sampling a light --- */
 
 /* f |cos| of a set of lobes. Classic lobes do not reflect light from behind the geometric surface. */
-static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
-    const struct bsdf *bsdf = vertex->bsdf;
-    if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
+static inline struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    if (bsdf && !(vec3_dot(wi, bsdf->geometric_side) > 0))
         lobes &= bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
-    return lobes ? bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi) : vec3_all(0);
+    return lobes ? interaction_eval(&vertex->at, lobes, BSDF_RADIANCE, wi) : vec3_all(0);
 }
 
-/* The ray to a sample, from the side of the surface on which the light is. media: those on that side; `crossed` is
- * storage for them. */
-static struct ray shadow_ray(const struct path_vertex *vertex, const struct world_light_sample *sample,
-                             struct medium_stack *crossed) {
+/* Starts a ray to a sample on the side of the surface on which the light is, in the media on that side. */
+static void leave_surface(const struct path_vertex *vertex, struct path_shadow *out) {
+    const struct world_light_sample *sample = &out->sample;
     const struct hit *hit = vertex->hit;
-    struct ray shadow;
-    shadow.origin = vertex->receiver.from;
-    shadow.t_min = 0;
-    shadow.time = hit->time;
-    shadow.footprint = (struct footprint){0, 0};
-    shadow.media = vertex->ray->media;
-    if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
-        shadow.origin = hit_start(hit, vertex->ray, sample->direction);
-        medium_stack_copy(crossed, shadow.media);
-        bsdf_cross(vertex->bsdf, crossed);
-        shadow.media = crossed;
+    struct ray *shadow = &out->ray;
+    if (!(vec3_dot(sample->direction, vertex->at.bsdf->geometric_side) > 0)) {
+        shadow->origin = hit_start(hit, vertex->ray, sample->direction);
+        bsdf_cross(vertex->at.bsdf, &out->media);
     }
-    shadow.direction = light_target_from(&sample->target, shadow.origin);
-    shadow.t_max = light_target_end(&sample->target);
+    shadow->direction = light_target_from(&sample->target, shadow->origin);
     /* A classic area light is shaded from its centre, which may be on the other side of the surface than this point. */
     double side = vec3_dot(sample->direction, hit->normal_geometric);
     struct hit_skip skip = sample->skip_primitive ? (struct hit_skip){sample->skip_primitive, 0}
-                                                  : hit_skip_from(hit, side, shadow.direction);
-    shadow.skip_primitive = skip.primitive;
-    shadow.skip_part = skip.part;
-    return shadow;
+                                                  : hit_skip_from(hit, side, shadow->direction);
+    shadow->skip_primitive = skip.primitive;
+    shadow->skip_part = skip.part;
 }
 
-/* The light that arrives from a sample, reduced by the media on its path; black if an object blocks it. */
-static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                            const struct path_vertex *vertex, const struct world_light_sample *sample) {
+static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+    const struct world_light_sample *sample = &out->sample;
+    struct ray *shadow = &out->ray;
+    shadow->origin = vertex->receiver->from;
+    shadow->t_min = 0;
+    shadow->t_max = light_target_end(&sample->target);
+    shadow->time = vertex->ray->time;
+    shadow->footprint = (struct footprint){0, 0};
+    shadow->media = &out->media;
+    medium_stack_copy(&out->media, vertex->ray->media);
+    if (vertex->at.bsdf) {
+        leave_surface(vertex, out);
+    } else {
+        shadow->direction = light_target_from(&sample->target, shadow->origin);
+        shadow->skip_primitive = sample->skip_primitive;
+        shadow->skip_part = 0;
+    }
+    out->sent = true;
+}
+
+struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
+                                const struct light_receiver *receiver, struct path_shadow *shadow) {
     const struct world_lights *lights = &tracer->lights;
-    struct medium_stack crossed;
-    struct ray shadow = shadow_ray(vertex, sample, &crossed);
-    double end = shadow.t_max;
+    const struct world_light_sample *sample = &shadow->sample;
+    double end = shadow->ray.t_max;
     struct vec3 radiance = sample->radiance;
     state->scratch->light = sample->light % WORLD_SHADOW_CACHE;
     state->shadow_rays++;
     if (sample->decided) {
-        shadow.t_max = INFINITY;
-        radiance = world_lights_seen_by(lights, &vertex->receiver, sample, &shadow, state->scratch, &end);
+        shadow->ray.t_max = INFINITY;
+        radiance = world_lights_seen_by(lights, receiver, sample, &shadow->ray, state->scratch, &end);
     } else {
-        radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow, state->scratch));
+        radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
-    OBSERVE(state->observer, OBSERVED_SHADOW_RAYS, .shadow = {1, !is_black(radiance), OBSERVER_NO_BLOCKER});
-    struct medium_effect effect;
-    if (is_black(radiance) || shadow.media->count == 0 ||
-        !medium_transmittance(MEDIUM_RAY_SHADOW, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
+    if (is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
+    struct medium_effect effect;
+    (void)medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect);
     return vec3_mul(radiance, effect.transmittance);
 }
 
@@ -113,7 +120,11 @@ static double share_of(double part, double all) {
 }
 
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]) {
-    const struct bsdf *bsdf = vertex->bsdf;
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    if (!bsdf) {
+        path_share_all(BSDF_DIFFUSE, out);
+        return;
+    }
     const uint32_t of_kind[PATH_SCATTERINGS] = {[SCATTERING_DIFFUSE] = lobes & bsdf_select(bsdf, BSDF_FOR_DIFFUSE),
                                                 [SCATTERING_SPECULAR] = lobes & bsdf_select(bsdf, BSDF_FOR_SPECULAR),
                                                 [SCATTERING_TRANSMISSION] =
@@ -131,10 +142,10 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
 
 /* --- one light --- */
 
-/* Divides the light from wi between the lobes, whose values are f, and the highlights. */
-static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struct vec3 f, struct vec3 highlight) {
-    struct vec3 *shares = vertex->direct_shares, sum = vec3_add(f, highlight);
-    path_shares(vertex, vertex->lobes, wi, shares);
+void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
+                        struct vec3 shares[PATH_SCATTERINGS]) {
+    struct vec3 f = choice->lobes, highlight = choice->highlight, sum = vec3_add(f, highlight);
+    path_shares(vertex, vertex->at.lobes, wi, shares);
     if (is_black(highlight))
         return;
     struct vec3 all = vec3_make(share_of(f.x, sum.x), share_of(f.y, sum.y), share_of(f.z, sum.z));
@@ -152,64 +163,48 @@ static inline struct light_part choose_part(const struct light_sampler *sampler,
     return light_sampler_sample(sampler, receiver->point, receiver->normal, choice, pmf);
 }
 
-/* The light of this part; pmf: the probability with which it was chosen. */
-static struct vec3 direct_of(const struct path_tracer *tracer, struct integrator_state *state,
-                             const struct path_vertex *vertex, const struct path_light_draw *draw,
-                             struct light_part part, double pmf) {
+bool path_choose_light(const struct path_tracer *tracer, const struct path_vertex *vertex,
+                       const struct path_light_draw *draw, struct path_shadow *out, struct path_choice *choice) {
     const struct world_lights *lights = &tracer->lights;
-    const struct vec3 none = {0, 0, 0};
-    const struct light_receiver *receiver = &vertex->receiver;
-    struct world_light_sample sample;
+    struct world_light_sample *sample = &out->sample;
+    double pmf;
+    struct light_part part = out->part = choose_part(&lights->sampler, vertex->receiver, draw->choice, &pmf);
+    out->sent = false;
+    if (part.light == LIGHT_NONE)
+        return false;
     struct sample2 xi = {0, 0};
     if (!light_is_point(&lights->lights[part.light]))
         xi = sampler_point(draw->sampler, draw->dimension);
-    if (!world_lights_sample(lights, receiver, part, xi, &sample))
-        return none;
-    struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
-    uint32_t traced = tracer->photon_lights ? vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED) : 0;
+    if (!world_lights_sample(lights, vertex->receiver, part, xi, sample))
+        return false;
+    struct vec3 f = scattered(vertex, vertex->at.lobes, sample->direction);
+    uint32_t traced =
+        tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !is_black(vertex->thrown)) {
-        struct vec3 by_traced = scattered(vertex, traced, sample.direction);
+        struct vec3 by_traced = scattered(vertex, traced, sample->direction);
         f = vec3_sub(f, vec3_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
-    double pdf = pmf * sample.pdf;
-    if (sample.is_delta) {
+    double pdf = pmf * sample->pdf;
+    if (sample->is_delta) {
         f = vec3_scale(f, 1 / pdf);
     } else {
-        double other = bsdf_pdf(vertex->bsdf, vertex->lobes, vertex->hit->view, sample.direction);
+        double other = interaction_pdf(&vertex->at, sample->direction);
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
-    struct vec3 highlight = none;
+    choice->lobes = f;
+    choice->highlight = vec3_all(0);
     /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that
      * the mirror throws replace the highlight. */
-    if (vertex->substitute && part.light < state->job->world->light_count &&
-        (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample.is_delta))
-        highlight = without_thrown(tracer, part.light, vertex->thrown,
-                                   vec3_scale(scattered(vertex, vertex->substitute, sample.direction), 1 / pdf));
-    if (vertex->direct_shares)
-        share_direct(vertex, sample.direction, f, highlight);
-    f = vec3_add(f, highlight);
-    return is_black(f) ? none : vec3_mul(f, arriving(tracer, state, vertex, &sample));
-}
-
-struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, const struct path_light_draw *draw) {
-    const struct world_lights *lights = &tracer->lights;
-    double pmf;
-    struct light_part part = choose_part(&lights->sampler, &vertex->receiver, draw->choice, &pmf);
-    if (part.light == LIGHT_NONE)
-        return vec3_all(0);
-    if (!state->observer)
-        return direct_of(tracer, state, vertex, draw, part, pmf);
-    uint32_t primitive = lights->emitters[part.light].primitive;
-    OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN,
-            .light = {part.light,
-                      &lights->lights[part.light],
-                      primitive == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : primitive,
-                      {0, 0, 0}});
-    struct vec3 light = direct_of(tracer, state, vertex, draw, part, pmf);
-    OBSERVE(state->observer, OBSERVED_LIGHT_END,
-            .light = {part.light, &lights->lights[part.light], OBSERVER_NO_BLOCKER, light});
-    return light;
+    if (vertex->substitute && part.light < lights->world->light_count &&
+        (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample->is_delta))
+        choice->highlight =
+            without_thrown(tracer, part.light, vertex->thrown,
+                           vec3_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
+    out->scattered = vec3_add(f, choice->highlight);
+    if (is_black(out->scattered))
+        return false;
+    send_shadow_ray(vertex, out);
+    return true;
 }
 
 /* --- rays that meet lights --- */
@@ -242,15 +237,17 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         return sum;
     struct ray ray = *segment->ray;
     ray.t_max = t_max;
-    ray.t_min -= segment->passed;
+    ray.t_min = -segment->passed;
     world_lights_met_begin(&traversal, lights, &ray);
     while (world_lights_met_next(&traversal, &number, &hit)) {
         struct medium_effect effect;
-        bool counted = segment->passed > 0 && !(hit.t > segment->ray->t_min); /* before the hole */
+        bool counted = segment->passed > 0 && !(hit.t > 0); /* before the hole */
         if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
-        (void)medium_transmittance(MEDIUM_RAY_SCATTERED, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
-        struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
+        struct vec3 radiance = light_emitted(&lights->lights[number], &ray, &hit);
+        if (path_is_affected(tracer, MEDIUM_RAY_SCATTERED, &ray) &&
+            medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect))
+            radiance = vec3_mul(radiance, effect.transmittance);
         radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
         sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
@@ -283,6 +280,7 @@ bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ra
     if (lights->area_light_count == 0)
         return false;
     struct ray limited = *ray;
+    limited.t_min = 0; /* also before boundaries without effect */
     limited.t_max = t_max;
     if (!world_lights_seen(lights, &limited, &number, &hit))
         return false;

@@ -2,21 +2,24 @@
 #ifndef GRAY_RENDER_PATH_LIGHT_INTERNAL_H
 #define GRAY_RENDER_PATH_LIGHT_INTERNAL_H
 
+#include "material/interaction.h"
 #include "render/path_internal.h"
+#include "render/path_state_internal.h"
 
-/* A vertex whose BSDF is known. */
 struct path_vertex {
-    const struct ray *ray; /* that hit it */
-    const struct hit *hit;
-    const struct bsdf *bsdf;
-    struct light_receiver receiver;
-    uint32_t lobes;      /* that scatter */
+    const struct ray *ray; /* that ends here */
+    const struct hit *hit; /* of a surface */
+    struct interaction at;
+    const struct light_receiver *receiver;
     uint32_t substitute; /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;          /* of a line of sight, on which mirrors show only visible lights */
     struct vec3 thrown;  /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
-    struct vec3
-        *direct_shares; /* or NULL; path_direct then stores what path_shares returns for the light that it finds */
 };
+
+/* medium_affects; most scenes have nothing around their solids. */
+static inline bool path_is_affected(const struct path_tracer *tracer, enum medium_ray kind, const struct ray *ray) {
+    return (ray->media->count > 0 || tracer->in_medium) && medium_affects(kind, ray);
+}
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {
@@ -34,9 +37,20 @@ struct path_light_draw {
     const struct sampler *sampler;
     uint32_t dimension;
 };
-/* Light that arrives directly from one light of the scene. */
-struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, const struct path_light_draw *draw);
+/* What a vertex scatters of a light of radiance 1: by its lobes, and in the place of mirror images. */
+struct path_choice {
+    struct vec3 lobes, highlight;
+};
+/* Chooses a light, a point on it and the ray to it. False: nothing is to be sent, but out->part is set. */
+bool path_choose_light(const struct path_tracer *tracer, const struct path_vertex *vertex,
+                       const struct path_light_draw *draw, struct path_shadow *out, struct path_choice *choice);
+/* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. receiver: the
+ * one that was chosen for. */
+struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
+                                const struct light_receiver *receiver, struct path_shadow *shadow);
+/* What path_shares returns, for a light in the direction wi, highlights included. */
+void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
+                        struct vec3 shares[PATH_SCATTERINGS]);
 /* For each kind of scattering and each channel: its fraction of the light that these lobes of the vertex scatter
  * from wi. The fractions add up to 1. */
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);

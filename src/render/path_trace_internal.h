@@ -3,12 +3,19 @@
 #define GRAY_RENDER_PATH_TRACE_INTERNAL_H
 
 #include "render/path_internal.h"
+#include "world/packet.h"
 
-/* The radiance along a camera ray, clamped to the range of float; key: the random key of the ray. */
+/* The radiance along a camera ray, clamped to the range of float. ask: what it hits is not known yet; else that is
+ * `met`, or nothing for NULL. key: the random key of the ray. */
 struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                       uint64_t key);
-/* The same for a ray of a packet: its hit, or NULL. */
-struct vec3 path_trace_met(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                           const struct packet_answer *met, uint64_t key);
+                       const struct packet_answer *met, bool ask, uint64_t key);
+/* The same for paths that record nothing; light layers and features; and those with an observer
+ * (path_pieces_internal.h). */
+struct vec3 path_trace_plain(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                             const struct packet_answer *met, bool ask, uint64_t key);
+struct vec3 path_trace_layers(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                              const struct packet_answer *met, bool ask, uint64_t key);
+struct vec3 path_trace_observed(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                                const struct packet_answer *met, bool ask, uint64_t key);
 
 #endif

@@ -283,20 +283,21 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
     renderer->medium_stack_by_ray = renderer->closed_count > 0 && spread;
     renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->medium_stack_by_ray;
     world_medium_stack(world, &(struct inside_query){renderer->camera.eye, 0, renderer->closed, renderer->closed_count},
-                    &renderer->workers[0].scratch, &renderer->eye_medium_stack);
+                       &renderer->workers[0].scratch, &renderer->eye_medium_stack);
     return !renderer->workers[0].scratch.failed;
 }
 
 /* Whether a function of a script does. */
 static bool reads_time(const struct render_job *job) {
-    const struct fog_field *field = job->fog ? job->fog->field : NULL;
-    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
     const struct world *world = job->world;
+    const struct fog *fog = world_outside(world)->fog;
+    const struct fog_field *field = fog ? fog->field : NULL;
+    const struct expr_program *colour = field ? fog_field_colour(field) : NULL;
     bool reads = field && (expr_field_reads(fog_field_density(field), EXPR_TIME) ||
                            (colour && expr_field_reads(colour, EXPR_TIME)));
-    for (uint32_t i = 0; !reads && i < world->texture_count; i++)
-        reads = world->textures[i].kind == TEXTURE_FUNCTION &&
-                expr_field_reads(world->textures[i].recorded.program, EXPR_TIME);
+    for (uint32_t i = 0; !reads && i < world->surfaces.textures.count; i++)
+        reads = world->surfaces.textures.operations[i].kind == TEXTURE_FUNCTION &&
+                expr_field_reads(world->surfaces.textures.operations[i].recorded.program, EXPR_TIME);
     return reads;
 }
 

@@ -123,13 +123,13 @@ static bool shows_without_light(const struct check *check) {
     const struct world *world = check->world;
     bool paths = job->settings.integrator == INTEGRATOR_PATH;
     bool sky = !sky_is_black(&world->sky) && (!paths || job->background_lights);
-    if (job->settings.style == STYLE_INK || job->fog || world->emission_bound > 0 || (paths && sky) ||
+    if (job->settings.style == STYLE_INK || world_outside(world)->fog || world->emission_bound > 0 || (paths && sky) ||
         (!paths && vec3_max_abs(job->ambient) > 0))
         return true;
     for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = &world->materials[i];
-        if (material->phong.unlit || vec3_max_abs(material_emission_bound(material)) > 0 ||
-            (sky && material_specular(material) > 0))
+        const struct surface_material *material = &world->surfaces.materials[i];
+        if (material->phong.unlit || vec3_max_abs(surface_emission_bound(&world->surfaces, material)) > 0 ||
+            (sky && surface_specular(material) > 0))
             return true;
     }
     return false;
@@ -155,11 +155,11 @@ static void check_light(const struct check *check) {
 /* --- what has no effect --- */
 
 /* The name of an input that does nothing in this material, and what it needs; NULL: there is none. */
-static const char *lone_input(const struct material *material, const char **needs) {
+static const char *lone_input(const struct surface_material *material, const char **needs) {
     const struct phong *numbers = &material->phong;
-    bool mirrors = numbers->reflect > 0 || material_texture(material, INPUT_REFLECT) || material->fresnel;
-    bool refracts = numbers->refract > 0 || material_texture(material, INPUT_REFRACT) || material->fresnel;
-    if (material->openpbr)
+    bool mirrors = numbers->reflect > 0 || surface_has_texture(material, INPUT_REFLECT) || material->fresnel;
+    bool refracts = numbers->refract > 0 || surface_has_texture(material, INPUT_REFRACT) || material->fresnel;
+    if (material->has_layers)
         return NULL;
     *needs = "refract";
     if (numbers->has_ior && numbers->ior != 1 && !mirrors && !refracts)
@@ -174,12 +174,12 @@ static void check_materials(const struct check *check) {
     const struct world *world = check->world;
     bool focuses = false;
     for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = &world->materials[i];
-        const char *needs, *input = lone_input(material, &needs);
-        focuses = focuses || material_specular(material) > 0;
+        const struct surface_material *material = &world->surfaces.materials[i];
+        const char *needs, *input = lone_input(material, &needs), *name = world->authored.materials[i]->name;
+        focuses = focuses || surface_specular(material) > 0;
         if (input)
             give(check, FAULT_FIELD, "%s has no effect in a material without %s%s%.100s%s", input, needs,
-                 material->name ? " ('" : "", material->name ? material->name : "", material->name ? "')" : "");
+                 name ? " ('" : "", name ? name : "", name ? "')" : "");
     }
     if (check->job->settings.caustics.photons > 0 && !focuses)
         give(check, FAULT_CAUSTICS, "caustics have no effect: nothing in the scene mirrors or refracts light");
@@ -190,7 +190,7 @@ static void check_materials(const struct check *check) {
 static bool is_opaque_from(const struct world *world, uint32_t first, uint32_t slots) {
     bool opaque = true;
     for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++)
-        opaque = opaque && !world->material_has_medium[i] && !material_has_holes(&world->materials[i]);
+        opaque = opaque && !world->material_has_medium[i] && !surface_has_holes(&world->surfaces.materials[i]);
     return opaque;
 }
 
@@ -240,8 +240,9 @@ static bool is_room(const struct world *world, uint32_t solid) {
     const struct prototype *prototype = primitive_prototype(world, solid);
     if (prototype->geometry.csg)
         return false;
-    const struct material *material = &world->materials[prototype->material];
-    return material->phong.two_sided || material->phong.unlit || vec3_max_abs(material_emission_bound(material)) > 0;
+    const struct surface_material *material = &world->surfaces.materials[prototype->material];
+    return material->phong.two_sided || material->phong.unlit ||
+           vec3_max_abs(surface_emission_bound(&world->surfaces, material)) > 0;
 }
 
 static void check_insides(struct check *check) {
@@ -303,11 +304,11 @@ void scene_check(const struct render_job *job, unsigned *noticed, world_warning 
     char ignored[256];
     struct error error;
     /* A camera that moves, and a picture of the sky or the fog alone, may be what was meant. */
-    bool moves = job->settings.motion.moves || job->fog;
+    bool has_fog = world_outside(world)->fog, moves = job->settings.motion.moves || has_fog;
     if (!renderer_prepare_at(job, 0, &check.camera, ignored, &error))
         return;
     if (world->primitive_count == 0) {
-        if (!job->fog && (world->sky.kind == SKY_CONSTANT || !job->background_lights))
+        if (!has_fog && (world->sky.kind == SKY_CONSTANT || !job->background_lights))
             give(&check, FAULT_EMPTY,
                  "nothing is in view: the node has no shapes, neither itself nor below it (see node:add_child)");
         return;

@@ -36,7 +36,8 @@ static double brightest_of_scene(const struct render_job *job) {
             max = own;
     }
     max = fmax(max, lit + world->emission_bound);
-    return job->fog ? fmax(max, largest(job->fog->colour)) : max;
+    const struct fog *fog = world_outside(world)->fog;
+    return fog ? fmax(max, largest(fog->colour)) : max;
 }
 
 /* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: this
@@ -62,7 +63,7 @@ static bool send_photons(struct whitted *whitted, struct renderer *renderer, int
     if (renderer->job->settings.caustics.photons == 0)
         return true;
     const struct render_job *job = renderer->job;
-    const struct photon_scene scene = {job->world, job->fog, &job->settings};
+    const struct photon_scene scene = {job->world, &job->settings};
     bool ok = photons_send(&whitted->caustics, &scene, renderer->pool, out, error);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].state.caustics = &whitted->caustics;

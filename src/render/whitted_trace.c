@@ -29,6 +29,7 @@ static const struct light *visible_light(const struct world *world, const struct
     const struct light *best = NULL;
     struct ray limited = *ray;
     struct light_hit met;
+    limited.t_min = 0; /* also before boundaries without effect */
     limited.t_max = t_max;
     for (uint32_t i = 0; i < world->light_count; i++) {
         if (world->lights[i].visible && light_meets_ray(&world->lights[i], &limited, &met)) {
@@ -292,14 +293,14 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     const struct material_context context = {.specular = settings->specular,
                                              .ambient_plain = settings->ambient_plain,
                                              .total_reflection = settings->use_tir,
-                                             .joint = joint_boundary(joint),
-                                             .observer = state->observer ? observe_material : NULL,
-                                             .observer_context = state->observer,
-                                             .authored = world->authored.materials[hit->material]};
+                                             .joint = joint_boundary(joint)};
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};
     state->hits++;
-    material_eval(&world->materials[hit->material], hit, ray->media, &context, &bsdf);
+    if (state->observer)
+        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
+                         state->observer);
+    material_eval(&world->surfaces, hit, ray->media, &context, &bsdf);
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
         return shade(state, &at, path);
@@ -323,7 +324,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
     struct medium_effect air;
     struct path dimmed;
-    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
+    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct vec3 left = air.transmittance;
     OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
     if (affected) {
@@ -331,11 +332,12 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         path = &dimmed;
     }
 
-    struct vec3 colour = {0, 0, 0}, seen, in_scattered = {0, 0, 0};
+    struct vec3 colour = {0, 0, 0}, seen, in_scattered = air.added;
     bool looked = !(path->weight < path->cutoff);
-    if (!looked)
+    if (!looked) {
         left = vec3_all(0);
-    else if (area_light)
+        in_scattered = air.source;
+    } else if (area_light)
         colour = light_emitted(area_light, ray, &area_light_hit);
     else if (met)
         colour = shade_hit(state, ray, hit, joint, path);
@@ -344,10 +346,8 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
-    if (affected) {
-        in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
+    if (affected)
         colour = vec3_add(vec3_mul(colour, left), in_scattered);
-    }
     colour = integrator_clamp_light(state, colour, light_limit);
     OBSERVE(state->observer, OBSERVED_RAY_END, .end = {looked, seen, left, in_scattered, colour});
     return colour;
@@ -383,7 +383,8 @@ static inline struct vec3 radiance_of(struct integrator_state *state, const stru
     return incident_radiance(state, ray, hit, &single, path);
 }
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path) {
+static inline __attribute__((always_inline)) struct vec3 trace(struct integrator_state *state, const struct ray *ray,
+                                                               const struct path *path) {
     struct hit hit;
     if (integrator_cancelled(state))
         return vec3_all(0); /* deep paths through glass grow exponentially */

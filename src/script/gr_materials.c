@@ -471,7 +471,7 @@ static bool gr_texture(struct script_context *context, const struct script_value
 
 static struct script_texture *keep_bump(struct script_context *context, const struct bump *bump, struct error *error) {
     return context_keep_texture(
-        context, &(struct script_texture){.texture = bump->texture.authored, .is_bump = true, .bump = *bump}, error);
+        context, &(struct script_texture){.texture = bump->texture, .is_bump = true, .bump = *bump}, error);
 }
 
 enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KIND };

@@ -562,7 +562,6 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .ambient = args[RENDER_AMBIENT].vector,
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
-        .fog = args[RENDER_FOG].fog,
         .settings = script_of(context)->host->settings,
         .frame = script_of(context)->animation.frame,
     };
@@ -589,15 +588,17 @@ static bool gr_render(struct script_context *context, const struct script_value 
     bool linear = settings_linear(&request.settings);
     if (linear && args[RENDER_AMBIENT].display)
         request.ambient = transfer_decode_colour(srgb, request.ambient);
-    if (linear && request.fog && request.fog->display) {
-        struct fog *fog = arena_alloc(&context->scene.arena, sizeof *fog);
-        if (!fog)
+    const struct fog *fog = args[RENDER_FOG].fog;
+    if (linear && fog && fog->display) {
+        struct fog *decoded = arena_alloc(&context->scene.arena, sizeof *decoded);
+        if (!decoded)
             return error_no_memory(error, "a fog");
-        *fog = *request.fog;
-        fog->colour = transfer_decode_colour(srgb, fog->colour);
-        fog->display = false;
-        request.fog = fog;
+        *decoded = *fog;
+        decoded->colour = transfer_decode_colour(srgb, fog->colour);
+        decoded->display = false;
+        fog = decoded;
     }
+    request.outside = medium_outside(fog);
     /* Functions, lens, motion, sky and light. */
     if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||

@@ -123,8 +123,8 @@ static bool fn(struct script_context *context, const struct script_value *args, 
     int points = args[FN_POINTS].given ? (int)args[FN_POINTS].number : FUNCTION_POINTS;
     while (points & (points - 1)) /* a power of two */
         points &= points - 1;
-    if (own.kind == TEXTURE_FUNCTION && args[FN_POINTS].given)
-        own.recorded.points = points;
+    if (own.operation.kind == TEXTURE_FUNCTION && args[FN_POINTS].given)
+        own.operation.recorded.points = points;
     return give(context, own, result, error);
 }
 

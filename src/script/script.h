@@ -24,7 +24,7 @@ struct render_request {
     double width, height; /* checked to be whole numbers in 1..2^20 */
     struct camera camera;
     struct vec3 ambient;
-    const struct fog *fog; /* or NULL */
+    struct medium outside; /* of all solids */
     const struct scene_light *lights;
     uint32_t light_count;
     struct sky sky;

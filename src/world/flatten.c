@@ -113,18 +113,24 @@ static bool count_drawable(struct flattening *f, const struct node *root, uint32
 
 /* --- placing --- */
 
-typedef bool material_test(const struct material *material);
+typedef bool surface_test(const struct surface_material *material);
 
-static bool any_slot(const struct flattening *f, uint32_t material, uint32_t slot_count, material_test *is) {
+static bool any_slot(const struct flattening *f, uint32_t material, uint32_t slot_count, surface_test *is) {
     const struct material **materials = f->world->authored.materials;
-    for (uint32_t i = 0; i < (slot_count > 1 ? slot_count : 1); i++)
-        if (is(materials[material + i]))
+    for (uint32_t i = 0; i < (slot_count > 1 ? slot_count : 1); i++) {
+        struct surface_material surface = surface_material_make(materials[material + i], false, NULL);
+        if (is(&surface))
             return true;
+    }
     return false;
 }
 
+static bool has_holes(const struct surface_material *material) {
+    return surface_has_holes(material);
+}
+
 /* Whether one of the materials of a prototype is such; what clips it has none. */
-static bool any_material(const struct flattening *f, const struct prototype *prototype, material_test *is) {
+static bool any_material(const struct flattening *f, const struct prototype *prototype, surface_test *is) {
     const struct csg *csg = prototype->geometry.csg;
     uint32_t end = !csg ? 0 : csg->clipped ? csg->program[csg->solid_length].leaf : csg->leaf_count;
     for (uint32_t i = 0; i < end; i++)
@@ -170,7 +176,7 @@ static bool find_walls(struct flattening *f, enum node_walls walls, struct proto
     const struct mesh *mesh = geometry_mesh(&prototype->geometry);
     const struct csg *csg = prototype->geometry.csg;
     bool by_shape = walls == WALLS_BY_SHAPE && !f->unqueried && !geometry_is_closed(&prototype->geometry);
-    if ((walls != WALLS_THIN && !by_shape) || !any_material(f, prototype, material_divides_media))
+    if ((walls != WALLS_THIN && !by_shape) || !any_material(f, prototype, surface_divides_media))
         return true;
     double opening = 1;
     if (by_shape && mesh && !mesh_opening(mesh, &opening))
@@ -270,7 +276,7 @@ static bool add_prototype(struct flattening *f, const struct node *node, struct 
     if (!nodes)
         return error_no_memory(f->error, "the primitives of the scene");
     world->authored.nodes = nodes;
-    prototype->holes = any_material(f, prototype, material_has_holes);
+    prototype->holes = any_material(f, prototype, has_holes);
     prototypes[world->prototype_count] = *prototype;
     nodes[world->prototype_count++] = node;
     return true;

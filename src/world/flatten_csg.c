@@ -358,8 +358,11 @@ static bool may_be_split(const struct flattening *f, const struct csg_draft *dra
     bool all_opaque = true, all_alike = true;
     for (uint32_t i = 0; i < draft->leaf_count; i++) {
         const struct csg_leaf *leaf = &draft->leaves[i];
-        for (uint32_t slot = 0; slot == 0 || slot < leaf->slot_count; slot++)
-            all_opaque = all_opaque && !material_is_transparent(f->world->authored.materials[leaf->material + slot]);
+        for (uint32_t slot = 0; all_opaque && (slot == 0 || slot < leaf->slot_count); slot++) {
+            const struct material *material = f->world->authored.materials[leaf->material + slot];
+            struct surface_material surface = surface_material_make(material, false, NULL);
+            all_opaque = !surface_is_transparent(&surface);
+        }
         all_alike = all_alike && leaf->slot_count < 2 && numbers[leaf->material] == numbers[draft->leaves[0].material];
     }
     return all_opaque || all_alike;

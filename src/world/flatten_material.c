@@ -2,8 +2,6 @@
  * material is plain gray. Each distinct set gets one number, in order of first use, and one index for each layout of
  * shapes on which its images have another mapping (material/material_mapping.h). The table that finds sets again is
  * hashed by address, which decides the position of an entry and never its number. */
-#include "base/mem.h"
-
 #include "base/random.h"
 #include "material/material_inputs.h"
 #include "material/material_mapping.h"
@@ -134,13 +132,12 @@ static const struct material *raised(struct flattening *f, const struct bump *bu
         return base;
     struct material *material = derived(f, bump->kind, base);
     struct bump mapped = *bump;
-    if (texture_as_image(bump->texture.authored)) {
-        struct texture own = *bump->texture.authored;
-        own.image.lookup.mapping = MAPPING_UV;
-        mapped.texture.authored = texture_keep(f->arena, own, f->error);
+    if (texture_as_image(bump->texture)) {
+        struct texture own = *bump->texture;
+        own.operation.image.mapping = MAPPING_UV;
+        mapped.texture = texture_keep(f->arena, own, f->error);
     }
-    return material && mapped.texture.authored && material_add_bump(material, &mapped, f->arena, f->error) ? material
-                                                                                                           : NULL;
+    return material && mapped.texture && material_add_bump(material, &mapped, f->arena, f->error) ? material : NULL;
 }
 
 /* Room for `count` more at the end of the list. */
@@ -254,160 +251,21 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
 
 /* --- textures --- */
 
-/* Tables of textures and bumps. Authored materials refer to textures by pointers;
- * here each distinct texture and each distinct bump gets an index, in order of first use, parts before their readers,
- * and the world's materials refer to them by it. The numbering that finds them again is hashed by address, which
- * decides the position of an entry and never its index. */
-
-struct numbered {
-    const void *authored; /* NULL: free */
-    uint32_t index;
-};
-
-/* Indices of authored textures and bumps. */
-struct numbering {
-    struct numbered *entries; /* capacity a power of two, at most half full */
-    uint32_t capacity, count;
-};
-
-static struct numbered *find_number(const struct numbering *numbering, const void *authored) {
-    for (uint32_t at = (uint32_t)random_combine((uint64_t)(uintptr_t)authored, 0);; at++) {
-        struct numbered *entry = &numbering->entries[at & (numbering->capacity - 1)];
-        if (!entry->authored || entry->authored == authored)
-            return entry;
-    }
-}
-
-static bool is_numbered(const struct numbering *numbering, const void *authored) {
-    return numbering->capacity > 0 && find_number(numbering, authored)->authored;
-}
-
-/* The next index. False: no memory. */
-static bool number(struct numbering *numbering, const void *authored) {
-    if (numbering->count * 2 >= numbering->capacity) {
-        struct numbering old = *numbering;
-        numbering->capacity = old.capacity ? old.capacity * 2 : 64;
-        numbering->entries = mem_alloc_zero(numbering->capacity, sizeof *numbering->entries);
-        if (!numbering->entries) {
-            *numbering = old;
-            return false;
-        }
-        for (uint32_t i = 0; i < old.capacity; i++)
-            if (old.entries[i].authored)
-                *find_number(numbering, old.entries[i].authored) = old.entries[i];
-        mem_free(old.entries);
-    }
-    *find_number(numbering, authored) = (struct numbered){authored, numbering->count++};
-    return true;
-}
-
-/* The texture, after all below it. */
-static bool number_texture(struct numbering *textures, const struct texture *texture) {
-    if (!texture || is_numbered(textures, texture))
-        return true;
-    struct texture own = *texture;
-    union texture_ref *parts[TEXTURE_PARTS];
-    int count = texture_parts(&own, parts);
-    for (int i = 0; i < count; i++)
-        if (!number_texture(textures, parts[i]->authored))
-            return false;
-    return number(textures, texture);
-}
-
-static bool number_bump(struct numbering *bumps, struct numbering *textures, const struct bump *bump) {
-    if (!bump || is_numbered(bumps, bump))
-        return true;
-    return number_bump(bumps, textures, bump->below.authored) && number_texture(textures, bump->texture.authored) &&
-           number(bumps, bump);
-}
-
-static union texture_ref texture_index(const struct numbering *textures, union texture_ref ref) {
-    return (union texture_ref){.index = ref.authored ? find_number(textures, ref.authored)->index : TEXTURE_NONE};
-}
-
-static union bump_ref bump_index(const struct numbering *bumps, union bump_ref ref) {
-    return (union bump_ref){.index = ref.authored ? find_number(bumps, ref.authored)->index : BUMP_NONE};
-}
-
-static void fill_textures(const struct numbering *textures, struct texture *out) {
-    for (uint32_t i = 0; i < textures->capacity; i++) {
-        if (!textures->entries[i].authored)
-            continue;
-        struct texture *texture = &out[textures->entries[i].index];
-        union texture_ref *parts[TEXTURE_PARTS];
-        *texture = *(const struct texture *)textures->entries[i].authored;
-        for (int k = texture_parts(texture, parts); k-- > 0;)
-            *parts[k] = texture_index(textures, *parts[k]);
-    }
-}
-
-static void fill_bumps(const struct numbering *bumps, const struct numbering *textures, struct bump *out) {
-    for (uint32_t i = 0; i < bumps->capacity; i++) {
-        if (!bumps->entries[i].authored)
-            continue;
-        struct bump *bump = &out[bumps->entries[i].index];
-        *bump = *(const struct bump *)bumps->entries[i].authored;
-        bump->below = bump_index(bumps, bump->below);
-        bump->texture = texture_index(textures, bump->texture);
-    }
-}
-
 /* For each function a place for reports of the workers. */
-static bool add_reports(struct arena *arena, struct texture *table, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        if (table[i].kind != TEXTURE_FUNCTION)
+static bool add_reports(struct arena *arena, const struct texture_tables *tables) {
+    for (uint32_t i = 0; i < tables->count; i++) {
+        struct texture_operation *operation = &tables->operations[i];
+        if (operation->kind != TEXTURE_FUNCTION)
             continue;
-        table[i].recorded.nan = arena_alloc(arena, sizeof *table[i].recorded.nan);
-        if (!table[i].recorded.nan)
+        operation->recorded.nan = arena_alloc(arena, sizeof *operation->recorded.nan);
+        if (!operation->recorded.nan)
             return false;
-        atomic_flag_clear(&table[i].recorded.nan->lock);
+        atomic_flag_clear(&operation->recorded.nan->lock);
     }
     return true;
-}
-
-static bool number_all(const struct world *world, struct numbering *textures, struct numbering *bumps) {
-    for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct material *material = &world->materials[i];
-        for (int k = 0; k < INPUT_COUNT; k++)
-            if (!number_texture(textures, material->inputs[k].authored))
-                return false;
-        if (!number_bump(bumps, textures, material->bump.authored))
-            return false;
-    }
-    return true;
-}
-
-static void refer(struct world *world, const struct numbering *textures, const struct numbering *bumps) {
-    for (uint32_t i = 0; i < world->material_count; i++) {
-        struct material *material = &world->materials[i];
-        material->plain = !material->bump.authored;
-        for (int k = 0; k < INPUT_COUNT; k++) {
-            material->plain = material->plain && !material->inputs[k].authored;
-            material->inputs[k] = texture_index(textures, material->inputs[k]);
-        }
-        material->bump = bump_index(bumps, material->bump);
-        material->textures = world->textures;
-        material->bumps = world->bumps;
-    }
 }
 
 /* --- linear colours --- */
-
-/* Whether an input is a colour; the numbers of others mean themselves. */
-#define INPUT_IS_COLOUR(input, word, is_colour) [input] = (is_colour),
-static const bool is_colour[] = {MATERIAL_INPUTS(INPUT_IS_COLOUR)};
-
-/* A texture that is read as a colour, and its parts that are. */
-static void mark_colours(const struct texture *table, union texture_ref ref, bool *is_read) {
-    if (ref.index == TEXTURE_NONE || is_read[ref.index])
-        return;
-    struct texture own = table[ref.index];
-    union texture_ref *parts[TEXTURE_PARTS];
-    (void)texture_parts(&own, parts);
-    is_read[ref.index] = true;
-    for (int i = 0; i < texture_colour_parts(&own); i++)
-        mark_colours(table, *parts[i], is_read);
-}
 
 /* How an image becomes light; colour: it is read as one. */
 static struct transfer_function image_transfer_in(const struct texture_image *lookup, bool colour) {
@@ -425,13 +283,13 @@ static struct transfer_function image_transfer_in(const struct texture_image *lo
 }
 
 /* Of the first texture that reads the image. */
-static void warn_of_colours(const struct flattening *f, const struct texture *table, uint32_t index) {
-    const struct image *image = table[index].image.lookup.image;
+static void warn_of_colours(const struct flattening *f, const struct texture_operation *table, uint32_t index) {
+    const struct image *image = table[index].image.image;
     char text[1024];
     if (!f->warn || !image_colours(image))
         return;
     for (uint32_t i = 0; i < index; i++)
-        if (table[i].kind == TEXTURE_IMAGE && strcmp(image_name(table[i].image.lookup.image), image_name(image)) == 0)
+        if (table[i].kind == TEXTURE_IMAGE && strcmp(image_name(table[i].image.image), image_name(image)) == 0)
             return;
     (void)snprintf(
         text, sizeof text,
@@ -440,73 +298,49 @@ static void warn_of_colours(const struct flattening *f, const struct texture *ta
     f->warn(f->warn_context, text);
 }
 
-/* Which textures of the table are read as colours; NULL: no memory. */
-static bool *find_colours(const struct world *world, const struct texture *table) {
-    bool *is_read = mem_alloc_zero((size_t)world->texture_count + 1, sizeof *is_read);
-    for (uint32_t i = 0; is_read && i < world->material_count; i++)
-        for (int k = 0; k < INPUT_COUNT; k++)
-            if (is_colour[k])
-                mark_colours(table, world->materials[i].inputs[k], is_read);
-    return is_read;
-}
-
 /* Images that a colour is read of become linear, those that say what they are, and colours of the screen. */
-static bool decode_colours(const struct flattening *f, struct texture *table) {
-    bool *is_read = find_colours(f->world, table), ok = is_read != NULL;
-    for (uint32_t i = 0; ok && i < f->world->texture_count; i++) {
-        struct texture_image *lookup = &table[i].image.lookup;
-        if (table[i].kind == TEXTURE_CONSTANT && table[i].constant.display)
-            table[i] = texture_constant(
-                transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, table[i].constant.colour));
-        if (table[i].kind != TEXTURE_IMAGE)
+static bool decode_colours(const struct flattening *f, const struct texture_tables *tables) {
+    for (uint32_t i = 0; i < tables->count; i++) {
+        struct texture_operation *operation = &tables->operations[i];
+        struct texture_image *lookup = &operation->image;
+        bool is_colour = tables->are_colours[i];
+        if (operation->kind == TEXTURE_CONSTANT && operation->constant.display)
+            *operation = texture_constant(transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0},
+                                                                 operation->constant.colour))
+                             .operation;
+        if (operation->kind != TEXTURE_IMAGE)
             continue;
-        struct transfer_function transfer = image_transfer_in(lookup, is_read[i]);
-        if (is_read[i] && lookup->encoding == ENCODING_AUTO && !(lookup->gamma > 0))
-            warn_of_colours(f, table, i);
+        struct transfer_function transfer = image_transfer_in(lookup, is_colour);
+        if (is_colour && lookup->encoding == ENCODING_AUTO && !(lookup->gamma > 0))
+            warn_of_colours(f, tables->operations, i);
         lookup->image = image_decode(lookup->image, transfer, f->error);
-        ok = lookup->image != NULL;
+        if (!lookup->image)
+            return false;
     }
-    mem_free(is_read);
-    return ok;
+    return true;
 }
 
 /* Classic colours whose output is encoded: pictures become lighter than they are. */
-static bool warn_of_encoding(const struct flattening *f, const struct texture *table) {
-    bool *is_read = find_colours(f->world, table), found = false;
-    for (uint32_t i = 0; is_read && i < f->world->texture_count; i++)
-        found = found || (is_read[i] && table[i].kind == TEXTURE_IMAGE && image_bits(table[i].image.lookup.image) == 8);
-    if (found)
+static void warn_of_encoding(const struct flattening *f, const struct texture_tables *tables) {
+    for (uint32_t i = 0; i < tables->count; i++) {
+        const struct texture_operation *operation = &tables->operations[i];
+        if (!tables->are_colours[i] || operation->kind != TEXTURE_IMAGE || image_bits(operation->image.image) != 8)
+            continue;
         f->warn(f->warn_context, "note: --srgb encodes pictures that were not decoded: a texture value of 128 becomes "
                                  "188; --colour linear decodes them");
-    mem_free(is_read);
-    return is_read != NULL;
+        return;
+    }
 }
 
-bool flatten_textures(struct flattening *f) {
+bool flatten_surfaces(struct flattening *f) {
     struct world *world = f->world;
-    struct arena *arena = f->arena;
-    struct numbering textures = {.count = 0}, bumps = {.count = 0};
-    bool ok = number_all(world, &textures, &bumps);
-    struct texture *texture_table =
-        ok ? arena_alloc_array(arena, (size_t)textures.count + 1, sizeof *texture_table) : NULL;
-    struct bump *bump_table = ok ? arena_alloc_array(arena, (size_t)bumps.count + 1, sizeof *bump_table) : NULL;
-    ok = texture_table && bump_table;
-    if (ok) {
-        /* References become indices when every texture has one. */
-        fill_textures(&textures, texture_table);
-        fill_bumps(&bumps, &textures, bump_table);
-        world->textures = texture_table;
-        world->bumps = bump_table;
-        world->texture_count = textures.count;
-        world->bump_count = bumps.count;
-        refer(world, &textures, &bumps);
-        ok = add_reports(arena, texture_table, textures.count);
-        if (ok && f->linear_colours)
-            ok = decode_colours(f, texture_table);
-        else if (ok && f->encodes && f->warn)
-            ok = warn_of_encoding(f, texture_table);
-    }
-    mem_free(textures.entries);
-    mem_free(bumps.entries);
-    return ok || error_no_memory(f->error, "the textures of the scene");
+    const struct texture_tables *textures = &world->surfaces.textures;
+    bool ok = surface_tables_build(&world->surfaces, world->authored.materials, world->material_count, world->classic,
+                                   f->arena, &world->authored.textures) &&
+              add_reports(f->arena, textures);
+    if (ok && f->linear_colours)
+        ok = decode_colours(f, textures);
+    else if (ok && f->encodes && f->warn)
+        warn_of_encoding(f, textures);
+    return ok || error_no_memory(f->error, "the materials of the scene");
 }

@@ -9,9 +9,8 @@
  * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
-/* The tables of textures and bumps that the authored materials read; the world's materials, flat copies of these, refer
- * to them by index from now on. Errors: no memory. */
-bool flatten_textures(struct flattening *f);
+/* The world's own materials, flat copies of the authored ones, with their textures. Errors: no memory. */
+bool flatten_surfaces(struct flattening *f);
 
 /* Warns "node 'NAME' WHAT", with the line of the script, once for each node. */
 void flatten_warn_once(struct flattening *f, const struct node *node, const char *what);

@@ -32,7 +32,7 @@ static void add_face(struct junction *junction, const struct hit *hit, const str
     const struct material_context context = {.total_reflection = true,
                                              .thin = !world->classic && primitive_is_thin(world, hit->primitive)};
     struct bsdf bsdf;
-    material_eval(&world->materials[hit->material], hit, junction->ray->media, &context, &bsdf);
+    material_eval(&world->surfaces, hit, junction->ray->media, &context, &bsdf);
     if (!(bsdf.opacity > 0) || junction->count == FACES)
         return;
     struct face *face = &junction->faces[junction->count++];
@@ -156,14 +156,11 @@ static void set_boundary(const struct junction *junction, const struct face *cho
     joint->boundary.behind = &joint->behind;
 }
 
-/* The boundary of transparent faces together. False: there is none, and the ray goes on. */
+/* The boundary of transparent faces together. False: there is none. */
 static bool join_transparent(const struct junction *junction, struct hit *hit, struct joint *joint) {
     cross_all(junction, &joint->before, &joint->behind);
     if (!has_thin_wall(junction) && medium_stacks_equal(&joint->before, &joint->behind)) {
-        for (int i = 0; i < junction->count; i++)
-            joint->ray.t_min = fmax(joint->ray.t_min, junction->faces[i].t);
-        medium_stack_copy(&joint->before, &joint->behind);
-        joint->passed = true;
+        joint->joined = JOINED_AWAY;
         return false;
     }
     const struct face *chosen = roughest_face(junction);
@@ -173,16 +170,25 @@ static bool join_transparent(const struct junction *junction, struct hit *hit, s
     return true;
 }
 
+/* What the faces are together, for a ray in the media joint->before. */
+static void join_faces(const struct junction *junction, struct hit *hit, struct joint *joint) {
+    const struct face *opaque = opaque_face(junction);
+    if (opaque) {
+        choose(junction, opaque, hit);
+        joint->joined = JOINED_OPAQUE;
+    } else if (!join_transparent(junction, hit, joint)) {
+        joint->past = hit->t;
+        for (int i = 0; i < junction->count; i++)
+            joint->past = fmax(joint->past, junction->faces[i].t);
+    }
+}
+
 bool world_join(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit,
                 struct joint *joint) {
-    struct junction junction;
-    junction.world = world;
-    junction.scratch = scratch;
-    junction.ray = ray;
-    junction.hit = hit;
-    joint->joined = JOINED_NOT;
+    struct junction junction = {.world = world, .ray = ray, .scratch = scratch, .hit = hit};
     joint->passed = false;
     for (;;) {
+        joint->joined = JOINED_NOT;
         if (hit->behind > 0 || !find_faces(&junction))
             return true;
         if (!joint->passed) {
@@ -194,31 +200,34 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
                 medium_stack_copy(&joint->before, ray->media);
             junction.ray = &joint->ray;
         }
-        const struct face *opaque = opaque_face(&junction);
-        if (opaque) {
-            choose(&junction, opaque, hit);
-            joint->joined = JOINED_OPAQUE;
-            return true;
-        }
-        if (join_transparent(&junction, hit, joint))
+        join_faces(&junction, hit, joint);
+        if (joint->joined != JOINED_AWAY)
             return true;
         /* On to what is behind. */
+        joint->passed = true;
+        joint->ray.t_min = fmax(joint->ray.t_min, joint->past);
+        medium_stack_copy(&joint->before, &joint->behind);
         if (!world_nearest_surface(world, &joint->ray, scratch, hit))
             return false;
-        if (!world_touches(world, hit))
+        if (!world_touches(world, hit)) {
+            joint->joined = JOINED_NOT;
             return true;
+        }
     }
 }
 
-bool world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
+void world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
                      struct world_scratch *scratch, struct hit *hit, struct joint *joint) {
-    bool met = world_join(world, ray, scratch, hit, joint);
-    if (joint->passed) {
-        *ray = joint->ray;
-        medium_stack_copy(media, &joint->before);
-        ray->media = media;
-    }
-    return met;
+    struct junction junction = {.world = world, .ray = ray, .scratch = scratch, .hit = hit};
+    joint->joined = JOINED_NOT;
+    if (hit->behind > 0 || !find_faces(&junction))
+        return;
+    medium_stack_copy(&joint->before, media);
+    join_faces(&junction, hit, joint);
+    if (joint->joined != JOINED_AWAY)
+        return;
+    ray->t_min = fmax(ray->t_min, joint->past);
+    medium_stack_copy(media, &joint->behind);
 }
 
 struct ray joint_ray_through_hole(const struct joint *joint, const struct hit *hit, const struct ray *ray,

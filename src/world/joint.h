@@ -9,12 +9,18 @@
 #include "world/world.h"
 
 /* Whether several surfaces are at the hit. */
-enum joined { JOINED_NOT, JOINED_OPAQUE, JOINED_TRANSPARENT };
+enum joined {
+    JOINED_NOT,
+    JOINED_OPAQUE,
+    JOINED_TRANSPARENT,
+    JOINED_AWAY /* the media before and behind are equal: nothing is there */
+};
 
 /* What belongs to a hit where surfaces touch; if there is no other surface, only `joined` and `passed` are set. */
 struct joint {
     enum joined joined;
     bool passed;                        /* the ray has passed boundaries without effect, so it is `ray` now */
+    double past;                        /* of JOINED_AWAY: the last t of the surfaces */
     struct bsdf_joint boundary;         /* of JOINED_TRANSPARENT */
     struct ray ray;                     /* begins behind them, in the media `before` */
     struct medium_stack before, behind; /* the hit */
@@ -25,8 +31,9 @@ struct joint {
 bool world_join(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit,
                 struct joint *joint);
 
-/* The same for the ray of a path, in its own media: it becomes joint->ray. */
-bool world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
+/* The same for the ray of a path, in its own media, at one place: after JOINED_AWAY the ray begins behind it, and is to
+ * be followed again. */
+void world_join_path(const struct world *world, struct ray *ray, struct medium_stack *media,
                      struct world_scratch *scratch, struct hit *hit, struct joint *joint);
 
 /* The bounds of the point of a hit, with its error. */

@@ -107,7 +107,7 @@ static struct vec3 emission_at(const struct world *world, const struct light_tri
     struct bsdf bsdf;
     ray.footprint.width = width;
     world_describe(world, &ray, t->primitive, &crossing, &hit);
-    material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+    material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
     return vec3_scale(bsdf.emission, fmin(bsdf.opacity, 1));
 }
 
@@ -146,7 +146,7 @@ static void warn_of_average(const struct mesh_light_collection *g, struct flatte
         const struct prototype *prototype = primitive_prototype(g->world, i);
         for (uint32_t slot = 0; is_source(g, i) && slot < (prototype->slot_count > 0 ? prototype->slot_count : 1);
              slot++) {
-            if (!material_texture(g->world->authored.materials[prototype->material + slot], INPUT_EMISSION))
+            if (!g->world->authored.materials[prototype->material + slot]->inputs[INPUT_EMISSION])
                 continue;
             char text[256];
             (void)snprintf(text, sizeof text,

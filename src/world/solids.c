@@ -11,7 +11,7 @@ static uint32_t add_material(const struct world *world, uint32_t material, uint3
     for (uint32_t i = 0; i < count; i++)
         if (list[i] == material)
             return count;
-    if (!material_passes(&world->materials[material]))
+    if (!surface_passes(&world->surfaces.materials[material]))
         return count;
     list[count] = material;
     return count + 1;
@@ -52,7 +52,7 @@ bool solids_make(struct flattening *f) {
     struct world *world = f->world;
     bool passes = false;
     for (uint32_t i = 0; i < world->material_count; i++)
-        passes = passes || material_passes(&world->materials[i]);
+        passes = passes || surface_passes(&world->surfaces.materials[i]);
     if (!passes)
         return true;
     uint32_t *list = mem_resize_array(NULL, (size_t)world->material_count + 1, sizeof *list);

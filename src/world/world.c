@@ -86,7 +86,7 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
         if (!world_ask_nearest(world, index, &ray_object, scratch, &crossing))
             return false;
         world_describe(world, ray, index, &crossing, &hit);
-        material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+        material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
             return true;
         rest.t_min = crossing.t;
@@ -661,8 +661,8 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 
 void world_update_materials(struct world *world) {
     for (uint32_t i = 0; i < world->material_count; i++) {
-        world->materials[i].phong = material_flatten(world->authored.materials[i], world->classic).phong;
-        world->media.all[i] = material_medium(&world->materials[i]);
+        surface_material_update(&world->surfaces.materials[i], world->authored.materials[i], world->classic);
+        world->media.all[i] = surface_medium(&world->surfaces.materials[i]);
     }
 }
 
@@ -671,25 +671,21 @@ static bool make_materials(struct flattening *f) {
     struct world *world = f->world;
     struct arena *arena = f->arena;
     uint32_t count = world->material_count;
-    world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
     world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
     world->material_has_medium = arena_alloc_array(arena, count, sizeof *world->material_has_medium);
-    world->media.all = arena_alloc_array(arena, count, sizeof *world->media.all);
-    if (!world->materials || !world->material_has_image || !world->material_has_tangents ||
-        !world->material_has_medium || !world->media.all)
+    world->media.all = arena_alloc_array(arena, (size_t)count + 1, sizeof *world->media.all);
+    world->media.outside = count;
+    if (!world->material_has_image || !world->material_has_tangents || !world->material_has_medium || !world->media.all)
         return error_no_memory(f->error, "the materials of the scene");
-    /* Textures are numbered in the flat copies, so these come first. */
-    for (uint32_t i = 0; i < count; i++)
-        world->materials[i] = material_flatten(world->authored.materials[i], world->classic);
-    if (!flatten_textures(f))
+    if (!flatten_surfaces(f))
         return false;
     for (uint32_t i = 0; i < count; i++) {
-        const struct material *material = &world->materials[i];
-        world->material_has_image[i] = material_has_image(material);
-        world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
-        world->material_has_medium[i] = material_is_transparent(material);
-        world->media.all[i] = material_medium(material);
+        const struct surface_material *material = &world->surfaces.materials[i];
+        world->material_has_image[i] = material->needs_footprint;
+        world->material_has_tangents[i] = material->needs_tangents;
+        world->material_has_medium[i] = surface_is_transparent(material);
+        world->media.all[i] = surface_medium(material);
         struct vec3 emission = material_emission_bound(world->authored.materials[i]);
         world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
     }
@@ -738,6 +734,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     flattening.arena = of_tables;
     if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening) || !solids_make(&flattening)))
         return false;
+    world->media.all[world->media.outside] = input->outside ? *input->outside : medium_outside(NULL);
     add_up_meshes(world, input->scene->assets);
     /* The accelerator comes last, since it needs the boxes; that of the frame before fits if they are equal. */
     reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,

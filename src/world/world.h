@@ -8,6 +8,7 @@
 #include "csg/geometry.h"
 #include "geometry/hit.h"
 #include "material/medium.h"
+#include "material/surface_material.h"
 #include "math/motion.h"
 #include "scene/node.h"
 #include "world/mesh_group.h"
@@ -43,9 +44,10 @@ struct prototype {
 
 /* The authored objects, for inspection: searches and shading never read this. Borrows from the scene. */
 struct authored {
-    const struct node **nodes;         /* of each prototype; owned */
-    const struct material **materials; /* of each material, with the chain that it was derived from */
-    const uint8_t *draws;              /* by node->index: whether the node, or a descendant, has primitives */
+    const struct node **nodes;             /* of each prototype; owned */
+    const struct material **materials;     /* of each material, with the chain that it was derived from */
+    const struct texture *const *textures; /* of each texture */
+    const uint8_t *draws;                  /* by node->index: whether the node, or a descendant, has primitives */
 };
 
 /* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
@@ -74,17 +76,15 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    /* Flattened (material_flatten), by layout of shapes: a material whose images have another mapping on spheres or
-     * boxes is here several times, with the same number. */
-    struct material *materials;
+    /* By layout of shapes: a material whose images have another mapping on spheres or boxes is here several times, with
+     * the same number. */
+    struct surface_tables surfaces;
     const uint32_t *material_numbers;
-    const struct texture *textures; /* textures of materials and bumps; parts come before their readers */
-    const struct bump *bumps;
     bool *material_has_image;    /* such materials need the footprint on the surface */
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
     bool *material_has_medium;   /* solids of the material have one inside: it is transparent */
-    uint32_t material_count, material_number_count, texture_count, bump_count;
-    struct media media;          /* of all solids that light may pass; their media have the numbers of the materials */
+    uint32_t material_count, material_number_count;
+    struct media media;          /* those of solids have the numbers of the materials */
     const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
     double emission_bound;       /* a bound of the largest component of emission */
     const struct light *lights;
@@ -100,6 +100,11 @@ struct world {
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */
 };
+
+/* The medium around all solids. */
+static inline const struct medium *world_outside(const struct world *world) {
+    return &world->media.all[world->media.outside];
+}
 
 #define WORLD_NOTHING UINT32_MAX /* instead of a primitive's number */
 enum { WORLD_SHADOW_CACHE = 8 };
@@ -134,6 +139,7 @@ struct world_input {
     const struct scene_light *lights;
     uint32_t light_count;
     const struct sky *sky;
+    const struct medium *outside; /* around all solids; NULL: nothing */
     struct shutter shutter;
     enum accel_kind accel;     /* of the world and of the meshes */
     bool linear_colours;       /* pictures and display colours are decoded (docs/colour.md) */

@@ -54,9 +54,9 @@ static void take_world(struct kept_tables *tables, struct world *world) {
     world->shutter = own.shutter;
     world->light_count = own.light_count;
     tables->full = false;
-    for (uint32_t i = 0; i < world->texture_count; i++)
-        if (world->textures[i].kind == TEXTURE_FUNCTION)
-            world->textures[i].recorded.nan->found = false;
+    for (uint32_t i = 0; i < world->surfaces.textures.count; i++)
+        if (world->surfaces.textures.operations[i].kind == TEXTURE_FUNCTION)
+            world->surfaces.textures.operations[i].recorded.nan->found = false;
 }
 
 bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bool *reused) {

@@ -24,11 +24,12 @@ struct emission {
 
 static void collect_emission(const struct world *world, uint32_t first, uint32_t slots, struct emission *out) {
     for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
-        const struct material *material = &world->materials[i];
-        struct vec3 colour = material_emission(material), bound = material_emission_bound(material);
+        const struct surface_material *material = &world->surfaces.materials[i];
+        struct vec3 colour = surface_emission(&world->surfaces, material);
+        struct vec3 bound = surface_emission_bound(&world->surfaces, material);
         bool brighter = vec3_max_abs(colour) > vec3_max_abs(out->colour);
         out->emissive = out->emissive || vec3_max_abs(colour) > 0 || vec3_max_abs(bound) > 0;
-        out->varies = out->varies || material_emission_varies(material);
+        out->varies = out->varies || surface_emission_varies(material);
         out->colour = brighter ? colour : out->colour;
     }
 }
@@ -655,7 +656,7 @@ static bool next_surface(const struct world *world, const struct ray *rest, stru
                          struct hit *hit, struct bsdf *bsdf) {
     if (!world_nearest(world, rest, scratch, hit))
         return false;
-    material_eval(&world->materials[hit->material], hit, NULL, NULL, bsdf);
+    material_eval(&world->surfaces, hit, NULL, NULL, bsdf);
     return true;
 }
 

@@ -151,7 +151,6 @@ static bool render_small(void *context, const struct render_request *request, st
                              .width = request->width < SIDE ? (uint32_t)request->width : SIDE,
                              .height = request->height < SIDE ? (uint32_t)request->height : SIDE,
                              .ambient = request->ambient,
-                             .fog = request->fog,
                              .film = &film};
     char warning[256] = "";
     struct render_area area;
@@ -168,6 +167,7 @@ static bool render_small(void *context, const struct render_request *request, st
                                           .lights = request->lights,
                                           .light_count = request->light_count,
                                           .sky = &request->sky,
+                                          .outside = &request->outside,
                                           .shutter = job.settings.shutter,
                                           .accel = job.settings.accel,
                                           .warn = hear_of_scene};

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { STATES = 3, POOL = 16, DEEPEST = 2 };
+enum { STATES = 3, POOL = 16 };
 
 /* Two floats and an integer. */
 static const enum expr_type state_types[STATES] = {EXPR_TYPE_F, EXPR_TYPE_F, EXPR_TYPE_I};
@@ -38,7 +38,7 @@ static void make_body(struct maker *m, uint64_t seed, uint32_t depth, uint32_t s
     uint32_t whole = in[2], condition = apply(m, EXPR_LESS, in[1], expr_input(&m->graph, EXPR_POINT_Y), 0);
     for (int k = 0; k < 3; k++)
         pool[count++] = expr_input(&m->graph, (enum expr_input)(EXPR_POINT_X + k));
-    if (depth < DEEPEST && seed % 3 == 0) {
+    if (depth < EXPR_DEPTH && seed % 3 == 0) {
         const uint32_t initial[STATES] = {pool[2], pool[seed / 7 % count], seed % 2 ? step : in[2]};
         uint32_t final[STATES];
         make_loop(m, random_mix(seed), depth + 1, 1 + (uint32_t)(seed / 11 % 4), initial, final);
@@ -170,6 +170,58 @@ TEST(loops_have_the_bits_of_their_steps_one_by_one) {
         check_values(&e, random_combine(61, i));
         arena_destroy(&e.arena);
     }
+}
+
+/* Each loop is the sum of what the loop in it gives for its steps, so that n loops of 3 steps add x to 3^n numbers. */
+static bool compile_nested(uint32_t depth, struct arena *arena, struct expr_program *program, struct error *error) {
+    struct expr_graph graph = {.count = 0};
+    uint32_t inner = expr_input(&graph, EXPR_POINT_X), outputs[1];
+    for (uint32_t at = depth; at > 0; at--) {
+        const uint32_t zero = expr_float(&graph, 0), state = expr_symbol(&graph, at, 1, EXPR_TYPE_F);
+        const uint32_t start = at == 1 ? zero : expr_symbol(&graph, at - 1, 1, EXPR_TYPE_F);
+        const uint32_t next = at == depth ? expr_operation(&graph, EXPR_ADD, state, inner, EXPR_NONE) : inner;
+        const struct expr_graph_loop loop = {
+            .first = 1, .last = 3, .depth = at, .state_count = 1, .initial = &start, .next = &next};
+        CHECK(expr_loop(&graph, &loop, &inner));
+    }
+    outputs[0] = inner;
+    const bool ok = expr_compile(&graph, outputs, 1, arena, program, error);
+    expr_graph_destroy(&graph);
+    return ok;
+}
+
+TEST(loops_are_evaluated_to_the_greatest_depth_and_refused_beyond_it) {
+    struct arena arena = {0};
+    struct expr_program program;
+    struct error error = {0};
+    double wanted = 1;
+    for (uint32_t depth = 1; depth <= EXPR_DEPTH; depth++) {
+        static double xs[EXPR_BATCH], results[EXPR_BATCH];
+        const double *from[EXPR_INPUT_COUNT] = {xs}, point[EXPR_INPUT_COUNT] = {0};
+        double *to[EXPR_OUTPUTS] = {results}, out[EXPR_OUTPUTS], gradient[EXPR_OUTPUTS][EXPR_DIRECTIONS];
+        struct expr_interval box[EXPR_INPUT_COUNT] = {{1, 2, false}}, bounds[EXPR_OUTPUTS];
+        struct expr_directions along = {.count = 1, .seeds = {{1}}};
+        struct expr_range range[EXPR_OUTPUTS];
+        CHECK(compile_nested(depth, &arena, &program, &error));
+        void *rows = mem_alloc_aligned(64, expr_slopes_size(&program) + expr_batch_size(&program));
+        wanted *= 3;
+        for (uint32_t i = 0; i < EXPR_BATCH; i++)
+            xs[i] = i;
+        expr_evaluate_batch(&program, EXPR_BATCH, from, to, rows);
+        for (uint32_t i = 0; i < EXPR_BATCH; i++)
+            CHECK(results[i] == wanted * xs[i]);
+        expr_evaluate_gradient(&program, point, expr_gradient_seeds, out, gradient, rows);
+        CHECK(out[0] == 0 && gradient[0][0] == wanted);
+        expr_evaluate_interval(&program, box, bounds, NULL, rows);
+        expr_evaluate_slopes(&program, box, &along, range, NULL, rows);
+        CHECK_NEAR(bounds[0].low, wanted, 1e-9);
+        CHECK_NEAR(bounds[0].high, 2 * wanted, 1e-9);
+        CHECK_NEAR(range[0].slopes[0].low, wanted, 1e-9);
+        mem_free(rows);
+    }
+    CHECK(!compile_nested(EXPR_DEPTH + 1, &arena, &program, &error));
+    CHECK(strstr(error.text, "loops that are more than 3 deep in each other"));
+    arena_destroy(&arena);
 }
 
 TEST(derivatives_of_loops_are_those_of_their_steps_one_by_one) {

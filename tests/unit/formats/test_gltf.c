@@ -1,4 +1,5 @@
 #include "tests/unit/model_makers.h"
+#include "tests/unit/surface_makers.h"
 
 #include "formats/model_node.h"
 #include "image/png_write.h"
@@ -376,12 +377,12 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     /* The texel at uv: (2 u + 0.5, 3 v + 0.25) counted from the top, clamped and mirrored. */
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
     struct surface_inputs inputs;
-    material_inputs_at(node->slots[0], &hit, &inputs);
+    surface_inputs_of(node->slots[0], &hit, &inputs);
     CHECK_NEAR(inputs.kd.x, 0.5 * 120 / 255.0, 1e-12);
     CHECK_NEAR(inputs.kd.y, 120 / 255.0, 1e-12);
     CHECK_NEAR(inputs.kd.z, 1, 1e-12);
     hit = (struct hit){.has_colour = true, .colour = {0.5, 0.25, 0}};
-    material_inputs_at(node->slots[2], &hit, &inputs);
+    surface_inputs_of(node->slots[2], &hit, &inputs);
     CHECK_NEAR(inputs.kd.y, 0.25, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);

@@ -1,10 +1,10 @@
 /* The effect of the maps of MTL and glTF materials on a surface: inputs of the BSDF at a hit, by the formulas of the
  * formats. */
 #include "tests/unit/model_makers.h"
+#include "tests/unit/surface_makers.h"
 
 #include "formats/model_node.h"
 #include "image/png_write.h"
-#include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/openpbr.h"
 
@@ -66,8 +66,8 @@ static bool surface_of_file(const char *name, const char *material, struct surfa
         hit.front = true;
         hit.has_colour = true;
         hit.colour = vertex_colour;
-        material_inputs_at(node->slots[i], &hit, inputs);
-        material_eval(node->slots[i], &hit, NULL, NULL, bsdf);
+        surface_inputs_of(node->slots[i], &hit, inputs);
+        surface_eval(node->slots[i], &hit, NULL, NULL, bsdf);
         found = true;
     }
     scene_destroy(&scene);
@@ -343,12 +343,12 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         struct hit hit = middle();
         material_derive(&cut, MATERIAL_IMAGE, &base);
         CHECK(material_cut(&cut, &picture, cutoffs[i], &arena, &error));
-        material_inputs_at(&cut, &hit, &inputs);
+        surface_inputs_of(&cut, &hit, &inputs);
         CHECK_NEAR(inputs.opacity, wanted[i], 1e-12);
         picture.alpha = ALPHA_IGNORED;
         material_derive(&over, MATERIAL_IMAGE, &cut);
         CHECK(material_cover(&over, INPUT_KD, &picture, &arena, &error));
-        material_inputs_at(&over, &hit, &inputs);
+        surface_inputs_of(&over, &hit, &inputs);
         CHECK_NEAR(inputs.opacity, wanted[i], 1e-12);
         CHECK_NEAR(inputs.kd.y, 20 / 255.0, 1e-12);
         arena_destroy(&arena);
@@ -380,7 +380,7 @@ static void check_unusable(const char *name, const char *text, size_t size, cons
     if (node) {
         struct hit hit = middle();
         struct surface_inputs got;
-        material_inputs_at(node->slots[0], &hit, &got);
+        surface_inputs_of(node->slots[0], &hit, &got);
         CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
         CHECK_NEAR(got.ks.x, 0.3, 0);
         CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
@@ -419,7 +419,7 @@ TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
         struct hit hit = middle();
         struct surface_inputs got;
         hit.has_uv = false;
-        material_inputs_at(node->slots[0], &hit, &got);
+        surface_inputs_of(node->slots[0], &hit, &got);
         CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
         CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
         CHECK_EQ_INT(model->warning_count, 1);

@@ -3,6 +3,7 @@
 
 #include "base/path_policy.h"
 #include "formats/model_node.h"
+#include "material/surface_material.h"
 #include "mesh/mesh_smooth.h"
 
 /* Reads a model from the test's folder. */
@@ -314,8 +315,9 @@ TEST(mtl_materials_follow_their_mesh) {
         CHECK_NEAR(node->slots[0]->phong.kd.x, 1, 0);
         CHECK_NEAR(node->slots[0]->phong.ks.x, 0, 0);
         CHECK_EQ_INT(node->slots[1]->kind, MATERIAL_FRESNEL);
-        CHECK(material_is_transparent(node->slots[1]));
-        CHECK_NEAR(material_medium(node->slots[1]).ior, 1.5, 0);
+        struct surface_material glass = surface_material_make(node->slots[1], false, NULL);
+        CHECK(surface_is_transparent(&glass));
+        CHECK_NEAR(surface_medium(&glass).ior, 1.5, 0);
         CHECK_NEAR(node->slots[2]->phong.reflect, 1, 0);
     }
     scene_destroy(&scene);

@@ -74,9 +74,9 @@ static struct image *in_world(struct stage *s, struct image *image, enum materia
     stage_cube(s, root, m);
     s->settings.colour = colour;
     CHECK(stage_build(s, root, ACCEL_AUTO));
-    for (uint32_t i = 0; i < s->world.texture_count; i++)
-        if (s->world.textures[i].kind == TEXTURE_IMAGE)
-            return s->world.textures[i].image.lookup.image;
+    for (uint32_t i = 0; i < s->world.surfaces.textures.count; i++)
+        if (s->world.surfaces.textures.operations[i].kind == TEXTURE_IMAGE)
+            return s->world.surfaces.textures.operations[i].image.image;
     return NULL;
 }
 

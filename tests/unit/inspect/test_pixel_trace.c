@@ -109,8 +109,7 @@ static struct check print_picture(struct stage *s, uint32_t width, uint32_t heig
                              .settings = s->settings,
                              .width = width,
                              .height = height,
-                             .ambient = s->ambient,
-                             .fog = s->fog};
+                             .ambient = s->ambient};
     CHECK(render_pixels(&job, s->pool, (struct pixel_list){(const uint32_t(*)[2])pixels, count}, check_pixel_trace,
                         &check, &s->error));
     CHECK_EQ_INT(check.pixels, count);

@@ -1,8 +1,8 @@
 /* BSDFs: every lobe alone, several together, and which material has which lobes. Directions are binned on the sphere in
  * cells of equal solid angle about the geometric normal, so that the tangent plane is a border of cells. */
 #include "tests/harness.h"
+#include "tests/unit/surface_makers.h"
 
-#include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/microfacet_internal.h"
 #include "material/openpbr.h"
@@ -452,7 +452,7 @@ static struct material glass_of(double ior) {
 TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index) {
     const struct material_context tir = {.total_reflection = true};
     struct material glass = glass_of(1.5);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     for (double degrees = 1; degrees < 90; degrees += 4) {
@@ -461,7 +461,7 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
             struct bsdf bsdf;
             struct bsdf_sample sample;
             struct bsdf_branch branches[BSDF_LOBES];
-            material_eval(&glass, &hit, front ? NULL : &inside, &tir, &bsdf);
+            surface_eval(&glass, &hit, front ? NULL : &inside, &tir, &bsdf);
             double eta = front ? 1 / 1.5 : 1.5, sine = eta * sin(degrees * pi / 180), up = front ? 1 : -1;
             CHECK_NEAR(bsdf.eta, eta, 1e-15);
             CHECK_EQ_INT(bsdf.transmits, sine < 1);
@@ -491,7 +491,7 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
 TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
     struct material base = glass_of(1.5), glass;
     material_derive(&glass, MATERIAL_FRESNEL, &base);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     for (double degrees = 2; degrees < 88; degrees += 5) {
@@ -499,12 +499,12 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
         struct bsdf bsdf;
         struct bsdf_sample in, out;
         struct sample2 u = {0, 0};
-        material_eval(&glass, &there, NULL, NULL, &bsdf);
+        surface_eval(&glass, &there, NULL, NULL, &bsdf);
         CHECK(bsdf_sample(&bsdf, bsdf_lobes_with(&bsdf, BSDF_TRANSMITS), BSDF_RADIANCE, there.view, u, &in));
         double reflected = bsdf.fresnel;
         back.view = in.direction;
         back.front = false;
-        material_eval(&glass, &back, &inside, NULL, &bsdf);
+        surface_eval(&glass, &back, &inside, NULL, &bsdf);
         CHECK(bsdf_sample(&bsdf, bsdf_lobes_with(&bsdf, BSDF_TRANSMITS), BSDF_RADIANCE, back.view, u, &out));
         CHECK_NEAR(vec3_length(vec3_sub(out.direction, there.view)), 0, 1e-12);
         CHECK_NEAR(bsdf.fresnel, reflected, 1e-12);
@@ -515,7 +515,7 @@ TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
 
 TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
     struct material glass = glass_of(1.5);
-    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}};
+    const struct media media = {&(struct solid){4, 0}, &(struct medium){.ior = 1.5}, 0};
     struct medium_stack inside = {.media = &media};
     medium_stack_enter(&inside, 0);
     struct hit hit = hit_at(60, false);
@@ -526,7 +526,7 @@ TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
             struct bsdf_branch branches[BSDF_LOBES];
             struct bsdf_sample sample;
             glass.phong.roughness = rough * 0.5;
-            material_eval(&glass, &hit, &inside, &context, &bsdf);
+            surface_eval(&glass, &hit, &inside, &context, &bsdf);
             CHECK(!bsdf.transmits);
             uint32_t refraction = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
             CHECK_EQ_INT(bsdf_branches(&bsdf, branches), rough ? 2 : 1);
@@ -560,7 +560,7 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         base.phong.highlight = i & 8 ? HIGHLIGHT_BLINN : HIGHLIGHT_PHONG;
         base.phong.unlit = i & 16;
         material_derive(&over, MATERIAL_FRESNEL, &base);
-        material_eval(i & 32 ? &over : &base, &hit, NULL, NULL, &bsdf);
+        surface_eval(i & 32 ? &over : &base, &hit, NULL, NULL, &bsdf);
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }
@@ -575,7 +575,7 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         numbers.thin_walled = i & 4;
         numbers.base_metalness = i & 8 ? 0.5 : 0;
         numbers.base_diffuse_roughness = numbers.fuzz_weight = i & 16 ? 0.5 : 0;
-        material_eval(&layered, &hit, NULL, NULL, &bsdf);
+        surface_eval(&layered, &hit, NULL, NULL, &bsdf);
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }

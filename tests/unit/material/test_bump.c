@@ -1,4 +1,5 @@
 /* Bump maps and normal maps: normals by closed forms, through the same functions as in pictures. */
+#include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/texture_mapping_internal.h"
 #include "tests/harness.h"
@@ -80,7 +81,7 @@ static struct bump bump_of(struct stage *s, enum material_kind kind, struct imag
         .image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT, .flip_u = flip_u};
     const struct texture *texture = texture_keep(&s->scene.arena, texture_image(&lookup, NULL), &s->error);
     CHECK(texture != NULL);
-    return (struct bump){.kind = kind, .height = height, .texture.authored = texture};
+    return (struct bump){.kind = kind, .height = height, .texture = texture};
 }
 
 static struct material *raised_white(struct stage *s, const struct bump *bump) {
@@ -111,7 +112,7 @@ static bool shading_normal(struct stage *s, struct ray ray, struct hit *hit, str
     *normal = vec3_all(0);
     bool met = world_nearest(&s->world, &ray, &scratch, hit);
     if (met) {
-        material_inputs_at(&s->world.materials[hit->material], hit, &inputs);
+        material_inputs_at(&s->world.surfaces, &s->world.surfaces.materials[hit->material], hit, &inputs);
         *normal = inputs.normal;
     }
     world_scratch_destroy(&scratch);

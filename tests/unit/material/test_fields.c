@@ -150,15 +150,18 @@ TEST(fog_with_a_colour_function_adds_the_integral_of_its_emission) {
     function_begin(&m);
     const struct expr_program *colour = function_end(&m, fn_add(&m, m.p[0], fn_number(&m, 1)), &arena);
     const struct fog fog = {.kind = FOG_FIELD, .field = field_of(&arena, density, colour, half)};
-    const struct ray ray = {.origin = {-3, 0.2, 0.1}, .direction = {2, 0, 0}, .t_max = INFINITY};
+    struct medium outside = medium_outside(&fog);
+    const struct media media = {NULL, &outside, 0};
+    const struct medium_stack open = {.media = &media};
+    const struct ray ray = {.origin = {-3, 0.2, 0.1}, .direction = {2, 0, 0}, .t_max = INFINITY, .media = &open};
     struct medium_effect effect;
-    CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &fog, &ray, INFINITY, &effect));
+    CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &ray, INFINITY, &effect));
     double left = exp(-s * 2), added = (1 - left * (1 + 2 * s)) / s;
     CHECK_NEAR(effect.transmittance.x, left, 1e-12);
     /* Steps of constant colour: their error falls with the square of their number. */
     CHECK_NEAR(effect.source.x * (1 - left), added, 1e-3);
     CHECK_NEAR(fog_field_brightest(fog.field), 2, 1e-6);
-    CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &fog, &ray, INFINITY, &effect));
+    CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &ray, INFINITY, &effect));
     arena_destroy(&arena);
 }
 

@@ -4,6 +4,7 @@
 #include "math/frame.h"
 #include "tests/harness.h"
 #include "tests/unit/function_makers.h"
+#include "tests/unit/surface_makers.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +47,7 @@ TEST(the_mean_over_a_footprint_is_that_of_its_area) {
         struct texture texture = waves(k, &arena);
         struct hit hit = plane_hit(x, 0, angle, width);
         double mean = 0.5 + 0.5 * sin(k * x) * sin(length / 2) / (length / 2);
-        CHECK_NEAR(texture_function_colour(&texture, &hit).x, mean, length < 1 ? 0.02 : 0.006);
+        CHECK_NEAR(texture_function_colour(&texture.operation, &hit).x, mean, length < 1 ? 0.02 : 0.006);
     }
     arena_destroy(&arena);
 }
@@ -57,8 +58,8 @@ TEST(a_function_that_hardly_changes_within_a_footprint_has_the_bits_of_its_middl
     for (int i = 0; i < 20; i++) {
         struct hit hit = plane_hit(0.1 * i, 1, 0.05 * i, 0.001);
         double inputs[EXPR_INPUT_COUNT] = {hit.point.x, hit.point.y, hit.point.z}, out[EXPR_OUTPUTS];
-        expr_evaluate(texture.recorded.program, inputs, out);
-        CHECK(texture_function_colour(&texture, &hit).y == out[0]);
+        expr_evaluate(texture.operation.recorded.program, inputs, out);
+        CHECK(texture_function_colour(&texture.operation, &hit).y == out[0]);
     }
     arena_destroy(&arena);
 }
@@ -66,9 +67,9 @@ TEST(a_function_that_hardly_changes_within_a_footprint_has_the_bits_of_its_middl
 TEST(a_function_of_one_point_has_no_filter) {
     struct arena arena = {0};
     struct texture texture = waves(100, &arena);
-    texture.recorded.points = 1;
+    texture.operation.recorded.points = 1;
     struct hit hit = plane_hit(0.3, 1, 1, 0.2);
-    CHECK_NEAR(texture_function_colour(&texture, &hit).x, 0.5 + 0.5 * sin(30), 1e-14);
+    CHECK_NEAR(texture_function_colour(&texture.operation, &hit).x, 0.5 + 0.5 * sin(30), 1e-14);
     arena_destroy(&arena);
 }
 
@@ -76,8 +77,10 @@ TEST(a_function_of_one_point_has_no_filter) {
 static void turned(const struct texture *texture, const struct hit *hit, double height, struct vec3 *normal) {
     struct bump bump = bump_make(MATERIAL_BUMP, texture);
     bump.height = height;
-    const struct material material = {.kind = MATERIAL_PHONG, .bump.authored = &bump};
-    bump_turn_normal(&material, hit, normal);
+    const struct material material = {.kind = MATERIAL_PHONG, .bump = &bump};
+    struct surface_inputs inputs;
+    surface_inputs_of(&material, hit, &inputs);
+    *normal = inputs.normal;
 }
 
 TEST(heights_turn_normals_by_their_derivatives) {

@@ -3,9 +3,9 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/path_estimate.h"
+#include "tests/unit/surface_makers.h"
 
 #include "material/albedo_internal.h"
-#include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/metals.h"
 #include "material/microfacet_internal.h"
@@ -33,13 +33,13 @@ static void layers_init(struct layers *layers) {
 static struct bsdf seen(const struct layers *layers, double cosine, bool front) {
     struct hit hit = {.view = {sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine}, .front = front, .primitive = 4};
     struct medium medium = {.ior = layers->numbers.specular_ior};
-    const struct media media = {&(struct solid){4, 0}, &medium};
+    const struct media media = {&(struct solid){4, 0}, &medium, 0};
     struct medium_stack inside = {.media = &media};
     struct bsdf bsdf;
     hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
     medium_stack_enter(&inside, 0);
     const struct material_context context = {.total_reflection = true};
-    material_eval(&layers->material, &hit, front ? NULL : &inside, &context, &bsdf);
+    surface_eval(&layers->material, &hit, front ? NULL : &inside, &context, &bsdf);
     return bsdf;
 }
 
@@ -211,16 +211,16 @@ TEST(the_albedo_bound_counts_the_colours_of_coat_fuzz_and_transmission_that_are_
     layers_init(&l);
     l.material.phong.kd = vec3_all(0.8);
     l.numbers.coat_colour = l.numbers.transmission_colour = l.numbers.fuzz_colour = vec3_make(0.5, 3, 0.5);
-    CHECK_NEAR(material_albedo_bound(&l.material), 1, 0); /* the highlight; no layer has a weight */
+    CHECK_NEAR(surface_albedo_bound_of(&l.material), 1, 0); /* the highlight; no layer has a weight */
     l.numbers.fuzz_weight = 0.5;
-    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+    CHECK_NEAR(surface_albedo_bound_of(&l.material), 3, 0);
     l.numbers.fuzz_weight = 0;
     l.numbers.coat_weight = 0.5;
-    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+    CHECK_NEAR(surface_albedo_bound_of(&l.material), 3, 0);
     l.material.phong.refract = 0.5;
-    CHECK_NEAR(material_albedo_bound(&l.material), 9, 0);
+    CHECK_NEAR(surface_albedo_bound_of(&l.material), 9, 0);
     l.numbers.deep = true; /* that colour is the absorption now */
-    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+    CHECK_NEAR(surface_albedo_bound_of(&l.material), 3, 0);
 }
 
 /* Tints above 1 (gold, brass) reflect no more light than arrives, if the colour leaves room for them. */
@@ -239,7 +239,7 @@ TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is)
         const double *colour = metals[i][0], *tint = metals[i][1];
         metal.material.phong.kd = vec3_make(colour[0], colour[1], colour[2]);
         metal.material.phong.ks = vec3_make(tint[0], tint[1], tint[2]);
-        CHECK(material_albedo_bound(&metal.material) <= 1);
+        CHECK(surface_albedo_bound_of(&metal.material) <= 1);
     }
     int gains = 0;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -250,7 +250,7 @@ TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is)
         bsdf_facets_metal(&facets, metal.material.phong.kd, metal.material.phong.ks);
         for (int k = 0; k <= 4000; k++)
             largest = fmax(largest, bsdf_metal_fresnel(&facets, k / 4000.0).x);
-        CHECK((largest > 1 + 1e-12) == (material_albedo_bound(&metal.material) > 1));
+        CHECK((largest > 1 + 1e-12) == (surface_albedo_bound_of(&metal.material) > 1));
         gains += largest > 1 + 1e-12;
     }
     CHECK_EQ_INT(gains, 5);
@@ -567,7 +567,7 @@ TEST(a_texture_replaces_every_number_of_a_layered_material) {
         without.numbers.specular_anisotropy = without.numbers.coat_anisotropy = 0.2;
         with = without;
         with.material.openpbr = &with.numbers;
-        with.material.inputs[inputs[i]].authored = &value;
+        with.material.inputs[inputs[i]] = &value;
         struct bsdf a = seen(&with, 0.6, true), b = seen(&without, 0.6, true);
         double change = 0;
         for (int k = 0; k < 50; k++) {

@@ -7,24 +7,12 @@
 #include "math/noise.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "tests/unit/surface_makers.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* One texture at one hit. */
-static struct vec3 texture_colour(const struct texture *texture, const struct hit *hit) {
-    struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL, NULL);
-    return texture_read_colour(texture, &reader);
-}
-
-static double texture_scalar(const struct texture *texture, const struct hit *hit) {
-    struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL, NULL);
-    return texture_read_scalar(texture, &reader);
-}
 
 struct palette {
     struct arena arena;
@@ -156,9 +144,9 @@ TEST(every_kind_of_texture_is_what_its_definition_says) {
             struct hit hit = random_hit(&random);
             struct vec3 wanted;
             const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &wanted);
-            CHECK(texture && texture->kind == (enum texture_kind)kind);
-            CHECK_NEAR(vec3_length(vec3_sub(texture_colour(texture, &hit), wanted)), 0, 1e-14);
-            CHECK_NEAR(texture_scalar(texture, &hit), (wanted.x + wanted.y + wanted.z) / 3, 1e-14);
+            CHECK(texture && texture->operation.kind == (enum texture_kind)kind);
+            CHECK_NEAR(vec3_length(vec3_sub(texture_colour_at(texture, &hit), wanted)), 0, 1e-14);
+            CHECK_NEAR(texture_number_at(texture, &hit), (wanted.x + wanted.y + wanted.z) / 3, 1e-14);
         }
     palette_destroy(&p);
 }
@@ -176,12 +164,12 @@ TEST(a_mix_of_any_two_kinds_lies_where_its_ratio_says_and_products_commute) {
             struct texture only_a = texture_mix(ta, tb, number(&p, 1)), only_b = texture_mix(ta, tb, number(&p, 0));
             struct texture middle = texture_mix(ta, tb, number(&p, 0.5));
             struct vec3 half = vec3_scale(vec3_add(va, vb), 0.5);
-            CHECK(same(texture_colour(&only_a, &hit), texture_colour(ta, &hit)));
-            CHECK(same(texture_colour(&only_b, &hit), texture_colour(tb, &hit)));
-            CHECK_NEAR(vec3_length(vec3_sub(texture_colour(&middle, &hit), half)), 0, 1e-14);
+            CHECK(same(texture_colour_at(&only_a, &hit), texture_colour_at(ta, &hit)));
+            CHECK(same(texture_colour_at(&only_b, &hit), texture_colour_at(tb, &hit)));
+            CHECK_NEAR(vec3_length(vec3_sub(texture_colour_at(&middle, &hit), half)), 0, 1e-14);
             struct texture ab = texture_multiply(ta, tb), ba = texture_multiply(tb, ta);
-            CHECK(same(texture_colour(&ab, &hit), texture_colour(&ba, &hit)));
-            CHECK_NEAR(texture_scalar(&ab, &hit), texture_scalar(ta, &hit) * texture_scalar(tb, &hit), 1e-15);
+            CHECK(same(texture_colour_at(&ab, &hit), texture_colour_at(&ba, &hit)));
+            CHECK_NEAR(texture_number_at(&ab, &hit), texture_number_at(ta, &hit) * texture_number_at(tb, &hit), 1e-15);
         }
     palette_destroy(&p);
 }
@@ -195,13 +183,20 @@ TEST(a_shared_texture_gives_the_values_of_a_single_one) {
         struct vec3 ignored;
         struct texture shared = *make(&p, (enum texture_kind)kind, &hit, &ignored);
         shared.shared = true;
+        struct texture_builder builder = {.count = 0};
+        struct texture_tables tables;
         struct texture_reader reader;
-        texture_reader_init(&reader, &hit, NULL, NULL);
+        uint32_t as_colour, as_number;
+        CHECK(texture_builder_add(&builder, &shared, false, &as_colour) &&
+              texture_builder_add(&builder, &shared, true, &as_number) &&
+              texture_builder_finish(&builder, &p.arena, &tables));
+        texture_reader_init(&reader, &hit, &tables, NULL);
         for (int i = 0; i < 2; i++) {
-            CHECK(same(texture_read_colour(&shared, &reader), texture_colour(&shared, &hit)));
-            CHECK(texture_read_scalar(&shared, &reader) == texture_scalar(&shared, &hit));
+            CHECK(same(texture_read(as_colour, &reader), texture_colour_at(&shared, &hit)));
+            CHECK(texture_read(as_number, &reader).x == texture_number_at(&shared, &hit));
         }
-        CHECK_EQ_INT(reader.count, 2); /* the colour and the scalar */
+        CHECK_EQ_INT(reader.count, 2); /* the colour and the number */
+        texture_builder_destroy(&builder);
     }
     palette_destroy(&p);
 }
@@ -215,12 +210,13 @@ TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
             struct hit hit = random_hit(&random);
             struct vec3 ignored;
             const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &ignored);
-            struct vec3 value = texture_colour(texture, &hit);
-            struct vec3 bound = texture_estimate(texture, NULL, NULL, TEXTURE_LARGEST);
-            struct vec3 average = texture_estimate(texture, NULL, NULL, TEXTURE_AVERAGE);
+            struct vec3 value = texture_colour_at(texture, &hit);
+            struct vec3 bound = texture_estimate(texture, NULL, TEXTURE_LARGEST);
+            struct vec3 average = texture_estimate(texture, NULL, TEXTURE_AVERAGE);
             CHECK(value.x <= bound.x + 1e-15 && value.y <= bound.y + 1e-15 && value.z <= bound.z + 1e-15);
             CHECK(average.x <= bound.x + 1e-15 && average.y <= bound.y + 1e-15 && average.z <= bound.z + 1e-15);
-            if (texture->kind == TEXTURE_CONSTANT || texture->kind == TEXTURE_IMAGE) /* the image is uniform */
+            if (texture->operation.kind == TEXTURE_CONSTANT ||
+                texture->operation.kind == TEXTURE_IMAGE) /* the image is uniform */
                 CHECK_NEAR(vec3_length(vec3_sub(average, value)), 0, 1e-14);
         }
     palette_destroy(&p);
@@ -234,8 +230,8 @@ TEST(the_number_of_a_colour_is_its_mean_and_that_of_a_number_is_exact) {
     for (int i = 0; i < 1000; i++) {
         double x = test_uniform(&random, -5, 5), y = test_uniform(&random, -5, 5), z = test_uniform(&random, -5, 5);
         struct texture exact = texture_number(x), mixed = texture_constant(vec3_make(x, y, z));
-        CHECK(texture_scalar(&exact, &hit) == x && same(texture_colour(&exact, &hit), vec3_all(x)));
-        CHECK(texture_scalar(&mixed, &hit) == (x + y + z) / 3);
+        CHECK(texture_number_at(&exact, &hit) == x && same(texture_colour_at(&exact, &hit), vec3_all(x)));
+        CHECK(texture_number_at(&mixed, &hit) == (x + y + z) / 3);
     }
 }
 
@@ -248,10 +244,10 @@ TEST(alpha_of_an_image_covers_is_ignored_darkens_is_undone_or_is_read_alone) {
     for (int alpha = ALPHA_COVERS; alpha <= ALPHA_ONLY; alpha++) {
         struct texture_image image = picture(&p, (enum texture_alpha)alpha);
         struct texture over = texture_image(&image, white);
-        CHECK_NEAR(texture_colour(&over, &hit).x, wanted[alpha], 1e-15);
+        CHECK_NEAR(texture_colour_at(&over, &hit).x, wanted[alpha], 1e-15);
         struct hit bare = hit;
         bare.has_uv = false; /* the surface has no coordinates: the texture below is used */
-        CHECK(same(texture_colour(&over, &bare), vec3_all(1)));
+        CHECK(same(texture_colour_at(&over, &bare), vec3_all(1)));
     }
     palette_destroy(&p);
 }
@@ -286,7 +282,7 @@ TEST(functions_of_textures_follow_their_formulas) {
                 wanted = x >= amount;
                 break;
             }
-            CHECK_NEAR(texture_colour(&map, &hit).x, wanted, 1e-9);
+            CHECK_NEAR(texture_colour_at(&map, &hit).x, wanted, 1e-9);
         }
     palette_destroy(&p);
 }
@@ -371,13 +367,13 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
     const struct texture *half = number(&p, 0.5);
     struct material base = base_material();
     struct surface_inputs plain;
-    material_inputs_at(&base, &hit, &plain);
+    surface_inputs_of(&base, &hit, &plain);
     for (int input = 0; input < INPUT_COUNT; input++) {
         struct material over;
         struct surface_inputs inputs;
         material_derive(&over, MATERIAL_IMAGE, &base);
         CHECK(material_multiply(&over, (enum material_input)input, half, &p.arena, &p.error));
-        material_inputs_at(&over, &hit, &inputs);
+        surface_inputs_of(&over, &hit, &inputs);
         for (int other = 0; other < INPUT_COUNT; other++) {
             bool is_colour;
             const double *before = field_of(&plain, (enum material_input)other, &is_colour);
@@ -386,9 +382,9 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
                 CHECK(after[i] == (other == input ? 0.5 : 1) * before[i]);
         }
         base.phong.shininess += 1; /* later changes of the base's numbers count */
-        material_inputs_at(&over, &hit, &inputs);
+        surface_inputs_of(&over, &hit, &inputs);
         CHECK(inputs.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
-        material_inputs_at(&base, &hit, &plain);
+        surface_inputs_of(&base, &hit, &plain);
     }
     palette_destroy(&p);
 }
@@ -418,7 +414,7 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
         ratio = noise_marble(at, 2, 3, 4, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
-        material_inputs_at(&marble, &hit, &inputs);
+        surface_inputs_of(&marble, &hit, &inputs);
         CHECK(same(inputs.kd, kd));
         CHECK(same(inputs.ks, base.phong.ks) && inputs.shininess == 7 && inputs.opacity == 1);
     }
@@ -438,7 +434,7 @@ TEST(a_thousand_decorators_are_evaluated_in_order) {
         kd = kd * ratio + (i % 2) * (1 - ratio);
     }
     struct surface_inputs inputs;
-    material_inputs_at(&chain[MATERIAL_DEPTH - 1], &hit, &inputs);
+    surface_inputs_of(&chain[MATERIAL_DEPTH - 1], &hit, &inputs);
     CHECK(inputs.kd.x == kd);
     CHECK_EQ_INT(chain[MATERIAL_DEPTH - 1].depth, MATERIAL_DEPTH);
     palette_destroy(&p);
@@ -454,7 +450,7 @@ TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
         double m = i / 10.0;
         material_derive(&metal, MATERIAL_PHONG, &base);
         CHECK(material_mix_metal(&metal, number(&p, m), &p.arena, &p.error));
-        material_inputs_at(&metal, &hit, &inputs);
+        surface_inputs_of(&metal, &hit, &inputs);
         CHECK_NEAR(inputs.kd.x, 0.1 * (1 - m), 1e-16);
         CHECK_NEAR(inputs.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
         CHECK(inputs.shininess == 7 && inputs.reflect == 0.8);
@@ -487,15 +483,15 @@ TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
         hit.dpdu.x = hit.dpdv.y = size;
         frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
         struct material base = base_material(), bumped;
-        struct bump bump = {.kind = MATERIAL_BUMP, .height = factor * size, .texture.authored = height};
+        struct bump bump = {.kind = MATERIAL_BUMP, .height = factor * size, .texture = height};
         struct surface_inputs flat;
         material_derive(&bumped, MATERIAL_BUMP, &base);
         CHECK(material_add_bump(&bumped, &bump, &p.arena, &p.error));
-        material_inputs_at(&bumped, &hit, &flat);
+        surface_inputs_of(&bumped, &hit, &flat);
         double slope = factor * 256 / 255; /* of height over x, 256 texels wide */
         struct vec3 wanted = vec3_normalize(vec3_make(-slope, 0, 1));
         CHECK_NEAR(vec3_length(vec3_sub(flat.normal, wanted)), 0, 1e-6);
-        CHECK(material_has_bump(&bumped) && material_has_image(&bumped));
+        CHECK(material_has_image(&bumped));
     }
     image_release(image);
     palette_destroy(&p);
@@ -510,10 +506,10 @@ TEST(normals_of_any_texture_point_where_its_colour_says) {
         struct material base = base_material(), turned;
         struct surface_inputs inputs;
         struct vec3 c = vec3_scale(vec3_add(wanted[i], vec3_all(1)), 0.5);
-        struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture.authored = colour(&p, c.x, c.y, c.z)};
+        struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture = colour(&p, c.x, c.y, c.z)};
         material_derive(&turned, MATERIAL_NORMAL, &base);
         CHECK(material_add_bump(&turned, &map, &p.arena, &p.error));
-        material_inputs_at(&turned, &hit, &inputs);
+        surface_inputs_of(&turned, &hit, &inputs);
         CHECK_NEAR(vec3_length(vec3_sub(inputs.normal, wanted[i])), 0, 1e-15);
     }
     palette_destroy(&p);
@@ -526,15 +522,15 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
     struct material base = base_material(), flat, bumped;
     struct surface_inputs inputs, scaled;
-    struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture.authored = number(&p, 0.7)};
-    struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture.authored = keep(&p, texture_wood(3, 5, 1))};
+    struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture = number(&p, 0.7)};
+    struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture = keep(&p, texture_wood(3, 5, 1))};
     material_derive(&flat, MATERIAL_BUMP, &base);
     CHECK(material_add_bump(&flat, &even, &p.arena, &p.error));
-    material_inputs_at(&flat, &hit, &inputs);
+    surface_inputs_of(&flat, &hit, &inputs);
     CHECK(same(inputs.normal, hit.normal));
     material_derive(&bumped, MATERIAL_BUMP, &base);
     CHECK(material_add_bump(&bumped, &wood, &p.arena, &p.error));
-    material_inputs_at(&bumped, &hit, &inputs);
+    surface_inputs_of(&bumped, &hit, &inputs);
     CHECK(!same(inputs.normal, hit.normal));
     CHECK_NEAR(vec3_length(inputs.normal), 1, 1e-15);
     /* The object, with its bumps, is eight times as large in the world: the normals are the same. */
@@ -543,7 +539,7 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     hit.raise = vec3_scale(hit.raise, 8);
     hit.dpdu = vec3_scale(hit.dpdu, 8);
     hit.dpdv = vec3_scale(hit.dpdv, 8);
-    material_inputs_at(&bumped, &hit, &scaled);
+    surface_inputs_of(&bumped, &hit, &scaled);
     CHECK(same(inputs.normal, scaled.normal));
     palette_destroy(&p);
 }
@@ -627,7 +623,7 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct texture *image = keep(&p, shared), *red = keep(&p, texture_map(image, FUNCTION_RED, 0));
     const struct texture *tree = keep(&p, texture_mix(keep(&p, texture_multiply(image, red)), red, image));
     struct material base = base_material(), covered, raised;
-    struct bump bump = {.kind = MATERIAL_BUMP, .height = 1, .texture.authored = tree};
+    struct bump bump = {.kind = MATERIAL_BUMP, .height = 1, .texture = tree};
     struct material_mapping mapping = {.arena = &p.arena};
     material_derive(&covered, MATERIAL_IMAGE, &base);
     CHECK(material_multiply(&covered, INPUT_KD, tree, &p.arena, &p.error));
@@ -639,18 +635,18 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct material *on = material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error);
     CHECK(on && on != &raised && on == material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error));
     CHECK(on->base == material_on_layout(&mapping, &covered, LAYOUT_SPHERE, &p.error) && on->base->base == &base);
-    const struct texture *copy = on->inputs[INPUT_KD].authored->multiply.b.authored;
-    const struct texture *ratio = copy->mix.ratio.authored, *product = copy->mix.a.authored;
-    CHECK(copy == on->bump.authored->texture.authored && ratio == product->multiply.a.authored && ratio->shared);
-    CHECK(ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
+    const struct texture *copy = on->inputs[INPUT_KD]->parts[PART_B];
+    const struct texture *ratio = copy->parts[PART_RATIO], *product = copy->parts[PART_A];
+    CHECK(copy == on->bump->texture && ratio == product->parts[PART_A] && ratio->shared);
+    CHECK(ratio->operation.image.mapping == MAPPING_BALL && image->operation.image.mapping == MAPPING_BY_SHAPE);
     /* Without coordinates the original shows what is below its image; the copy shows the image, which is uniform. */
     struct surface_inputs bare, shown, flat;
-    material_inputs_at(&covered, &ball, &bare);
-    material_inputs_at(on->base, &ball, &shown);
-    material_inputs_at(&covered, &square, &flat);
+    surface_inputs_of(&covered, &ball, &bare);
+    surface_inputs_of(on->base, &ball, &shown);
+    surface_inputs_of(&covered, &square, &flat);
     CHECK(!same(bare.kd, shown.kd) && same(shown.kd, flat.kd));
     base.phong.kd = vec3_scale(base.phong.kd, 2); /* later changes of the base reach copies */
-    material_inputs_at(on->base, &ball, &bare);
+    surface_inputs_of(on->base, &ball, &bare);
     CHECK(same(bare.kd, vec3_scale(shown.kd, 2)));
     palette_destroy(&p);
 }

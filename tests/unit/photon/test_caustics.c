@@ -74,7 +74,7 @@ static struct photon_statistics send(struct stage *s, int photons, struct photon
     struct photon_statistics statistics = {0};
     s->settings.caustics.photons = photons;
     CHECK(stage_build(s, s->root, ACCEL_AUTO));
-    const struct photon_scene scene = {.world = &s->world, .settings = &s->settings, .fog = s->fog};
+    const struct photon_scene scene = {.world = &s->world, .settings = &s->settings};
     if (!photons_make(map, &scene, s->pool, &statistics, &s->error))
         test_fail(__FILE__, __LINE__, "%s", s->error.text);
     return statistics;
@@ -665,7 +665,7 @@ TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
         layers.specular_weight = kind == 1;
         layers.coat_weight = kind == 2;
         if (kind >= 3)
-            lacquer->inputs[kind == 3 ? INPUT_COAT_WEIGHT : INPUT_METALNESS].authored = &half;
+            lacquer->inputs[kind == 3 ? INPUT_COAT_WEIGHT : INPUT_METALNESS] = &half;
         ball(&s, vec3_make(0, 1.5, 0), 1, lacquer);
         inverse_square(&s, vec3_make(0, 5, 0), 1);
         CHECK_EQ_INT(send(&s, 1000, &map).sent, kind == 0 ? 0 : 1000);

@@ -68,7 +68,6 @@ static struct render_job job_of(const struct render_request *request, const stru
                                .width = SIDE,
                                .height = SIDE,
                                .ambient = request->ambient,
-                               .fog = request->fog,
                                .film = film};
 }
 
@@ -95,6 +94,7 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
                                           .lights = request->lights,
                                           .light_count = request->light_count,
                                           .sky = &request->sky,
+                                          .outside = &request->outside,
                                           .shutter = request->settings.shutter,
                                           .accel = accel,
                                           .warn = no_warning};
@@ -269,6 +269,7 @@ static void ask_each(struct listener *listener, const struct render_request *req
                                           .lights = request->lights,
                                           .light_count = request->light_count,
                                           .sky = &request->sky,
+                                          .outside = &request->outside,
                                           .shutter = request->settings.shutter,
                                           .accel = kinds[a],
                                           .warn = no_warning};

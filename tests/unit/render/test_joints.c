@@ -293,6 +293,27 @@ TEST(flush_boxes_of_absorbing_glass_equal_one_box) {
     check_boxes("1,1,1", glass, "{.3, .7}, {-1, .9}, {-.1, .4}", 1e-6);
 }
 
+TEST(a_lamp_in_front_of_a_common_face_is_seen_as_in_one_box) {
+    static const char scene[] =
+        "local g = gr.difresnel_material(gr.material{kd={0,0,0}, ks={1,1,1}, reflect=1, refract=1, ior=1.5})\n"
+        "local function box(z, d) return gr.cube{material = g, corner = {-2, -2, z}, size = {4, 4, d}} end\n"
+        "local lamp = gr.disc_light{position = {0, 0, 1}, normal = {0, 0, 1}, radius = 1, emission = {3, 2, 1},\n"
+        "  visible = true}\n"
+        "for name, parts in pairs{a = {{-2, 4}}, b = {{0, 2}, {-2, 2}}} do\n"
+        "  local r = gr.node('r') for _, p in ipairs(parts) do r:add_child(box(p[1], p[2])) end\n"
+        "  gr.render{node = r, file = name .. '.pfm', width = 60, height = 45, eye = {1, 1, 8}, fov = 40,\n"
+        "    lights = {lamp}, side_tolerance = 3, corner_tolerance = 3, integrator = INTEGRATOR, spp = 4}\nend\n";
+    static const char *const integrators[] = {"'whitted'", "'path'"};
+    for (int i = 0; i < 2; i++) {
+        char whole[2048], *at = strstr(strcpy(whole, scene), "INTEGRATOR");
+        (void)snprintf(at, sizeof whole - (size_t)(at - whole), "%s%s", integrators[i],
+                       strstr(scene, "INTEGRATOR") + strlen("INTEGRATOR"));
+        double difference;
+        CHECK(different_pixels(whole, &difference) <= 5);
+        CHECK(difference <= 1e-4);
+    }
+}
+
 #define PAIR_OF_PICTURES                                                                                               \
     "local function picture(name, r)\n"                                                                                \
     "  r:rotate('x', 15):rotate('y', 30)\n"                                                                            \

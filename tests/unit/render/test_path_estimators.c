@@ -140,7 +140,7 @@ static double brute_force(const struct stage *s, struct world_scratch *scratch, 
     for (int i = 0; weight > 0; i++) {
         if (!world_nearest(&s->world, &ray, scratch, &hit))
             return sum + weight * s->sky.colour.x;
-        material_eval(&s->world.materials[hit.material], &hit, ray.media, &context, &bsdf);
+        material_eval(&s->world.surfaces, &hit, ray.media, &context, &bsdf);
         sum += weight * bsdf.emission.x;
         if (i == depth)
             break;

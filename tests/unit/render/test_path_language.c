@@ -472,7 +472,7 @@ TEST(paths_pass_holes_as_often_as_their_opacity_leaves) {
     struct stage s;
     stage_begin(&s, 1);
     struct material *sheet = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-    sheet->inputs[INPUT_OPACITY].authored = texture_keep(&s.scene.arena, texture_number(0.25), &s.error);
+    sheet->inputs[INPUT_OPACITY] = texture_keep(&s.scene.arena, texture_number(0.25), &s.error);
     (void)add_planar(&s, sheet, planar_plane(vec3_make(0, 0, 1), 0));
     s.sky.colour = vec3_all(1);
     CHECK_NEAR(path_mean(&s, 1024, 1), 0.75, 0.004);

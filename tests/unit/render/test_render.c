@@ -576,7 +576,7 @@ TEST(camera_replaces_an_up_parallel_to_view_with_one_warning) {
 enum { SOLIDS = 100 };
 static struct solid numbered_solids[SOLIDS];
 static struct medium numbered_media[SOLIDS];
-static const struct media numbered = {numbered_solids, numbered_media};
+static const struct media numbered = {numbered_solids, numbered_media, 0};
 static void number_solids(void) {
     for (uint32_t i = 0; i < SOLIDS; i++) {
         numbered_solids[i] = (struct solid){i % 10, i};

@@ -1,5 +1,4 @@
 /* Open transparent surfaces are thin walls for paths and photons; what counts as open is in test_opening.c. */
-#include "material/material_eval.h"
 #include "material/openpbr.h"
 #include "photon/photon_trace.h"
 #include "shape/planar.h"
@@ -7,6 +6,7 @@
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
 #include "tests/unit/path_estimate.h"
+#include "tests/unit/surface_makers.h"
 
 #include <math.h>
 
@@ -99,8 +99,8 @@ TEST(a_rough_open_pane_passes_light_as_it_would_mirror_it) {
         struct vec3 behind = vec3_make(wi.x, wi.y, -wi.z), up = vec3_make(0, 0, 1);
         struct hit hit = {.view = wo, .front = wo.z > 0, .normal = up, .normal_geometric = up};
         struct bsdf passes, mirrors;
-        material_eval(&pane, &hit, NULL, &(struct material_context){.total_reflection = true, .thin = true}, &passes);
-        material_eval(&mirror, &hit, NULL, &(struct material_context){.total_reflection = true}, &mirrors);
+        surface_eval(&pane, &hit, NULL, &(struct material_context){.total_reflection = true, .thin = true}, &passes);
+        surface_eval(&mirror, &hit, NULL, &(struct material_context){.total_reflection = true}, &mirrors);
         uint32_t traced = bsdf_lobes_with(&passes, BSDF_TRACED), other = bsdf_lobes_with(&mirrors, BSDF_TRACED);
         struct vec3 a = bsdf_eval(&passes, traced, BSDF_RADIANCE, wo, behind),
                     b = bsdf_eval(&mirrors, other, BSDF_RADIANCE, wo, wi);

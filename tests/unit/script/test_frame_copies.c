@@ -112,13 +112,13 @@ static uint64_t hash_of_world(const struct world *world) {
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         struct transform pose = world_placement(world, i, 0.5);
         const struct prototype *prototype = primitive_prototype(world, i);
-        const struct material *material = &world->materials[prototype->material];
+        const struct surface_material *material = &world->surfaces.materials[prototype->material];
         const struct mesh *mesh = geometry_mesh(&prototype->geometry);
         hash = hash_bytes(&pose, sizeof pose, hash);
         hash = hash_bytes(&world->boxes[i], sizeof world->boxes[i], hash);
         hash = hash_bytes(&mesh, sizeof mesh, hash);
         hash = hash_bytes(&material->phong.kd, sizeof material->phong.kd, hash);
-        hash += material_has_image(material) + 2 * (uint64_t)material_has_bump(material);
+        hash += material->needs_footprint + 2 * (uint64_t)material->needs_tangents;
     }
     return hash;
 }

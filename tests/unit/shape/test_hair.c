@@ -49,8 +49,7 @@ static void hairy_end(struct hairy *h) {
 
 static struct material *hairy_holes(struct hairy *h, double opacity) {
     struct material *holes = stage_phong(&h->stage, vec3_all(0), vec3_all(0), 1);
-    holes->inputs[INPUT_OPACITY].authored =
-        texture_keep(&h->stage.scene.arena, texture_number(opacity), &h->stage.error);
+    holes->inputs[INPUT_OPACITY] = texture_keep(&h->stage.scene.arena, texture_number(opacity), &h->stage.error);
     return holes;
 }
 

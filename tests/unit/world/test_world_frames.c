@@ -119,7 +119,7 @@ static bool same_tables(const struct world *a, const struct world *b) {
             return false;
     for (uint32_t i = 0; i < a->material_count; i++)
         if (a->authored.materials[i] != b->authored.materials[i] ||
-            memcmp(&a->materials[i].phong, &b->materials[i].phong, sizeof a->materials[i].phong) != 0)
+            memcmp(&a->surfaces.materials[i].phong, &b->surfaces.materials[i].phong, sizeof(struct phong)) != 0)
             return false;
     for (uint32_t i = 0; i < a->primitive_count; i++) {
         struct transform of_a = world_placement(a, i, 0.5), of_b = world_placement(b, i, 0.5);

@@ -50,7 +50,7 @@ static const struct material *glowing(struct room *r, double red, double green, 
 
 static struct vec3 emission_at(const struct room *r, const struct hit *hit) {
     struct bsdf bsdf;
-    material_eval(&r->stage.world.materials[hit->material], hit, NULL, NULL, &bsdf);
+    material_eval(&r->stage.world.surfaces, hit, NULL, NULL, &bsdf);
     return bsdf.emission;
 }
 
@@ -407,8 +407,7 @@ static struct node *spotted_ceiling(struct room *r) {
                                      .vertex_index = index,
                                      .colours = (const float(*)[3])colours};
     struct material *material = stage_phong(&r->stage, vec3_all(0), vec3_all(0), 1);
-    material->inputs[INPUT_EMISSION].authored =
-        texture_keep(&r->stage.scene.arena, texture_vertex_colour(), &r->stage.error);
+    material->inputs[INPUT_EMISSION] = texture_keep(&r->stage.scene.arena, texture_vertex_colour(), &r->stage.error);
     struct node *node = stage_sphere(&r->stage, r->stage.root, material);
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&r->stage.assets, &input, &r->stage.error)};
     return node;
@@ -458,8 +457,7 @@ TEST(holes_let_through_what_their_opacity_leaves) {
         }
         if (i % 5 < 4) {
             struct material *sheet = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-            sheet->inputs[INPUT_OPACITY].authored =
-                texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
+            sheet->inputs[INPUT_OPACITY] = texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
             struct node *node = stage_cube(s, s->root, sheet); /* seen through twice */
             stage_scale(s, node, 20, 0.1, 20);
             stage_move(s, node, -10, 1, -10);

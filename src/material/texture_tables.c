@@ -1,0 +1,415 @@
+/* Making and evaluating lists of instructions. Textures below are read, then changed, as if each texture were painted
+ * over those below; the order in which parts are evaluated changes no bit. A subtree is a range of the list of its
+ * tree, so a texture that is a part of one that was listed before needs no instructions of its own, and a list that has
+ * just been made is continued by a texture over it. */
+#include "material/texture_tables.h"
+
+#include "base/mem.h"
+#include "base/random.h"
+#include "material/texture_function_internal.h"
+#include "material/texture_mapping_internal.h"
+#include "math/noise.h"
+
+#include <string.h>
+
+/* --- making --- */
+
+/* The parts that there are, from the one that needs the most values on; returns their number. */
+static int order_parts(const struct texture *texture, int order[TEXTURE_PARTS]) {
+    int count = 0;
+    for (int k = 0; k < texture_part_count(texture->operation.kind); k++) {
+        int at = count;
+        if (!texture->parts[k])
+            continue;
+        for (count++; at > 0 && texture->parts[order[at - 1]]->depth < texture->parts[k]->depth; at--)
+            order[at] = order[at - 1];
+        order[at] = k;
+    }
+    return count;
+}
+
+uint8_t texture_depth(const struct texture *texture) {
+    int order[TEXTURE_PARTS], count = order_parts(texture, order), depth = 1;
+    for (int i = 0; i < count; i++) {
+        int needed = texture->parts[order[i]]->depth + i;
+        depth = needed > depth ? needed : depth;
+    }
+    return (uint8_t)(depth < UINT8_MAX ? depth : UINT8_MAX);
+}
+
+/* Room for `more` elements. */
+static void *grow(void *array, uint32_t count, size_t more, uint32_t *capacity, size_t size) {
+    size_t wanted = *capacity ? (size_t)*capacity * 2 : 64;
+    if (*capacity - count >= more)
+        return array;
+    wanted = wanted < count + more ? count + more : wanted;
+    void *grown = wanted < TEXTURE_NONE ? mem_resize_array(array, wanted, size) : NULL;
+    *capacity = grown ? (uint32_t)wanted : *capacity;
+    return grown;
+}
+
+#define GROW(builder, name, names, more)                                                                               \
+    grow((builder)->names, (builder)->name##count, more, &(builder)->name##capacity, sizeof *(builder)->names)
+
+static uint32_t *find_slot(const struct texture_builder *builder, const struct texture *texture) {
+    for (uint32_t at = (uint32_t)random_combine((uint64_t)(uintptr_t)texture, 0);; at++) {
+        uint32_t *slot = &builder->slots[at & (builder->slot_capacity - 1)];
+        if (*slot == 0 || builder->textures[*slot - 1].authored == texture)
+            return slot;
+    }
+}
+
+static bool grow_slots(struct texture_builder *builder) {
+    uint32_t capacity = builder->slot_capacity ? builder->slot_capacity * 2 : 64;
+    uint32_t *slots = mem_alloc_zero(capacity, sizeof *slots);
+    if (!slots)
+        return false;
+    mem_free(builder->slots);
+    builder->slots = slots;
+    builder->slot_capacity = capacity;
+    for (uint32_t i = 0; i < builder->count; i++)
+        *find_slot(builder, builder->textures[i].authored) = i + 1;
+    return true;
+}
+
+uint32_t texture_builder_index(const struct texture_builder *builder, const struct texture *texture) {
+    return *find_slot(builder, texture) - 1;
+}
+
+/* The texture gets an index, after all below it. */
+static bool number(struct texture_builder *builder, const struct texture *texture) {
+    if (builder->slot_capacity > 0 && *find_slot(builder, texture) != 0)
+        return true;
+    for (int k = 0; k < TEXTURE_PARTS; k++)
+        if (texture->parts[k] && !number(builder, texture->parts[k]))
+            return false;
+    struct built_texture *textures = GROW(builder, , textures, 1);
+    if (!textures)
+        return false;
+    builder->textures = textures;
+    if (builder->count * 2 >= builder->slot_capacity && !grow_slots(builder))
+        return false;
+    textures[builder->count++] = (struct built_texture){.authored = texture};
+    *find_slot(builder, texture) = builder->count;
+    return true;
+}
+
+static bool append(struct texture_builder *builder, const struct texture_instruction *from, uint32_t count) {
+    struct texture_instruction *list = GROW(builder, instruction_, instructions, count);
+    if (!list)
+        return false;
+    builder->instructions = list;
+    memcpy(list + builder->instruction_count, from, count * sizeof *from);
+    builder->instruction_count += count;
+    return true;
+}
+
+/* Appends what is listed already, unless the program that begins here can begin there. */
+static bool append_again(struct texture_builder *builder, struct texture_program listed) {
+    if (builder->start == builder->instruction_count && listed.first + listed.count == builder->start) {
+        builder->start = listed.first;
+        return true;
+    }
+    struct texture_instruction *list = GROW(builder, instruction_, instructions, listed.count);
+    if (!list)
+        return false;
+    builder->instructions = list;
+    return append(builder, list + listed.first, listed.count);
+}
+
+/* Whether a part is read as a number, if the texture is or is not. */
+static bool part_is_number(const struct texture *texture, int part, bool is_number) {
+    double ignored;
+    if (texture->operation.kind == TEXTURE_MIX && part == PART_RATIO)
+        return true;
+    return is_number && !(texture->operation.kind == TEXTURE_MAP &&
+                          texture_map_component(&texture->operation, vec3_all(0), &ignored));
+}
+
+/* Appends the instructions of a texture that has an index. */
+static bool list(struct texture_builder *builder, const struct texture *texture, bool is_number) {
+    struct texture_instruction instruction = {.texture = texture_builder_index(builder, texture),
+                                              .kind = (uint8_t)texture->operation.kind,
+                                              .is_number = is_number};
+    struct texture_program *listed = &builder->textures[instruction.texture].instructions[is_number];
+    int order[TEXTURE_PARTS], count = order_parts(texture, order);
+    if (listed->count > 0)
+        return append_again(builder, *listed);
+    bool begins = builder->start == builder->instruction_count;
+    uint32_t first = builder->instruction_count;
+    if (texture->shared) {
+        instruction.action = ACTION_RECALL;
+        if (!append(builder, &instruction, 1))
+            return false;
+    }
+    for (int i = 0; i < count; i++) {
+        instruction.at[order[i]] = (uint8_t)(count - i);
+        if (!list(builder, texture->parts[order[i]], part_is_number(texture, order[i], is_number)))
+            return false;
+    }
+    instruction.action = ACTION_APPLY;
+    instruction.taken = (uint8_t)count;
+    if (!append(builder, &instruction, 1))
+        return false;
+    if (texture->shared) {
+        instruction.action = ACTION_KEEP;
+        builder->instructions[first].skip = builder->instruction_count - first;
+        if (!append(builder, &instruction, 1))
+            return false;
+    }
+    first = begins ? builder->start : first;
+    *listed = (struct texture_program){first, builder->instruction_count - first};
+    return true;
+}
+
+bool texture_builder_add(struct texture_builder *builder, const struct texture *texture, bool is_number,
+                         uint32_t *out) {
+    if (!number(builder, texture))
+        return false;
+    struct built_texture *built = &builder->textures[texture_builder_index(builder, texture)];
+    if (built->programs[is_number] == 0) {
+        struct texture_program *programs = GROW(builder, program_, programs, 1);
+        if (!programs)
+            return false;
+        builder->programs = programs;
+        builder->start = builder->instruction_count;
+        if (built->instructions[is_number].count == 0 && !list(builder, texture, is_number))
+            return false;
+        programs[builder->program_count++] = built->instructions[is_number];
+        built->programs[is_number] = builder->program_count;
+    }
+    *out = built->programs[is_number] - 1;
+    return true;
+}
+
+void texture_builder_mark_colours(struct texture_builder *builder, const struct texture *texture) {
+    struct built_texture *built = &builder->textures[texture_builder_index(builder, texture)];
+    if (built->is_colour)
+        return;
+    built->is_colour = true;
+    for (int k = 0; k < texture_colour_parts(texture->operation.kind); k++)
+        if (texture->parts[k])
+            texture_builder_mark_colours(builder, texture->parts[k]);
+}
+
+static void *copy(struct arena *arena, const void *from, uint32_t count, size_t size) {
+    void *out = arena_alloc_array(arena, (size_t)count + 1, size);
+    if (out && count > 0)
+        memcpy(out, from, count * size);
+    return out;
+}
+
+bool texture_builder_finish(const struct texture_builder *builder, struct arena *arena, struct texture_tables *out) {
+    bool *are_colours = arena_alloc_array(arena, (size_t)builder->count + 1, sizeof *are_colours);
+    out->count = builder->count;
+    out->operations = arena_alloc_array(arena, (size_t)builder->count + 1, sizeof *out->operations);
+    out->instructions = copy(arena, builder->instructions, builder->instruction_count, sizeof *builder->instructions);
+    out->programs = copy(arena, builder->programs, builder->program_count, sizeof *builder->programs);
+    out->are_colours = are_colours;
+    if (!are_colours || !out->operations || !out->instructions || !out->programs)
+        return false;
+    for (uint32_t i = 0; i < builder->count; i++) {
+        out->operations[i] = builder->textures[i].authored->operation;
+        are_colours[i] = builder->textures[i].is_colour;
+    }
+    return true;
+}
+
+void texture_builder_destroy(struct texture_builder *builder) {
+    mem_free(builder->textures);
+    mem_free(builder->slots);
+    mem_free(builder->instructions);
+    mem_free(builder->programs);
+}
+
+/* --- at a hit --- */
+
+static double mean(struct vec3 colour) {
+    return (colour.x + colour.y + colour.z) / 3;
+}
+
+static double parameter_number(enum material_input input, const struct phong *numbers) {
+    struct vec3 colour = texture_parameter_colour(input, numbers);
+    bool has_colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION;
+    return has_colour ? mean(colour) : colour.x;
+}
+
+/* The colour of an image alone. False: the surface has no coordinates for it. */
+static bool image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour, double *rest) {
+    struct texcoord at;
+    if (!texture_coordinates(image, hit, &at))
+        return false;
+    struct rgba texel = texture_texel(image, &at);
+    double share = 1;
+    *rest = 0;
+    switch (image->alpha) {
+    case ALPHA_COVERS:
+        *rest = 1 - texel.a;
+        break;
+    case ALPHA_IGNORED:
+        share = texel.a > 0 ? 1 / texel.a : 1;
+        *rest = texel.a > 0 ? 0 : 1 - texel.a;
+        break;
+    case ALPHA_DARKENS:
+        break;
+    case ALPHA_STRAIGHT:
+        share = texel.a > 0 ? 1 / texel.a : 0;
+        break;
+    case ALPHA_ONLY:
+        *colour = vec3_all(texel.a);
+        return true;
+    }
+    *colour = vec3_scale(vec3_make(texel.r, texel.g, texel.b), share);
+    if (image->apart)
+        *colour = vec3_mul(*colour, image->tint);
+    return true;
+}
+
+/* Where the picture is transparent, or ends, there is what lies below. */
+static struct vec3 image_over(const struct texture_image *image, struct vec3 under, const struct hit *hit) {
+    struct vec3 colour;
+    double rest;
+    if (!image_colour(image, hit, &colour, &rest))
+        return under;
+    return vec3_add(colour, vec3_scale(under, rest));
+}
+
+static double image_number_over(const struct texture_image *image, double under, const struct hit *hit) {
+    struct vec3 colour;
+    double rest;
+    if (!image_colour(image, hit, &colour, &rest))
+        return under;
+    return (image->alpha == ALPHA_ONLY ? colour.x : mean(colour)) + under * rest;
+}
+
+static double marble_at(const struct texture_operation *operation, struct vec3 p) {
+    return noise_marble(p, operation->marble.f, operation->marble.multiplier, operation->marble.vein_frequency,
+                        operation->marble.interpolation);
+}
+
+static double wood_at(const struct texture_operation *operation, struct vec3 p) {
+    return noise_wood(p.x, p.y, p.z, operation->wood.f, operation->wood.density, operation->wood.interpolation);
+}
+
+/* end: of the stack of values, where the parts are. */
+static struct vec3 apply(const struct texture_instruction *in, const struct vec3 *end,
+                         const struct texture_reader *reader) {
+    const struct texture_operation *operation = &reader->tables->operations[in->texture];
+    const struct hit *hit = reader->hit;
+    switch ((enum texture_kind)in->kind) {
+    case TEXTURE_CONSTANT:
+        return operation->constant.colour;
+    case TEXTURE_PARAMETER:
+        return texture_parameter_colour(operation->parameter, reader->numbers);
+    case TEXTURE_VERTEX_COLOUR:
+        return hit->has_colour ? hit->colour : vec3_all(1);
+    case TEXTURE_IMAGE:
+        return image_over(&operation->image, in->taken > 0 ? end[-1] : vec3_all(0), hit);
+    case TEXTURE_MARBLE:
+        return vec3_all(marble_at(operation, hit->pattern_point));
+    case TEXTURE_WOOD:
+        return vec3_all(wood_at(operation, hit->pattern_point));
+    case TEXTURE_MIX: {
+        struct vec3 a = end[-in->at[PART_A]], b = end[-in->at[PART_B]];
+        double ratio = end[-in->at[PART_RATIO]].x;
+        return vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
+    }
+    case TEXTURE_MULTIPLY:
+        return vec3_mul(end[-in->at[PART_A]], end[-in->at[PART_B]]);
+    case TEXTURE_MAP:
+        return texture_map_colour(operation, end[-1]);
+    case TEXTURE_FUNCTION:
+        return texture_function_colour(operation, hit);
+    }
+    return vec3_all(0);
+}
+
+static double apply_to_numbers(const struct texture_instruction *in, const struct vec3 *end,
+                               const struct texture_reader *reader) {
+    const struct texture_operation *operation = &reader->tables->operations[in->texture];
+    const struct hit *hit = reader->hit;
+    switch ((enum texture_kind)in->kind) {
+    case TEXTURE_CONSTANT:
+        return operation->constant.number;
+    case TEXTURE_PARAMETER:
+        return parameter_number(operation->parameter, reader->numbers);
+    case TEXTURE_VERTEX_COLOUR:
+        return hit->has_colour ? mean(hit->colour) : 1;
+    case TEXTURE_IMAGE:
+        return image_number_over(&operation->image, in->taken > 0 ? end[-1].x : 0, hit);
+    case TEXTURE_MARBLE:
+        return marble_at(operation, hit->pattern_point);
+    case TEXTURE_WOOD:
+        return wood_at(operation, hit->pattern_point);
+    case TEXTURE_MIX: {
+        double ratio = end[-in->at[PART_RATIO]].x;
+        return end[-in->at[PART_A]].x * ratio + end[-in->at[PART_B]].x * (1 - ratio);
+    }
+    case TEXTURE_MULTIPLY:
+        return end[-in->at[PART_A]].x * end[-in->at[PART_B]].x;
+    case TEXTURE_MAP: {
+        double component;
+        return texture_map_component(operation, end[-1], &component) ? component
+                                                                     : texture_map_number(operation, end[-1].x);
+    }
+    case TEXTURE_FUNCTION: {
+        struct vec3 colour = texture_function_colour(operation, hit);
+        return operation->recorded.program->output_count == 1 ? colour.x : mean(colour);
+    }
+    }
+    return 0;
+}
+
+/* The known value of a shared texture, or NULL. */
+static const struct vec3 *recall(const struct texture_reader *reader, const struct texture_instruction *in) {
+    for (int i = 0; i < reader->count; i++)
+        if (reader->known[i].texture == in->texture && reader->known[i].is_number == in->is_number)
+            return &reader->known[i].value;
+    return NULL;
+}
+
+static void keep(struct texture_reader *reader, const struct texture_instruction *in, struct vec3 value) {
+    if (reader->count == TEXTURE_SHARED)
+        return;
+    reader->known[reader->count].texture = in->texture;
+    reader->known[reader->count].is_number = in->is_number;
+    reader->known[reader->count++].value = value;
+}
+
+struct vec3 texture_read(uint32_t program, struct texture_reader *reader) {
+    struct texture_program range = reader->tables->programs[program];
+    const struct texture_instruction *in = &reader->tables->instructions[range.first], *last = in + range.count;
+    struct vec3 values[TEXTURE_DEPTH], *end = values;
+    for (; in < last; in++) {
+        const struct vec3 *known = in->action == ACTION_RECALL ? recall(reader, in) : NULL;
+        if (in->action == ACTION_APPLY) {
+            struct vec3 value = in->is_number ? vec3_all(apply_to_numbers(in, end, reader)) : apply(in, end, reader);
+            end -= in->taken;
+            *end++ = value;
+        } else if (in->action == ACTION_KEEP) {
+            keep(reader, in, end[-1]);
+        } else if (known) {
+            *end++ = *known;
+            in += in->skip;
+        }
+    }
+    return values[0];
+}
+
+struct vec3 texture_program_estimate(const struct texture_tables *tables, uint32_t program, const struct phong *numbers,
+                                     enum texture_estimate which) {
+    struct texture_program range = tables->programs[program];
+    const struct texture_instruction *in = &tables->instructions[range.first], *last = in + range.count;
+    struct vec3 values[TEXTURE_DEPTH], *end = values;
+    for (; in < last; in++) {
+        struct vec3 parts[TEXTURE_PARTS] = {{0, 0, 0}};
+        if (in->action != ACTION_APPLY)
+            continue;
+        for (int k = 0; k < TEXTURE_PARTS; k++)
+            if (in->at[k] > 0)
+                parts[k] = end[-in->at[k]];
+        end -= in->taken;
+        *end++ = texture_operation_estimate(&tables->operations[in->texture], parts, numbers, which);
+    }
+    return values[0];
+}

@@ -1,0 +1,573 @@
+/* The pieces of a path, cut at its rays, each a function of the state of the path:
+ *     begin    the sampler (path.c) and the camera ray (sample.c)
+ *     extend   what the ray hits first
+ *     shade    what is there: emission, the choice of a light, the next ray
+ *     shadow   whether the light arrives
+ *     add      the light of a path that has ended becomes part of its pixel, in the order of samples (path.c)
+ * A thread calls them for one path after the other. They call no allocator, no function pointer and not themselves;
+ * what is below world_nearest_crossing and world_any may.
+ *
+ * A file that includes this one defines PATH(name), LAYERS and OBSERVED: whether paths record light layers and features
+ * (state->parts), and whether they report to an observer.
+ *
+ * A path ends at the sky, at the maximum depth, by Russian roulette, or at a visible area light. A *line of sight* is a
+ * camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show the background, visible
+ * area lights and fog. All other rays are scattered: they add the light that a surface receives, weighted against the
+ * samples of lights. */
+
+#include "material/bsdf_select.h"
+#include "material/medium.h"
+#include "math/range.h"
+#include "render/path_light_internal.h"
+#include "render/path_trace_internal.h"
+#include "render/path_watch_internal.h"
+#include "world/joint.h"
+#include "world/world_describe.h"
+
+#include <string.h>
+
+enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
+static const double survival = 0.95; /* at most */
+
+/* --- layers and features --- */
+
+/* Where they are recorded, or NULL. */
+static struct path_parts *parts_of(const struct integrator_state *state) {
+    return LAYERS ? state->parts : NULL;
+}
+
+/* Adds light that was scattered `depth` times, divided by the kinds of its first scattering. */
+static void add_to_groups(struct path_parts *parts, int depth, const struct vec3 shares[PATH_SCATTERINGS],
+                          struct vec3 light) {
+    if (depth == 0) {
+        parts->light[PATH_LIGHT_EMISSION] = vec3_add(parts->light[PATH_LIGHT_EMISSION], light);
+        return;
+    }
+    for (int i = 0; i < PATH_SCATTERINGS; i++) {
+        struct vec3 *group = &parts->light[PATH_LIGHT_DIFFUSE_DIRECT + 2 * i + (depth > 1)];
+        *group = vec3_add(*group, vec3_mul(shares[i], light));
+    }
+}
+
+/* The hit of the path's ray. */
+static void add_light(const struct integrator_state *state, struct path *path, struct vec3 radiance) {
+    if (radiance.x == 0 && radiance.y == 0 && radiance.z == 0)
+        return;
+    struct vec3 light = vec3_mul(path->weight, radiance);
+    path->light = vec3_add(path->light, light);
+    struct path_parts *parts = parts_of(state);
+    if (parts)
+        add_to_groups(parts, path->depth, parts->shares, light);
+}
+
+static double compressed(double x) {
+    return x > 0 ? x / (1 + x) : 0;
+}
+
+/* The groups of light that a line of sight shows. */
+static struct vec3 light_albedo(struct vec3 radiance) {
+    return vec3_make(compressed(radiance.x), compressed(radiance.y), compressed(radiance.z));
+}
+
+static float in_unit(double x) {
+    return x >= 1 ? 1 : x > 0 ? (float)x : 0;
+}
+
+/* The end of a line of sight. distance: along the last ray of the path. */
+static void set_features(const struct integrator_state *state, const struct path *path, struct vec3 albedo,
+                         struct vec3 normal, double distance) {
+    struct path_parts *parts = parts_of(state);
+    if (!parts || parts->surface_known)
+        return;
+    parts->surface_known = true;
+    const struct vec3 behind = vec3_mul(path->weight, albedo);
+    const struct vec3 a = parts->reflected > 0 ? vec3_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
+    const float features[PATH_GLOW] = {in_unit(a.x),
+                                       in_unit(a.y),
+                                       in_unit(a.z),
+                                       (float)normal.x,
+                                       (float)normal.y,
+                                       (float)normal.z,
+                                       (float)number_clamped(distance, (double)FLT_MAX)};
+    memcpy(parts->features, features, sizeof features);
+}
+
+/* Records the features of a surface that scatters light in more than single directions, or emits light. */
+static void meet_features(const struct integrator_state *state, const struct path *path, const struct hit *hit,
+                          const struct bsdf *bsdf) {
+    struct path_parts *parts = parts_of(state);
+    if (!parts || !path->sight)
+        return;
+    const struct bsdf_guide guide = bsdf_guide(bsdf, light_albedo(bsdf->emission));
+    parts->travelled += hit->t * vec3_length(path->ray.direction);
+    if (guide.scatters || vec3_max_abs(bsdf->emission) > 0) {
+        set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
+    } else if (guide.refracted > 0 && parts->reflected == 0) {
+        parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
+        parts->seen = vec3_scale(path->weight, parts->reflected);
+    }
+}
+
+/* --- on the way --- */
+
+/* A scattered ray. passed: after holes, the line began at t = -passed. */
+static struct path_segment segment_of(const struct path *path, double passed) {
+    return (struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown, passed};
+}
+
+/* After holes, the distance from where the line began, in t of the ray. */
+static double passed_of(const struct path *path) {
+    if (path->kind != RAY_HOLE)
+        return 0;
+    return vec3_length(vec3_sub(path->ray.origin, path->scatter.from)) / vec3_length(path->ray.direction);
+}
+
+/* Where a ray ends; nothing hit is a hit, too. */
+enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
+
+/* Passes the medium over a distance. True: it scatters the path, after *distance. */
+static bool pass_medium(const struct integrator_state *state, struct path *path, enum medium_ray kind,
+                        double *distance) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    struct medium_effect effect;
+    if (medium->scatters) {
+        const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
+        add_light(state, path, medium_emission(medium, *distance));
+        struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
+        path->weight = vec3_mul(path->weight, sample.weight);
+        *distance = sample.distance;
+        return sample.scatters;
+    }
+    if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
+        add_light(state, path, effect.added);
+        path->weight = vec3_mul(path->weight, effect.transmittance);
+    }
+    return false;
+}
+
+/* Adds everything between the origin of the ray and its end: area lights, media. *distance: to the hit, the light or
+ * where the medium scatters. */
+static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                             const struct hit *hit, struct path_watch *watch, double *distance) {
+    double end = hit ? hit->t : path->ray.t_max;
+    struct vec3 radiance;
+    bool seen = false;
+    if (path->sight) {
+        seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
+    } else if (tracer->lights.area_light_count > 0) {
+        const struct path_segment segment = segment_of(path, passed_of(path));
+        add_light(state, path, path_area_lights(tracer, &segment, end));
+    }
+    enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
+    if (!seen && !path_is_affected(tracer, kind, &path->ray))
+        return ENDS_AT_HIT;
+    *distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
+    if (pass_medium(state, path, kind, distance))
+        return ENDS_IN_MEDIUM;
+    if (!seen)
+        return ENDS_AT_HIT;
+    const struct path_parts *parts = parts_of(state);
+    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + *distance : 0);
+    watch_arrival(watch, path, *distance);
+    add_light(state, path, radiance);
+    watch_stage(watch, path, STAGE_EMISSION);
+    (void)watch_end(watch, PATH_SEES_LIGHT);
+    return ENDS_AT_LIGHT;
+}
+
+static void leave_scene(const struct path_tracer *tracer, struct integrator_state *state, struct path *path) {
+    const struct world *world = state->job->world;
+    if (state->job->settings.transparent && path->sight && path->depth == 0) {
+        state->seen_through += (path->weight.x + path->weight.y + path->weight.z) / 3;
+        set_features(state, path, vec3_all(0), vec3_all(0), 0);
+    } else if (path->sight) {
+        struct vec3 sky = sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread);
+        set_features(state, path, light_albedo(sky), vec3_all(0), 0);
+        add_light(state, path, sky);
+    } else {
+        const struct path_segment segment = segment_of(path, 0);
+        add_light(state, path, path_environment(tracer, &segment));
+    }
+}
+
+/* --- the next ray --- */
+
+/* False: the path ends here. Paths with weights above 1 can end, too. The chance is the square root of the weight: if
+ * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
+ * noise than their rays cost. */
+static bool survives(struct path *path, double u) {
+    double chance = sqrt(vec3_max_abs(path->weight) / path->radiance_scale);
+    chance = chance < survival ? chance : survival;
+    if (!(u < chance))
+        return false;
+    path->weight = vec3_scale(path->weight, 1 / chance);
+    return true;
+}
+
+/* --- photons --- */
+
+/* The light of the photon map at the vertex. */
+static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                        const struct path_vertex *vertex) {
+    uint32_t lobes = vertex->at.lobes & bsdf_select(vertex->at.bsdf, BSDF_FOR_PHOTONS);
+    if (lobes == 0 || path->depth + 2 > tracer->max_depth)
+        return;
+    struct vec3 found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->at.bsdf, lobes);
+    struct vec3 light = vec3_mul(path->weight, found);
+    path->light = vec3_add(path->light, light);
+    /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
+    struct vec3 diffuse[PATH_SCATTERINGS];
+    path_share_all(BSDF_DIFFUSE, diffuse);
+    struct path_parts *parts = parts_of(state);
+    if (parts)
+        add_to_groups(parts, path->depth + 2, path->depth == 0 ? diffuse : parts->shares, light);
+}
+
+static double share_of(double part, double all) {
+    return all != 0 ? part / all : 0;
+}
+
+/* The fraction of light from wi that these lobes of the vertex scatter. */
+static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+    const struct interaction *at = &vertex->at;
+    if (lobes == 0 || lobes == at->lobes)
+        return vec3_all(lobes ? 1 : 0);
+    struct vec3 part = interaction_eval(at, lobes, BSDF_RADIANCE, wi),
+                all = interaction_eval(at, at->lobes, BSDF_RADIANCE, wi);
+    return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
+}
+
+/* Photons carry light from a light source through traced lobes to a lobe that receives them. A path that continues
+ * from such a lobe through traced lobes would find the same light again. */
+static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    uint32_t traced = bsdf ? vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED) : 0;
+    uint32_t receiving = bsdf ? vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS) : 0;
+    bool delta = (sample->flags & BSDF_DELTA) != 0;
+    struct vec3 by_traced = delta ? vec3_all(1) : share_of_lobes(vertex, traced, sample->direction);
+    path->thrown = vec3_mul(vec3_add(path->received, path->thrown), by_traced);
+    path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
+}
+
+/* The ray that continues from a vertex in a medium. */
+static __attribute__((noinline)) void send_in_medium(struct ray *ray, struct vec3 from, struct vec3 direction) {
+    double passed = vec3_length(vec3_sub(from, ray->origin));
+    ray->footprint.width += ray->footprint.spread * passed;
+    ray->origin = from;
+    ray->direction = direction;
+    ray->t_min = 0;
+    ray->t_max = INFINITY;
+    ray->skip_primitive = ray->skip_part = 0;
+}
+
+/* Continues in a direction that the BSDF or the phase function samples. */
+static inline __attribute__((always_inline)) bool scatter(const struct path_tracer *tracer,
+                                                          struct integrator_state *state, struct path *path,
+                                                          const struct path_vertex *vertex, double u_roulette,
+                                                          struct path_watch *watch) {
+    const struct bsdf *bsdf = vertex->at.bsdf;
+    const struct sample2 u = sampler_point(&path->sampler, path->dimension - 1); /* the last one of the vertex */
+    struct bsdf_sample sample;
+    if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
+        return watch_end(watch, PATH_IS_ABSORBED);
+    bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    /* A shading normal may reflect into the surface. */
+    if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
+        return watch_end(watch, PATH_IS_ABSORBED);
+    if (tracer->photon_lights)
+        count_shares(path, vertex, &sample);
+    /* The first scattering decides to which layers the light belongs. */
+    struct path_parts *parts = parts_of(state);
+    if (parts && path->depth == 0) {
+        if (delta)
+            path_share_all(sample.flags, parts->shares);
+        else
+            path_shares(vertex, vertex->at.lobes, sample.direction, parts->shares);
+    }
+    path->weight = vec3_mul(path->weight, sample.weight);
+    path->depth++;
+    if (transmits)
+        path->radiance_scale *= bsdf->eta * bsdf->eta;
+    /* Roulette, or a weight of 0, ends paths that bring nothing. */
+    bool plays = path->depth > tracer->roulette_depth;
+    if (plays ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
+        return watch_end(watch, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
+    path->pdf = delta ? 0 : sample.pdf;
+    path->sight = path->sight && delta;
+    /* The last ray of a path finds only lights that rays can meet. */
+    if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
+        return watch_end(watch, PATH_REACHES_MAX_DEPTH);
+    if (bsdf)
+        path->ray = hit_ray(vertex->hit, &path->ray, sample.direction, &path->media);
+    else
+        send_in_medium(&path->ray, path->scatter.point, sample.direction);
+    path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
+    if (transmits) {
+        bsdf_cross(bsdf, &path->media);
+        state->refracted_rays++;
+    } else {
+        state->reflected_rays++;
+    }
+    return true;
+}
+
+/* Asks for the light of a light source, and continues. dimension: the first one of the vertex. */
+static inline __attribute__((always_inline)) bool
+light_and_scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                  const struct path_vertex *vertex, struct path_shadow *shadow, struct path_watch *watch) {
+    const struct sampler *sampler = &path->sampler;
+    uint32_t dimension = path->dimension - SAMPLER_VERTEX_DIMENSIONS;
+    bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
+    struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
+    const struct path_light_draw draw = {choice.x, sampler, dimension + 1};
+    struct path_choice chosen;
+    shadow->weight = path->weight;
+    shadow->depth = path->depth;
+    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+        path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
+    return scatter(tracer, state, path, vertex, choice.y, watch);
+}
+
+/* One vertex in the medium of the ray, after a distance. False: the path ends here. */
+static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
+                                                  struct path *path, double distance, struct path_shadow *shadow,
+                                                  struct path_watch *watch) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    struct vec3 direction = vec3_normalize(path->ray.direction);
+    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    if (path->depth >= tracer->max_depth)
+        return watch_end(watch, PATH_REACHES_MAX_DEPTH);
+    struct path_parts *parts = parts_of(state);
+    if (parts && path->sight)
+        set_features(state, path, medium_albedo(medium), vec3_all(0), parts->travelled + distance);
+    path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
+    const struct path_vertex vertex = {.ray = &path->ray,
+                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &medium->phase},
+                                       .receiver = &path->scatter,
+                                       .sight = path->sight};
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
+}
+
+/* --- the vertex --- */
+
+/* The surface at the hit of the path's ray. */
+static void evaluate(const struct integrator_state *state, const struct path *path, const struct hit *hit,
+                     const struct joint *joint, struct bsdf *bsdf) {
+    const struct world *world = state->job->world;
+    const struct material_context context = {.specular = state->job->settings.specular,
+                                             .total_reflection = true,
+                                             .no_black_highlight = true,
+                                             .thin = primitive_is_thin(world, hit->primitive),
+                                             .joint = joint_boundary(joint)};
+    if (OBSERVED)
+        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
+                         state->observer);
+    material_eval(&world->surfaces, hit, path->ray.media, &context, bsdf);
+}
+
+/* The surface's own light. */
+static void add_emission(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                         const struct hit *hit, struct vec3 emission) {
+    if (path->sight) {
+        add_light(state, path, emission);
+    } else if (tracer->lights.met) {
+        const struct path_segment segment = segment_of(path, 0);
+        add_light(state, path, path_emission(tracer, &segment, hit, emission));
+    }
+}
+
+/* What a ray hits, and the surfaces that coincide there. */
+struct path_hit {
+    struct hit hit;
+    struct joint joint;
+};
+
+/* One vertex on a surface. False: the path ends here. */
+static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                         const struct path_hit *at, struct path_shadow *shadow, struct path_watch *watch) {
+    const struct hit *hit = &at->hit;
+    const struct joint *joint = &at->joint;
+    uint32_t dimension = path->dimension;
+    struct bsdf bsdf;
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->hits++;
+    evaluate(state, path, hit, joint, &bsdf);
+    /* A hole. */
+    if (bsdf.opacity < 1 && !(random_unit(random_combine(path->sampler.key, dimension)) < bsdf.opacity)) {
+        path->ray = joint_ray_through_hole(joint, hit, &path->ray, &path->media);
+        path->kind = RAY_HOLE;
+        return path->holes++ < HOLE_LIMIT || watch_end(watch, PATH_IN_TOO_MANY_HOLES);
+    }
+    if (OBSERVED)
+        OBSERVE(state->observer, OBSERVED_SURFACE, .surface = &bsdf);
+    /* The light that comes from here. */
+    meet_features(state, path, hit, &bsdf);
+    add_emission(tracer, state, path, hit, bsdf.emission);
+    watch_stage(watch, path, STAGE_EMISSION);
+    if (path->depth >= tracer->max_depth)
+        return watch_end(watch, PATH_REACHES_MAX_DEPTH);
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .sight = path->sight};
+    vertex.at.bsdf = &bsdf;
+    vertex.at.wo = hit->view;
+    double side = hit->front ? hit->offset : -hit->offset;
+    path->scatter = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
+                                            bsdf.side, hit->primitive};
+    vertex.receiver = &path->scatter;
+    vertex.at.lobes = bsdf_select(&bsdf, BSDF_FOR_PATHS);
+    vertex.substitute = bsdf_select(&bsdf, BSDF_FOR_UNSEEN_LIGHTS);
+    if (tracer->photon_lights) {
+        add_photons(tracer, state, path, &vertex);
+        vertex.thrown = vec3_add(path->received, path->thrown);
+        watch_stage(watch, path, STAGE_PHOTONS);
+    }
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
+}
+
+/* --- the pieces --- */
+
+/* The camera ray. */
+static void begin(struct path *path, const struct integrator_state *state, const struct ray *ray, uint64_t key) {
+    path->ray = *ray;
+    path->weight = vec3_all(1);
+    path->light = vec3_all(0);
+    path->radiance_scale = 1;
+    path->pdf = 0;
+    path->received = path->thrown = vec3_all(0);
+    path->sight = true;
+    path->kind = RAY_CAMERA;
+    path->depth = path->holes = 0;
+    path->dimension = SAMPLER_FIRST_VERTEX;
+    medium_stack_copy(&path->media, state->eye_medium_stack);
+    path->ray.media = &path->media;
+    path->sampler = state->sampler;
+    /* The other eye of a stereo pair. */
+    if (key != path->sampler.key)
+        path->sampler.pixel_key = random_combine(path->sampler.pixel_key, UINT64_MAX);
+    path->sampler.key = key;
+}
+
+/* What the ray hits first. */
+static void extend(const struct integrator_state *state, struct path *path) {
+    if (!world_nearest_crossing(state->job->world, &path->ray, state->scratch, &path->met.primitive,
+                                &path->met.crossing))
+        path->met.primitive = WORLD_NOTHING;
+}
+
+/* What is at the hit: emission, the choice of a light, the next ray. False: the path has ended. A light may have been
+ * asked for in either case. */
+static bool shade(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                  struct path_shadow *shadow, struct path_watch *watch) {
+    const struct world *world = state->job->world;
+    bool met = path->met.primitive != WORLD_NOTHING;
+    struct path_hit at;
+    at.joint.joined = JOINED_NOT;
+    shadow->part.light = LIGHT_NONE;
+    shadow->sent = false;
+    /* The surface, or nothing where several have no effect together. */
+    if (met) {
+        world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
+        if (world_touches(world, &at.hit))
+            world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);
+        if (at.joint.joined == JOINED_AWAY) {
+            if (OBSERVED)
+                watch->cut = true;
+            return true;
+        }
+    }
+#if OBSERVED
+    watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
+#endif
+    /* The way to it, then the surface or the sky there. */
+    double distance;
+    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
+    if (to == ENDS_AT_LIGHT)
+        return false;
+    watch_arrival(watch, path, 0);
+    if (to == ENDS_IN_MEDIUM)
+        return meet_medium(tracer, state, path, distance, shadow, watch);
+    if (met)
+        return meet_surface(tracer, state, path, &at, shadow, watch);
+    leave_scene(tracer, state, path);
+    watch_stage(watch, path, STAGE_EMISSION);
+    return watch_end(watch, PATH_LEAVES_SCENE);
+}
+
+/* Whether the light that was asked for arrives. */
+static void shadow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                   struct path_shadow *shadow) {
+    struct vec3 arriving = vec3_all(0), seen = vec3_all(0);
+    if (shadow->sent) {
+        arriving = path_light_arriving(tracer, state, &path->scatter, shadow);
+        seen = vec3_mul(shadow->scattered, arriving);
+        struct vec3 light = vec3_mul(shadow->weight, seen);
+        path->light = vec3_add(path->light, light);
+        struct path_parts *parts = parts_of(state);
+        if (parts && vec3_max_abs(light) > 0)
+            add_to_groups(parts, shadow->depth + 1, shadow->depth == 0 ? shadow->shares : parts->shares, light);
+    }
+#if OBSERVED
+    watch_light(state->observer, &tracer->lights, shadow, vec3_max_abs(arriving) > 0, seen);
+#endif
+}
+
+/* If the radiance was limited, each group of light is scaled by the same factor. */
+static void finish_parts(struct integrator_state *state, struct path_parts *parts, double found, double left) {
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
+        struct vec3 light = integrator_clamp_light(state, parts->light[i], (double)FLT_MAX);
+        parts->light[i] = left < found ? vec3_scale(light, left / found) : light;
+    }
+    const struct vec3 *glow = &parts->light[PATH_LIGHT_EMISSION];
+    parts->features[PATH_GLOW] = (float)glow->x;
+    parts->features[PATH_GLOW + 1] = (float)glow->y;
+    parts->features[PATH_GLOW + 2] = (float)glow->z;
+}
+
+/* The light of the path, which is to be added to its pixel. Limits come last: what is cut off is a property of the
+ * whole sample. --clamp keeps the colour; pictures become darker where samples differ much. */
+static struct vec3 finish(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path) {
+    struct vec3 light = integrator_clamp_light(state, path->light, (double)FLT_MAX);
+    double found = vec3_max_abs(light), limit = tracer->clamp > 0 && found > tracer->clamp ? tracer->clamp : found;
+    if (limit < found)
+        light = vec3_scale(light, limit / found);
+    if (parts_of(state))
+        finish_parts(state, parts_of(state), found, vec3_max_abs(light));
+    return light;
+}
+
+struct vec3 PATH(trace)(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                        const struct packet_answer *met, bool ask, uint64_t key) {
+    struct path path;
+    struct path_shadow to_light;
+    struct path_watch *watch = NULL;
+#if OBSERVED
+    struct path_watch watched;
+    watch = &watched;
+    watch->count = 0;
+#endif
+    begin(&path, state, ray, key);
+    if (ask)
+        extend(state, &path);
+    else if (met)
+        path.met = *met;
+    else
+        path.met.primitive = WORLD_NOTHING;
+    for (;;) {
+        bool goes_on = shade(tracer, state, &path, &to_light, watch);
+        shadow(tracer, state, &path, &to_light);
+#if OBSERVED
+        watch_stage(watch, &path, STAGE_DIRECT);
+        watch_vertex(watch, state->observer, tracer->photon_lights != NULL);
+#endif
+        if (!goes_on || integrator_cancelled(state))
+            break;
+        extend(state, &path);
+    }
+#if OBSERVED
+    struct vec3 light = finish(tracer, state, &path);
+    watch_path(watch, state->observer, &path);
+    return light;
+#else
+    return finish(tracer, state, &path);
+#endif
+}

@@ -1,0 +1,5 @@
+/* One path that records light layers and features. */
+#define PATH(name) path_##name##_layers
+#define LAYERS 1
+#define OBSERVED 0
+#include "render/path_pieces_internal.h"

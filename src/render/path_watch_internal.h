@@ -1,0 +1,128 @@
+/* What an observer gets to know of a path: its rays in order, and what each adds to it. Where OBSERVED is 0 (see
+ * path_pieces_internal.h) these functions do nothing, and `watch` is NULL. */
+#ifndef GRAY_RENDER_PATH_WATCH_INTERNAL_H
+#define GRAY_RENDER_PATH_WATCH_INTERNAL_H
+
+#include "render/path_state_internal.h"
+
+/* The stages of a vertex. */
+enum stage { STAGE_BEFORE_HIT, STAGE_EMISSION, STAGE_PHOTONS, STAGE_DIRECT, STAGES };
+
+/* Of a longer path only the first rays. */
+struct path_watch {
+    struct watched_ray {
+        struct vec3 weight, light;  /* of the path at the start of the ray */
+        struct vec3 arriving;       /* the weight of the path at the hit */
+        struct vec3 lights[STAGES]; /* the radiance of the path after each stage */
+        double distance;            /* at which a visible light ends the path */
+    } rays[64];
+    int count;
+    bool cut; /* the current ray is none of them */
+    enum path_end end;
+};
+
+static inline struct watched_ray *watched_ray(struct path_watch *watch) {
+    return watch->cut ? NULL : &watch->rays[watch->count - 1];
+}
+
+static inline void watch_stage(struct path_watch *watch, const struct path *path, enum stage stage) {
+    struct watched_ray *ray = OBSERVED ? watched_ray(watch) : NULL;
+    for (int i = (int)stage; ray && i < STAGES; i++)
+        ray->lights[i] = path->light;
+}
+
+/* The ray has arrived at its hit, or at a light at this distance. */
+static inline void watch_arrival(struct path_watch *watch, const struct path *path, double distance) {
+    struct watched_ray *ray = OBSERVED ? watched_ray(watch) : NULL;
+    if (!ray)
+        return;
+    ray->arriving = path->weight;
+    ray->distance = distance;
+    watch_stage(watch, path, STAGE_BEFORE_HIT);
+}
+
+/* The path ends for this reason: false. */
+static inline bool watch_end(struct path_watch *watch, enum path_end why) {
+    if (OBSERVED)
+        watch->end = why;
+    return false;
+}
+
+#if OBSERVED
+
+static double quotient_of(double part, double all) {
+    return all != 0 ? part / all : 0;
+}
+
+static struct vec3 quotient(struct vec3 a, struct vec3 b) {
+    return vec3_make(quotient_of(a.x, b.x), quotient_of(a.y, b.y), quotient_of(a.z, b.z));
+}
+
+/* The ray of the path is its next one. hit: or NULL. */
+static void watch_ray(struct path_watch *watch, const struct observer *observer, const struct path *path,
+                      const struct hit *hit) {
+    enum { LIMIT = sizeof watch->rays / sizeof *watch->rays };
+    watch->cut = watch->count == LIMIT;
+    watch->end = PATH_GOES_ON;
+    if (watch->cut)
+        return;
+    double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
+    if (watch->count > 0)
+        OBSERVE(observer, OBSERVED_RAY_SENT,
+                .sent = {(enum ray_kind)path->kind, quotient(path->weight, watch->rays[watch->count - 1].arriving),
+                         RAY_FOLLOWED});
+    watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
+    watch_arrival(watch, path, 0);
+    OBSERVE(observer, OBSERVED_RAY_BEGIN,
+            .begin = {&path->ray, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1)});
+}
+
+/* The end of the current ray: what its hit adds to the path. */
+static void watch_vertex(struct path_watch *watch, const struct observer *observer, bool has_photons) {
+    const struct watched_ray *ray = watched_ray(watch);
+    if (!ray)
+        return;
+    struct vec3 gains[STAGES];
+    for (int i = STAGE_EMISSION; i < STAGES; i++)
+        gains[i] = quotient(vec3_sub(ray->lights[i], ray->lights[i - 1]), ray->arriving);
+    OBSERVE(observer, OBSERVED_VERTEX,
+            .vertex = {.end = watch->end,
+                       .distance = ray->distance,
+                       .emission = gains[STAGE_EMISSION],
+                       .photons = gains[STAGE_PHOTONS],
+                       .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
+                       .has_photons = has_photons});
+}
+
+/* The path has ended. */
+static void watch_path(const struct path_watch *watch, const struct observer *observer, const struct path *path) {
+    for (int i = watch->count - 1; i >= 0; i--) {
+        const struct watched_ray *ray = &watch->rays[i];
+        struct vec3 before = ray->lights[STAGE_BEFORE_HIT];
+        OBSERVE(observer, OBSERVED_RAY_END,
+                .end = {.evaluated = true,
+                        .seen = quotient(vec3_sub(path->light, before), ray->arriving),
+                        .left = quotient(ray->arriving, ray->weight),
+                        .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
+                        .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
+    }
+}
+
+/* The light that was chosen, and what arrived of it. */
+static void watch_light(const struct observer *observer, const struct world_lights *lights,
+                        const struct path_shadow *shadow, bool arrived, struct vec3 light) {
+    if (shadow->part.light == LIGHT_NONE)
+        return;
+    uint32_t number = shadow->part.light, primitive = lights->emitters[number].primitive;
+    OBSERVE(
+        observer, OBSERVED_LIGHT_BEGIN,
+        .light = {
+            number, &lights->lights[number], primitive == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : primitive, {0, 0, 0}});
+    if (shadow->sent)
+        OBSERVE(observer, OBSERVED_SHADOW_RAYS, .shadow = {1, arrived, OBSERVER_NO_BLOCKER});
+    OBSERVE(observer, OBSERVED_LIGHT_END, .light = {number, &lights->lights[number], OBSERVER_NO_BLOCKER, light});
+}
+
+#endif
+
+#endif
