@@ -46,7 +46,7 @@ static struct vec3 colour_of(const struct headlight *headlight, struct world_scr
     if (met)
         world_describe(world, &ray, met->primitive, &met->crossing, &hit);
     for (int i = 0; found && i < HOLES; i++) {
-        material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+        material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
             return shade(headlight, &ray, &bsdf);
         ray = hit_ray(&hit, &ray, ray.direction, ray.media);
