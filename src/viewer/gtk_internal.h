@@ -1,6 +1,7 @@
 /* The process of the window: GTK 4.8. It holds widgets only; what they show comes as orders of the viewer, and what the
  * user does goes there as notes (window_channel.h). gtk_window.c has the window and its menus, gtk_picture.c the
- * picture and its input, gtk_form.c the inspector, gtk_start.c the page without a scene. */
+ * picture and its input, gtk_form.c the inspector, gtk_tree.c the tree of nodes, gtk_start.c the page without a scene.
+ */
 #ifndef GRAY_VIEWER_GTK_INTERNAL_H
 #define GRAY_VIEWER_GTK_INTERNAL_H
 
@@ -33,9 +34,11 @@ struct gui {
         *play_button;
     GtkWidget *trace, *trace_box;
     GtkTextBuffer *trace_text;
-    struct tile_layer layers[2];  /* picture, overlay */
-    graphene_rect_t picture_area; /* in pixels of the screen, as the layers */
-    double mouse_x, mouse_y;      /* in those of the picture's widget, times the scale */
+    GtkSingleSelection *node_selection; /* its model is the tree */
+    GPtrArray *open_nodes;              /* the lists of children; not owned */
+    struct tile_layer layers[2];        /* picture, overlay */
+    graphene_rect_t picture_area;       /* in pixels of the screen, as the layers */
+    double mouse_x, mouse_y;            /* in those of the picture's widget, times the scale */
     struct window_status status;
     enum window_key_set key_set;
     bool flies, updates; /* updates: widgets are set by the program, not by the user */

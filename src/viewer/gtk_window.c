@@ -6,6 +6,7 @@
 #include "viewer/gtk_form_internal.h"
 #include "viewer/gtk_picture_internal.h"
 #include "viewer/gtk_start_internal.h"
+#include "viewer/gtk_tree_internal.h"
 #include "viewer/gtk_window_internal.h"
 
 #include <glib-unix.h>
@@ -393,7 +394,12 @@ static GtkWidget *make_body(struct gui *gui) {
     gtk_paned_set_start_child(GTK_PANED(middle), gui->picture);
     gtk_paned_set_end_child(GTK_PANED(middle), make_trace(gui));
     gtk_paned_set_resize_end_child(GTK_PANED(middle), FALSE);
-    gtk_paned_set_start_child(GTK_PANED(paned), middle);
+    GtkWidget *left = gtk_paned_new(GTK_ORIENTATION_HORIZONTAL);
+    gtk_paned_set_start_child(GTK_PANED(left), gui_tree_new(gui));
+    gtk_paned_set_end_child(GTK_PANED(left), middle);
+    gtk_paned_set_resize_start_child(GTK_PANED(left), FALSE);
+    gtk_paned_set_position(GTK_PANED(left), 180);
+    gtk_paned_set_start_child(GTK_PANED(paned), left);
     gtk_paned_set_end_child(GTK_PANED(paned), gui_inspector_new(gui));
     gtk_paned_set_resize_end_child(GTK_PANED(paned), FALSE);
     gtk_paned_set_position(GTK_PANED(paned), 950);
@@ -516,6 +522,9 @@ static void obey(struct gui *gui, const struct window_order *order, int descript
     case ORDER_FORM:
     case ORDER_FIELD:
         gui_form_receive(gui, order);
+        return;
+    case ORDER_NODES:
+        gui_tree_receive(gui, order);
         return;
     case ORDER_TRACE:
         show_trace(gui, order->body.text);

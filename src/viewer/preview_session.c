@@ -203,8 +203,10 @@ static struct render_job view_job(const struct preview_state *work, const struct
 static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
     struct render_job job = view_job(work, &command->view);
-    if (!pick_at(&job, work->preview->request->root, (struct pick_query){command->x, command->y, command->up}, picked,
-                 error))
+    const struct node *root = work->preview->request->root;
+    const struct pick_query query = {command->x, command->y, command->up};
+    if (!(command->by_node ? pick_node(&job, root, &command->node, picked, error)
+                           : pick_at(&job, root, query, picked, error)))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < MATERIAL_PART_PARTS; part++)
@@ -303,6 +305,10 @@ static bool execute_command(struct preview_state *work, const struct preview_com
     case COMMAND_LIGHTS:
         reply->kind = REPLY_LIGHTS;
         describe_lights(work, command->first_light, reply);
+        return true;
+    case COMMAND_NODES:
+        reply->kind = REPLY_NODES;
+        node_list_rows(work->preview->request->root, &command->node, &reply->nodes);
         return true;
     case COMMAND_END:
         break;

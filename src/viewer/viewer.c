@@ -257,6 +257,9 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer->pass.outdated = true;
         viewer->built = reply->built;
         viewer->scene = *reply;
+        viewer->nodes.count = 0;
+        if (viewer_has_widgets(viewer))
+            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PASS:
@@ -285,6 +288,9 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         return;
     case REPLY_LIGHTS:
         viewer_receive_lights(viewer, reply);
+        return;
+    case REPLY_NODES:
+        viewer->window.driver->nodes(viewer->window.driver->context, &viewer->command.node, &reply->nodes);
         return;
     case REPLY_PIXEL_TRACE:
         return;
@@ -350,7 +356,17 @@ static void command_pick(struct viewer *viewer) {
                                                .view = current_view(viewer, 1, true),
                                                .x = viewer->edit.click.x,
                                                .y = viewer->edit.click.y,
-                                               .up = viewer->edit.click.up};
+                                               .up = viewer->edit.click.up,
+                                               .by_node = viewer->edit.by_node,
+                                               .node = viewer->edit.node};
+    viewer->edit.by_node = false;
+}
+
+/* Rows that were wanted first. */
+static void command_nodes(struct viewer *viewer) {
+    struct viewer_nodes *nodes = &viewer->nodes;
+    viewer->command = (struct preview_command){.kind = COMMAND_NODES, .node = nodes->wanted[0]};
+    memmove(nodes->wanted, nodes->wanted + 1, --nodes->count * sizeof *nodes->wanted);
 }
 
 static void command_pixel_trace(struct viewer *viewer) {
@@ -404,6 +420,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         command_pick(viewer);
     } else if (viewer->trace.requested) {
         command_pixel_trace(viewer);
+    } else if (viewer->nodes.count > 0) {
+        command_nodes(viewer);
     } else if (!viewer->pass.outdated && !coarse && viewer_needs_overlay(viewer)) {
         command_overlay(viewer);
     } else if (viewer->pass.halted) {
@@ -444,7 +462,7 @@ static enum viewer_action step_running(struct viewer *viewer) {
     }
     bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.target > 0 ||
                   (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.requested ||
-                  viewer->edit.pending.count > 0 ||
+                  viewer->nodes.count > 0 || viewer->edit.pending.count > 0 ||
                   is_different(viewer->pass.view.exposure, viewer->request.settings.tone.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;

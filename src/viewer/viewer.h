@@ -53,6 +53,7 @@ struct selection {
     struct transform applied; /* the change of its pose at that time */
     uint32_t light;           /* number, from 1 */
     double x, y;              /* the clicked position: pixels of the whole picture */
+    struct node_query node;   /* where it was chosen in the tree; depth 0: by a click */
     int32_t up;               /* levels above the node that was hit; if negative, levels of operands below it */
 };
 /* The action of the mouse on the selection. */
@@ -90,6 +91,13 @@ struct viewer_pass {
     double halted_at; /* 0: the time of the stop was reported */
 };
 
+/* Rows of the tree that the window wants; later ones are dropped, and wanted again when they come into view. */
+enum { NODE_QUERIES = 64 };
+struct viewer_nodes {
+    struct node_query wanted[NODE_QUERIES];
+    uint32_t count;
+};
+
 /* The changes of the scene, and the state for making them. */
 struct viewer_edit {
     struct edits steps;
@@ -97,6 +105,8 @@ struct viewer_edit {
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */
     bool click_waits;
+    bool by_node; /* the click is on this node in the tree */
+    struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
     enum material_part part; /* of the material, for which the panel has sliders */
@@ -230,6 +240,7 @@ struct viewer {
     bool camera_moved; /* it differs from the script's */
     struct viewer_pass pass;
     struct viewer_edit edit;
+    struct viewer_nodes nodes;
     struct viewer_lights lights;
     struct viewer_trace trace;
     struct viewer_overlay overlay;

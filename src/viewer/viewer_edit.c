@@ -243,7 +243,7 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
     }
     /* The middle of the pixel: where its first ray goes. */
     viewer->edit.click = (struct selection){0};
-    viewer->edit.probes = false;
+    viewer->edit.probes = viewer->edit.by_node = false;
     if (!pixel_at(viewer, x, y, &viewer->edit.click.x, &viewer->edit.click.y))
         return;
     viewer->edit.click.up = operand ? -OPERANDS_BELOW : 0;
@@ -283,10 +283,15 @@ void viewer_select_up(struct viewer *viewer, bool down) {
     const struct picked *picked = &viewer->edit.selection.picked;
     if (viewer->edit.selection.kind != SELECTED_NODE || (down ? picked->below == 0 : picked->levels == 0))
         return;
+    if (viewer->edit.selection.node.depth > 0) { /* it may not be visible anywhere */
+        viewer->edit.node = viewer->edit.selection.node;
+        viewer->edit.by_node = viewer->edit.click_waits = !down && --viewer->edit.node.depth > 0;
+        return;
+    }
     viewer->edit.click = viewer->edit.selection;
     viewer->edit.click.up += down ? -1 : 1;
     viewer->edit.click_waits = true;
-    viewer->edit.probes = false;
+    viewer->edit.probes = viewer->edit.by_node = false;
 }
 
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
@@ -295,14 +300,16 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
             viewer->fly_camera.centre = picked->position;
         return;
     }
-    viewer->edit.selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
-                                                .picked = *picked,
-                                                .applied = transform_identity(),
-                                                .x = viewer->edit.click.x,
-                                                .y = viewer->edit.click.y,
-                                                .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
-                                                      : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
-                                                                                    : picked->up};
+    viewer->edit.selection =
+        (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
+                           .picked = *picked,
+                           .applied = transform_identity(),
+                           .x = viewer->edit.click.x,
+                           .y = viewer->edit.click.y,
+                           .node = viewer->command.by_node ? viewer->command.node : (struct node_query){0},
+                           .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
+                                 : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
+                                                               : picked->up};
     viewer->edit.joins = false;
     if (!picked->hit)
         return;

@@ -459,6 +459,16 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         viewer->window.panel.mouse_y = event->y;
         viewer_do(viewer, event->action);
         return;
+    case WINDOW_NODES:
+        if (viewer->block && viewer->nodes.count < NODE_QUERIES)
+            viewer->nodes.wanted[viewer->nodes.count++] = event->node;
+        return;
+    case WINDOW_SELECT:
+        viewer->edit.click = (struct selection){0};
+        viewer->edit.node = event->node;
+        viewer->edit.by_node = viewer->edit.click_waits = viewer->block != NULL;
+        viewer->edit.probes = false;
+        return;
     case WINDOW_FIELD:
         viewer_set_field(viewer, event);
         return;

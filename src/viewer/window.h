@@ -5,6 +5,7 @@
 #define GRAY_VIEWER_WINDOW_H
 
 #include "base/error.h"
+#include "inspect/node_list.h"
 #include "viewer/actions.h"
 
 #include <stdbool.h>
@@ -20,6 +21,8 @@ enum window_event_kind {
     WINDOW_LEAVE,   /* the window has lost the keyboard: no key is pressed */
     WINDOW_SIZE,    /* x, y: the size of the window in pixels; density: pixels per dot of a letter */
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
+    WINDOW_NODES,   /* rows of the children of `node` are wanted */
+    WINDOW_SELECT,  /* `node` is selected in the tree */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
 
@@ -50,6 +53,7 @@ struct window_event {
     uint32_t field;
     double numbers[3];
     bool joins;
+    struct node_query node;
 };
 
 /* What a window with widgets shows in them. */
@@ -114,6 +118,8 @@ struct window_driver {
     void (*status)(void *context, const struct window_status *status);
     void (*form)(void *context, const struct window_form *form);
     void (*trace)(void *context, const char *text); /* of a pixel */
+    /* Rows that were wanted; query NULL: the tree is another one, and no row is known. */
+    void (*nodes)(void *context, const struct node_query *query, const struct node_rows *rows);
 };
 
 #endif

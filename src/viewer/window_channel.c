@@ -49,6 +49,9 @@ bool window_send_order(struct channel *channel, const struct window_order *order
     case ORDER_FIELD:
         size += sizeof order->body.field;
         break;
+    case ORDER_NODES:
+        size += sizeof order->body.nodes;
+        break;
     case ORDER_OPEN:
     case ORDER_FORM:
     case ORDER_TRACE:
@@ -234,6 +237,16 @@ static void send_trace(void *context, const char *text) {
     window->trace_length = strlen(text);
 }
 
+static void send_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
+    struct window_channel *window = context;
+    struct window_order order = {.kind = ORDER_NODES, .on = !query};
+    if (query) {
+        order.body.nodes.query = *query;
+        order.body.nodes.rows = *rows;
+    }
+    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+}
+
 struct window_driver window_channel_driver(struct window_channel *window) {
     return (struct window_driver){.context = window,
                                   .open = open_window,
@@ -245,7 +258,8 @@ struct window_driver window_channel_driver(struct window_channel *window) {
                                   .close = close_window,
                                   .status = send_status,
                                   .form = send_form,
-                                  .trace = send_trace};
+                                  .trace = send_trace,
+                                  .nodes = send_nodes};
 }
 
 bool window_channel_wait(struct window_channel *window, struct error *error) {

@@ -35,6 +35,7 @@ enum window_order_kind {
     ORDER_FORM,   /* subject, count and title of the form; its fields have come before */
     ORDER_FIELD,  /* the field with this index */
     ORDER_TRACE,  /* text */
+    ORDER_NODES,  /* rows of the children of a node; on: the tree is another one */
     ORDER_FULL_SCREEN,
     ORDER_FLY, /* on */
 };
@@ -47,6 +48,10 @@ struct window_order {
     union {
         struct window_status status;
         struct window_field field;
+        struct {
+            struct node_query query;
+            struct node_rows rows;
+        } nodes;
         char text[MESSAGE_TEXT_LIMIT - 256];
     } body;
 };

@@ -28,10 +28,11 @@ struct person {
     bool open, size_sent;
     const char *other_scene; /* that scene.lua is from the deed WINDOW_LEAVE on */
     char title[1024];
-    uint8_t *over;     /* the last overlay, of the whole window */
-    uint8_t *large;    /* or NULL: the last picture that had the pixels of the window */
-    const char *field; /* of forms, that events of fields are for; NULL: the window has no widgets */
-    uint32_t number;   /* of that field */
+    uint8_t *over;          /* the last overlay, of the whole window */
+    uint8_t *large;         /* or NULL: the last picture that had the pixels of the window */
+    const char *field;      /* of forms, that events of fields are for; NULL: the window has no widgets */
+    uint32_t number;        /* of that field */
+    uint32_t seen_nodes[3]; /* rows of the tree, by depth */
 };
 
 static bool person_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
@@ -94,6 +95,11 @@ static void person_form(void *context, const struct window_form *form) {
             person->number = form->fields[i].number;
     }
 }
+static void person_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
+    struct person *person = context;
+    for (uint32_t i = 0; query && i < rows->count; i++)
+        person->seen_nodes[query->depth > 2 ? 2 : query->depth] += rows->rows[i].name[0] != '\0';
+}
 static void person_trace(void *context, const char *text) {
     (void)context, (void)text;
 }
@@ -127,6 +133,7 @@ struct setting {
     const char *other_scene;    /* for the deed WINDOW_LEAVE */
     uint8_t *large;             /* as in struct person */
     const char *field;          /* the same */
+    uint32_t *seen_nodes;       /* or NULL: takes the three numbers */
 };
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting, uint8_t *over) {
@@ -147,6 +154,7 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting, 
         driver.status = person_status;
         driver.form = person_form;
         driver.trace = person_trace;
+        driver.nodes = person_nodes;
     }
     struct arena arena = {0};
     struct options options;
@@ -161,6 +169,8 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting, 
     CHECK(options_parse(&options, 7, words, &arena, &error));
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
+    if (setting->seen_nodes)
+        memcpy(setting->seen_nodes, person.seen_nodes, sizeof person.seen_nodes);
     arena_destroy(&arena);
     CHECK(chdir(before) == 0);
     return status;
@@ -446,4 +456,22 @@ TEST(window_that_shows_paths_denoised_ends_with_the_picture_of_the_program) {
     CHECK_EQ_INT(result.status, 0);
     CHECK(test_same_files("out.png", "whole.png"));
     test_free_result(&result);
+}
+
+TEST(window_lists_nodes_and_selects_them_in_the_tree) {
+    const struct deed deeds[] = {
+        {"ready", {.kind = WINDOW_NODES}, 0},
+        {NULL, {.kind = WINDOW_NODES, .node = {.depth = 1}}, 5},
+        {"ready", {.kind = WINDOW_SELECT, .node = {.depth = 2, .path = {0, 1}}}, 5},
+        {"ready", {.kind = WINDOW_ACTION, .action = DO_DELETE}, 50},
+        {"ready", {.kind = WINDOW_SELECT, .node = {.depth = 2, .path = {0, 7}}}, 5}, /* there is none */
+        {"ready", {.kind = WINDOW_ACTION, .action = DO_SAVE_CHANGES}, 50},
+        {"ready", KEY('q'), 20}};
+    uint32_t seen[3];
+    const struct setting setting = {.field = "exposure", .seen_nodes = seen};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    CHECK(seen[0] == 1 && seen[1] == 2 && seen[2] == 0);
+    char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
+    CHECK(saved && strstr(saved, "gr.change_delete('many', "));
+    free(saved);
 }
