@@ -253,6 +253,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
         case VIEWER_CHANGE_SETTING:
             change_setting(supervisor, &viewer->setting);
             return;
+        case VIEWER_RUN_AGAIN:
+            supervisor_restart(supervisor);
+            return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
             viewer->note[0] = '\0';

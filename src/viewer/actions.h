@@ -76,7 +76,7 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Draw the cells of the acceleration structure")                                                                  \
     X(DO_HIDE, "hide", "_Hide Symbols", MENU_VIEW, NEEDS_NOTHING, "h", "h", "Hide what is drawn over the picture")     \
     X(DO_FULL_SCREEN, "full-screen", "F_ull Screen", MENU_VIEW, NEEDS_NOTHING, "F11", "F11", "The whole screen")       \
-    X(DO_RENDER, "render", "_Render Again", MENU_PICTURE, NEEDS_PICTURE, "F12 F5", "F6 F5",                            \
+    X(DO_RENDER, "render", "_Render Again", MENU_PICTURE, NEEDS_NOTHING, "F12 F5", "F6 F5",                            \
       "Render again, from coarse to fine")                                                                             \
     X(DO_STOP, "stop", "_Stop", MENU_PICTURE, NEEDS_PICTURE, "<Control>period", "<Control>period",                     \
       "Stop rendering or building; again, or an edit: continue")                                                       \

@@ -216,6 +216,14 @@ bool viewer_is_idle(const struct viewer *viewer) {
            !viewer_wants_large(viewer) && !viewer_large_is_outdated(viewer);
 }
 
+bool viewer_rests(const struct viewer *viewer) {
+    bool flies = false;
+    for (int key = 0; key < FLY_KEYS; key++)
+        flies = flies || viewer->fly_camera.down[key];
+    bool done = viewer->window.waits || (viewer->block && (viewer_is_idle(viewer) || viewer->pass.halted));
+    return viewer->window.open && done && !flies && !viewer->window.dirty && !viewer_plays(viewer);
+}
+
 bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }

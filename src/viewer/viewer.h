@@ -32,6 +32,7 @@ enum viewer_action {
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
+    VIEWER_RUN_AGAIN,      /* the scripts must run again, which have ended */
     VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
     VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
     VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
@@ -276,6 +277,8 @@ bool viewer_has_tiles(const struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* Nothing happens before the user does something. */
+bool viewer_rests(const struct viewer *viewer);
 /* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;
  * or 0. */
 uint32_t viewer_next_frame(const struct viewer *viewer);

@@ -196,6 +196,8 @@ static void do_animation(struct viewer *viewer, enum window_action action) {
 static void do_picture(struct viewer *viewer, enum window_action action) {
     switch ((int)action) {
     case DO_RENDER:
+        if (!viewer->block && viewer->window.waits)
+            viewer->action = VIEWER_RUN_AGAIN;
         viewer_render(viewer);
         return;
     case DO_STOP:

@@ -114,6 +114,8 @@ struct window_driver {
     void (*grab)(void *context, bool on); /* the mouse is hidden and kept inside the window */
     void (*full_screen)(void *context);   /* on, or off again */
     void (*close)(void *context);
+    /* Becomes readable with an event; NULL: the window must be polled often. */
+    int (*descriptor)(void *context);
     /* A window with widgets of its own; NULL: all is drawn over the picture. */
     void (*status)(void *context, const struct window_status *status);
     void (*form)(void *context, const struct window_form *form);

@@ -89,6 +89,7 @@ static bool open_window(void *context, uint32_t width, uint32_t height, const ch
     struct window_channel *window = context;
     (void)width, (void)height;
     window->empty = title[0] == '\0';
+    window->drawn.kind = ORDER_OPEN;
     send_kind(window, ORDER_OPEN, true, title);
     return !window->closed || error_set(error, ERROR_MACHINE, "-gui: the process of the window has ended");
 }
@@ -113,10 +114,11 @@ static bool fit_layer(struct window_channel *window, struct window_layer *layer,
     return true;
 }
 
-/* Copies the tiles that differ. */
-static void update_layer(struct window_layer *layer, const uint8_t *from) {
+/* Copies the tiles that differ. True: there are some. */
+static bool update_layer(struct window_layer *layer, const uint8_t *from) {
     uint8_t *to = window_layer_pixels(layer);
     size_t row = (size_t)layer->width * layer->bytes;
+    bool any = false;
     for (uint32_t tile = 0; tile < window_layer_tiles(layer); tile++) {
         uint32_t x = tile % across(layer->width) * WINDOW_TILE, y = tile / across(layer->width) * WINDOW_TILE;
         uint32_t width = layer->width - x < WINDOW_TILE ? layer->width - x : WINDOW_TILE;
@@ -130,7 +132,9 @@ static void update_layer(struct window_layer *layer, const uint8_t *from) {
         }
         if (changed)
             atomic_fetch_add_explicit(&window_layer_numbers(layer)[tile], 1, memory_order_release);
+        any = any || changed;
     }
+    return any;
 }
 
 static void show_frame(void *context, const struct window_content *frame) {
@@ -143,11 +147,19 @@ static void show_frame(void *context, const struct window_content *frame) {
                                  .shown_height = frame->shown_height};
     window->picture.bytes = 3;
     window->overlay.bytes = 4;
+    bool changed = memcmp(&order, &window->drawn, sizeof order - sizeof order.body) != 0;
+    memcpy(&window->drawn, &order, sizeof window->drawn - sizeof window->drawn.body);
     if (fit_layer(window, &window->picture, size, ORDER_PICTURE))
-        update_layer(&window->picture, frame->picture);
+        changed = update_layer(&window->picture, frame->picture) || changed;
     if (frame->overlay && frame->overlay_changed && fit_layer(window, &window->overlay, over, ORDER_OVERLAY))
-        update_layer(&window->overlay, frame->overlay);
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+        changed = update_layer(&window->overlay, frame->overlay) || changed;
+    if (changed)
+        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+}
+
+static int descriptor_of(void *context) {
+    const struct window_channel *window = context;
+    return window->channel.descriptor;
 }
 
 /* The next note, if one has come. */
@@ -256,6 +268,7 @@ struct window_driver window_channel_driver(struct window_channel *window) {
                                   .grab = set_grab,
                                   .full_screen = turn_full_screen,
                                   .close = close_window,
+                                  .descriptor = descriptor_of,
                                   .status = send_status,
                                   .form = send_form,
                                   .trace = send_trace,

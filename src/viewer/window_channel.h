@@ -70,7 +70,8 @@ bool window_send_note(struct channel *channel, enum window_note_kind kind, const
 struct window_channel {
     struct channel channel;
     struct window_layer picture, overlay;
-    struct window_status status; /* as sent last, as the next two */
+    struct window_order drawn; /* as sent last, without its body; so are the next three */
+    struct window_status status;
     struct window_form form;
     size_t trace_length;
     bool ready;       /* its process has a window */

@@ -102,3 +102,15 @@ TEST(gtk_window_that_is_closed_early_leaves_no_picture) {
     drive("scene.lua", "titled 'scene.lua - '; xdotool key ctrl+q", 130);
     gives("test ! -e out.png", 0);
 }
+
+/* The newest child is the render process. Each time the window says what has happened, and runs the script again. */
+TEST(gtk_window_survives_a_killed_render_process) {
+    need_display();
+    drive("scene.lua",
+          "for i in 1 2 3 4 5; do titled 'out.png - ready'; rm -f out.png; kill -9 $(pgrep -n -P $pid)\n"
+          "titled 'waiting for a change'; xdotool key F5; until_file out.png; done; xdotool key ctrl+q",
+          0);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "scene.lua: the render process was killed"));
+    free(said);
+}
