@@ -186,7 +186,7 @@ static void show_written(struct supervisor *supervisor, bool ok, const char *nam
     viewer_show_notice(&supervisor->viewer, line, !ok);
 }
 
-static void save_from_window(struct supervisor *supervisor,
+static bool save_from_window(struct supervisor *supervisor,
                              bool (*take)(const struct viewer *viewer, const struct file_target *picture, char *name,
                                           struct error *error)) {
     struct error error;
@@ -196,6 +196,7 @@ static void save_from_window(struct supervisor *supervisor,
     output_say(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, ok ? "gray: notice: %s is written" : "%s",
                ok ? name : error.text);
     show_written(supervisor, ok, name, &error);
+    return ok;
 }
 
 /* The script's picture, under its name. */
@@ -242,13 +243,14 @@ void supervisor_step_window(struct supervisor *supervisor) {
             write_from_window(supervisor);
             break;
         case VIEWER_SAVE_IMAGE:
-            save_from_window(supervisor, viewer_save_image);
+            (void)save_from_window(supervisor, viewer_save_image);
             break;
         case VIEWER_SAVE_CAMERA:
-            save_from_window(supervisor, viewer_save_camera);
+            (void)save_from_window(supervisor, viewer_save_camera);
             break;
         case VIEWER_SAVE_EDITS:
-            save_from_window(supervisor, viewer_save_edits);
+            if (save_from_window(supervisor, viewer_save_edits))
+                viewer->edit.saved_at = viewer->edit.steps.at;
             break;
         case VIEWER_CHANGE_SETTING:
             change_setting(supervisor, &viewer->setting);

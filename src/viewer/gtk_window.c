@@ -31,21 +31,56 @@ void gui_send_event(struct gui *gui, const struct window_event *event) {
         end_process(gui);
 }
 
+/* Ends the scene: opens the next one, or, if that is NULL, closes the window. */
+static void leave_scene(struct gui *gui) {
+    char *path = gui->next_scene ? g_file_get_path(gui->next_scene) : NULL;
+    if (path)
+        (void)window_send_note(&gui->channel, NOTE_OPEN_SCENE, NULL, path);
+    else
+        gui_send_event(gui, &(struct window_event){.kind = WINDOW_CLOSE});
+    g_clear_object(&gui->next_scene);
+    g_free(path);
+}
+
+static void answer_unsaved(GtkDialog *dialog, int answer, gpointer data) {
+    struct gui *gui = data;
+    gtk_window_destroy(GTK_WINDOW(dialog));
+    if (answer == GTK_RESPONSE_ACCEPT)
+        gui_send_action(gui, DO_SAVE_CHANGES);
+    if (answer == GTK_RESPONSE_ACCEPT || answer == GTK_RESPONSE_REJECT)
+        leave_scene(gui);
+}
+
+/* Not without a question if edits would be lost. */
+static void ask_to_leave(struct gui *gui, GFile *next) {
+    g_set_object(&gui->next_scene, next);
+    if (!gui->status.unsaved) {
+        leave_scene(gui);
+        return;
+    }
+    GtkWidget *dialog = gtk_message_dialog_new(GTK_WINDOW(gui->window), GTK_DIALOG_MODAL, GTK_MESSAGE_QUESTION,
+                                               GTK_BUTTONS_NONE, "There are edits that are not saved.");
+    gtk_dialog_add_buttons(GTK_DIALOG(dialog), "_Discard", GTK_RESPONSE_REJECT, "_Cancel", GTK_RESPONSE_CANCEL, "_Save",
+                           GTK_RESPONSE_ACCEPT, NULL);
+    gtk_dialog_set_default_response(GTK_DIALOG(dialog), GTK_RESPONSE_ACCEPT);
+    g_signal_connect(dialog, "response", G_CALLBACK(answer_unsaved), gui);
+    gtk_window_present(GTK_WINDOW(dialog));
+}
+
 void gui_send_action(struct gui *gui, enum window_action action) {
     struct window_event event = {.kind = WINDOW_ACTION, .action = action, .x = gui->mouse_x, .y = gui->mouse_y};
-    if (action == DO_QUIT) /* also without a scene */
-        event.kind = WINDOW_CLOSE;
-    gui_send_event(gui, &event);
+    if (action == DO_QUIT)
+        ask_to_leave(gui, NULL);
+    else
+        gui_send_event(gui, &event);
 }
 
 void gui_open_scene(struct gui *gui, GFile *file) {
-    char *path = g_file_get_path(file), *uri = g_file_get_uri(file);
+    char *uri = g_file_get_uri(file);
     GtkRecentData recent = {.mime_type = "text/x-lua", .app_name = "gray", .app_exec = "gray -gui %f"};
     gtk_recent_manager_add_full(gtk_recent_manager_get_default(), uri, &recent);
-    if (path)
-        (void)window_send_note(&gui->channel, NOTE_OPEN_SCENE, NULL, path);
-    g_free(path);
     g_free(uri);
+    ask_to_leave(gui, file);
 }
 
 static gboolean handle_drop(GtkDropTarget *target, const GValue *value, double x, double y, gpointer data) {
@@ -222,9 +257,10 @@ static void make_key_list(struct gui *gui) {
         begin_key_group(xml, titles[menu]);
         for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
             const struct window_action_row *row = &window_action_table[i];
-            char *title = g_strjoinv("", g_strsplit(row->title, "_", -1));
+            char **words = g_strsplit(row->title, "_", -1), *title = g_strjoinv("", words);
             if (row->menu == (enum window_menu)menu && row->keys[gui->key_set][0])
                 add_key(xml, row->keys[gui->key_set], title);
+            g_strfreev(words);
             g_free(title);
         }
         g_string_append(xml, "</object></child>");
@@ -408,9 +444,8 @@ static GtkWidget *make_body(struct gui *gui) {
 }
 
 static gboolean ask_close(GtkWindow *window, gpointer data) {
-    struct gui *gui = data;
     (void)window;
-    gui_send_event(gui, &(struct window_event){.kind = WINDOW_CLOSE});
+    ask_to_leave(data, NULL);
     return TRUE; /* the viewer ends this process */
 }
 

@@ -37,6 +37,7 @@ static void keep_work(struct viewer *viewer, const struct viewer *before) {
     if (is_different(before->request.settings.tone.exposure, before->script_exposure))
         viewer->request.settings.tone.exposure = before->request.settings.tone.exposure;
     viewer->edit.steps = before->edit.steps;
+    viewer->edit.saved_at = before->edit.saved_at;
     viewer->edit.pending = before->edit.pending;
     viewer->edit.tool = before->edit.tool;
     viewer_resend_edits(viewer);

@@ -102,6 +102,7 @@ struct viewer_nodes {
 /* The changes of the scene, and the state for making them. */
 struct viewer_edit {
     struct edits steps;
+    uint32_t saved_at;          /* steps.at when the edits were saved last */
     struct change_list pending; /* not sent yet: the current changes of these targets */
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */

@@ -477,6 +477,7 @@ static void show_widgets(struct viewer *viewer, const struct figures *figures) {
                                    .busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer)),
                                    .playing = viewer->player.playing,
                                    .loops = viewer->player.loops,
+                                   .unsaved = viewer->edit.steps.at != viewer->edit.saved_at,
                                    .frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0,
                                    .frame_count = viewer->player.count,
                                    .exposure = viewer->request.settings.tone.exposure};

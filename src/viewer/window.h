@@ -59,10 +59,10 @@ struct window_event {
 /* What a window with widgets shows in them. */
 struct window_status {
     char file[256], state[64], figures[288], frame[64];
-    char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
-    double share;                   /* of the work, 0 to 1 */
-    uint32_t action_on;             /* by enum action_need, as bits: what there is */
-    bool warns, halted, busy, playing, loops;
+    char message[512], notice[512];                    /* an error that stays; a line that goes away by itself */
+    double share;                                      /* of the work, 0 to 1 */
+    uint32_t action_on;                                /* by enum action_need, as bits: what there is */
+    bool warns, halted, busy, playing, loops, unsaved; /* unsaved: edits */
     uint32_t frame_index, frame_count;
     double exposure;
 };

@@ -114,3 +114,19 @@ TEST(gtk_window_survives_a_killed_render_process) {
     CHECK(said && strstr(said, "scene.lua: the render process was killed"));
     free(said);
 }
+
+/* Escape keeps the window; Discard leaves no file. */
+TEST(gtk_window_asks_before_edits_are_lost) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 0.5 key x sleep 0.5\n"
+          "titled 'out.png - ready'; xdotool key ctrl+q sleep 1 key Escape sleep 0.5; kill -0 $pid || exit 97\n"
+          "xdotool key ctrl+q sleep 1 key alt+d",
+          0);
+    gives("test ! -e out-changes1.lua", 0);
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 0.5 key x sleep 0.5\n"
+          "titled 'out.png - ready'; xdotool key ctrl+q sleep 1 key alt+s",
+          0);
+    gives("grep -q \"gr.change_delete('ball'\" out-changes1.lua", 0);
+}
