@@ -109,7 +109,8 @@ static int render(struct options *options, const struct program_parts *parts) {
         return options->script_count == 0 ? ERROR_USAGE : ERROR_MACHINE;
     if (options->script_count == 0)
         return 0;
-    options->watch = options->watch || (options->window && parts->window->status);
+    bool stays = options->window && parts->window->status && !options_output_is_stream(options);
+    options->watch = options->watch || stays;
     struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
                                    .window = options->window ? parts->window : NULL};
     if (wanted.transport && wanted.transport->rank > 0)
