@@ -9,6 +9,7 @@
 ---@class gr.texture
 ---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number
 ---@class gr.fog
+---@class gr.medium
 ---@class gr.sky
 ---@class gr.vector: number[]
 ---@field x number
@@ -1764,6 +1765,22 @@ function gr.sky_function(f) end
 ---@overload fun(fields: gr.clear_sky.fields): gr.sky
 function gr.clear_sky(sun, turbidity) end
 
+---@class gr.medium.fields
+---@field absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
+---@field scattering? gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
+---@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
+---@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
+---@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
+---@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
+---@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
+
+---A medium that absorbs, scatters and emits light, the same everywhere.
+---@param scattering gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
+---@param absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
+---@return gr.medium
+---@overload fun(fields: gr.medium.fields): gr.medium
+function gr.medium(scattering, absorption) end
+
 ---@class gr.uniform_fog.fields
 ---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
@@ -1904,6 +1921,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
 ---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field medium? gr.medium medium (a medium; default none): A medium around all solids, instead of a fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1989,6 +2007,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
 ---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field medium? gr.medium medium (a medium; default none): A medium around all solids, instead of a fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -2186,6 +2205,7 @@ function node:translate(x, y, z) end
 ---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
 ---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field medium? gr.medium medium (a medium; default none): A medium around all solids, instead of a fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.

@@ -68,7 +68,7 @@ const struct scene_light *stage_lights(struct stage *s) {
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);
-    const struct medium outside = medium_outside(s->fog);
+    const struct medium outside = s->medium ? *s->medium : medium_outside(s->fog);
     const struct world_input input = {.scene = &s->scene,
                                       .root = root,
                                       .lights = stage_lights(s),

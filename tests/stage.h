@@ -21,6 +21,7 @@ struct stage {
     struct sky sky;
     struct vec3 ambient;
     const struct fog *fog;
+    const struct medium *medium; /* around all solids, in the place of a fog */
     struct settings settings;
     struct camera camera;
     struct render_statistics statistics;

@@ -59,6 +59,7 @@ struct script_context;
       "gr.triple|string|gr.sky|gr.texture|function|'gradient'",                                                        \
       LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY)                                                        \
     X(KIND_FOG, "fog", "a fog", "gr.fog", 1 << HANDLE_FOG)                                                             \
+    X(KIND_MEDIUM, "medium", "a medium", "gr.medium", 1 << HANDLE_MEDIUM)                                              \
     X(KIND_CAUSTICS, "caustics", "a number of photons or {photons = ..., radius = ...}",                               \
       "integer|{photons?: integer, radius?: number}", LIKE_TABLE | LIKE_NUMBER)                                        \
     X(KIND_NODES, "nodes", "a table of nodes", "gr.node[]", LIKE_TABLE)                                                \
@@ -105,6 +106,7 @@ struct script_value {
     const double (*pairs)[2];
     const double (*stops)[4];
     const struct fog *fog;
+    const struct medium *medium;
     const struct sky *sky;
     const struct tone_table *curve;
     const uint32_t *starts, *indices;
@@ -158,6 +160,7 @@ enum function_owner { OWNER_GR, OWNER_NODE };
     X(RESULT_BOUNDS, "bounds")                                                                                         \
     X(RESULT_FACES, "faces")                                                                                           \
     X(RESULT_FOG, "fog")                                                                                               \
+    X(RESULT_MEDIUM, "medium")                                                                                         \
     X(RESULT_SKY, "sky")                                                                                               \
     X(RESULT_GLYPHS, "glyphs")                                                                                         \
     X(RESULT_FRAMES, "frames")

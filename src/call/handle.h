@@ -14,6 +14,7 @@
     X(HANDLE_LIGHT, "light", "a light")                                                                                \
     X(HANDLE_TEXTURE, "texture", "a texture")                                                                          \
     X(HANDLE_FOG, "fog", "a fog")                                                                                      \
+    X(HANDLE_MEDIUM, "medium", "a medium")                                                                             \
     X(HANDLE_SKY, "sky", "a sky")                                                                                      \
     X(HANDLE_GHOST, "ghost", "something this version does not have")
 enum handle_type { HANDLE_LIST(LIST_MEMBER) };

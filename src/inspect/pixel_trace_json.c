@@ -107,11 +107,13 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
                         ",\"origin\":%a,\"direction\":%a,\"time\":%j,\"share\":%j,\"media\":%u,\"media_ior\":%j",
                         ray->origin, ray->direction, ray->time, ray->share, ray->media_count, ray->media_ior);
         /* What it meets. */
-        text_writer_put(writer, ",\"distance\":%j,\"meets\":\"%s\"", ray->distance,
-                        ray->met          ? "surface"
+        bool in_medium = ray->is_vertex && ray->vertex.in_medium;
+        text_writer_put(writer, ",\"distance\":%j,\"meets\":\"%s\"", in_medium ? ray->vertex.distance : ray->distance,
+                        in_medium         ? "medium"
+                        : ray->met        ? "surface"
                         : ray->area_light ? "light"
                                           : "background");
-        if (ray->met)
+        if (ray->met && !in_medium)
             json_hit(report, writer, ray);
         else if (ray->is_vertex)
             text_writer_put(writer, ",\"emission\":%a", ray->vertex.emission);

@@ -189,6 +189,22 @@ static void print_end(const struct text_state *t, const struct pixel_trace_ray *
         text_writer_put(t->writer, "%ithe path ends here: %s\n", deep(t), reason);
 }
 
+/* The rays that follow. */
+static void print_onward(struct text_state *t, const struct pixel_trace_ray *ray) {
+    t->depth++;
+    for (const struct pixel_trace_ray *child = ray->first; child; child = child->next)
+        print_ray(t, child);
+    t->depth--;
+    print_end(t, ray);
+}
+
+static void print_scattering(struct text_state *t, const struct pixel_trace_ray *ray) {
+    text_writer_put(t->writer, "%ithe medium scatters it at distance %g\n", deep(t), ray->vertex.distance);
+    for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
+        print_light(t, light);
+    print_onward(t, ray);
+}
+
 /* The terms of the surface's colour, in the order in which they are added. */
 static void print_surface(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct surface_inputs nothing = {.opacity = 1, .normal = ray->hit.normal};
@@ -202,11 +218,7 @@ static void print_surface(struct text_state *t, const struct pixel_trace_ray *ra
         print_shading(t, ray);
         print_terms(t, ray);
     }
-    t->depth++;
-    for (const struct pixel_trace_ray *child = ray->first; child; child = child->next)
-        print_ray(t, child);
-    t->depth--;
-    print_end(t, ray);
+    print_onward(t, ray);
     if (ray->opacity < 1)
         text_writer_put(t->writer,
                         ray->is_vertex ? "%iopacity %g: the probability of the surface, else the path passes the hole\n"
@@ -218,6 +230,8 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (ray->cut == RAY_TOO_WEAK)
         text_writer_put(t->writer, "%ithe hit at distance %g cannot change the pixel (--cutoff)\n", deep(t),
                         ray->distance);
+    else if (ray->is_vertex && ray->vertex.in_medium)
+        print_scattering(t, ray);
     else if (ray->is_vertex && ray->vertex.end == PATH_SEES_LIGHT)
         text_writer_put(t->writer, "%ihits a visible light at distance %g\n", deep(t), ray->vertex.distance);
     else if (ray->area_light)
@@ -229,7 +243,7 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
         text_writer_put(t->writer, "%ihits nothing: background, %s\n", deep(t),
                         sky_kind_name(t->report->picture->job->world->sky.kind));
     bool leaves = ray->cut != RAY_TOO_WEAK && !ray->met && !ray->area_light;
-    if (leaves && ray->is_vertex && ray->vertex.end != PATH_SEES_LIGHT && ray->parent)
+    if (leaves && !ray->vertex.in_medium && ray->is_vertex && ray->vertex.end != PATH_SEES_LIGHT && ray->parent)
         text_writer_put(t->writer, "%iits light: %v\n", deep(t), ray->vertex.emission);
 }
 

@@ -35,9 +35,13 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
     case LIGHT_SKY:
         light->table = sky_table_build(light->sky, arena, pool);
         return light->table || error_no_memory(error, "the light of the sky");
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DISC:
+        light_plane_prepare(light);
+        break;
+    case LIGHT_SPHERE:
     case LIGHT_MESH:
         POINT_LIGHTS(LIST_LABEL)
-        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return true;
@@ -118,27 +122,31 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     out->shares_cells = out->bounded = true;
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
-        struct vec3 normal = vec3_cross(light->edge1, light->edge2);
+        const struct light_plane *plane = &light->plane;
         out->shares_cells = light->emissive; /* existing pictures keep the positions of docs/language.md 7.1 */
         out->corner = light->corner;
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;
-        out->weight = intensity_of(vec3_length(normal));
-        out->by_angle =
-            light->emissive && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
+        out->weight = intensity_of(plane->area);
+        if (light_planar_is_behind(light, plane->across, from))
+            return false;
+        out->by_angle = light->emissive && spherical_rectangle_make(&plane->frame, light->corner, from, &out->seen);
         if (!out->by_angle)
-            out->axis = vec3_normalize(normal);
-        return !light_planar_is_behind(light, normal, from);
+            out->axis = plane->normal;
+        return true;
     }
     case LIGHT_DISC:
         out->axis = light->direction;
-        frame_tangents(out->axis, &out->right, &out->up);
+        out->right = light->plane.right;
+        out->up = light->plane.up;
         light_context_square(out, light->position, light->radius);
         out->weight = light->radius * light->radius; /* of the area pi r^2 */
+        if (light_planar_is_behind(light, light->direction, from))
+            return false;
         out->by_angle = light->emissive &&
-                        spherical_rectangle_make(out->corner, out->edge1, out->edge2, from, &out->seen) &&
+                        spherical_rectangle_make(&light->plane.frame, out->corner, from, &out->seen) &&
                         out->seen.angle > disc_by_angle;
-        return !light_planar_is_behind(light, light->direction, from);
+        return true;
     case LIGHT_SPHERE:
         if (light_sphere_context(light, out))
             return true;

@@ -50,6 +50,15 @@ struct pool;
 struct sky;
 struct sky_table;
 
+/* What is the same for all points that see a planar lamp. */
+struct light_plane {
+    struct vec3 across, normal; /* of a parallelogram: the product of its edges, and the unit vector */
+    double area;
+    double size;                  /* the largest coordinate */
+    struct rectangle_frame frame; /* of a parallelogram, or of the square around a disc */
+    struct vec3 right, up;        /* of a disc: directions of that square */
+};
+
 struct light {
     enum light_kind kind;
     struct vec3 position; /* of a parallelogram, disc, sphere: its centre */
@@ -75,6 +84,7 @@ struct light {
     const struct light_mesh *mesh; /* made by world_build (light_mesh.h) */
     const struct sky *sky;         /* its colour multiplies it */
     const struct sky_table *table; /* made by light_prepare */
+    struct light_plane plane;      /* the same, of a parallelogram or disc */
     const uint8_t *lit;            /* by primitive, made by world_build; NULL: it lights everything */
 };
 

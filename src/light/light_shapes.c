@@ -21,31 +21,40 @@ bool light_is_beside_disc(const struct light *light, struct vec3 point) {
 
 /* --- rays --- */
 
-/* The largest coordinate, for light_gap. */
-static double planar_size(const struct light *light) {
-    return fmax(vec3_max_abs(light->position) + light->radius,
-                vec3_max_abs(light->corner) + vec3_max_abs(light->edge1) + vec3_max_abs(light->edge2));
-}
-
-static struct vec3 unit_normal(const struct light *light) {
-    return light->kind == LIGHT_DISC ? light->direction : vec3_normalize(vec3_cross(light->edge1, light->edge2));
+void light_plane_prepare(struct light *light) {
+    struct light_plane *plane = &light->plane;
+    plane->across = vec3_cross(light->edge1, light->edge2);
+    plane->area = vec3_length(plane->across);
+    plane->normal = light->kind == LIGHT_DISC ? light->direction : vec3_normalize(plane->across);
+    plane->size = fmax(vec3_max_abs(light->position) + light->radius,
+                       vec3_max_abs(light->corner) + vec3_max_abs(light->edge1) + vec3_max_abs(light->edge2));
+    if (light->kind == LIGHT_PARALLELOGRAM) {
+        plane->frame = rectangle_frame_make(light->edge1, light->edge2);
+        return;
+    }
+    struct light_context square;
+    frame_tangents(light->direction, &plane->right, &plane->up);
+    square.right = plane->right;
+    square.up = plane->up;
+    light_context_square(&square, light->position, light->radius);
+    plane->frame = rectangle_frame_make(square.edge1, square.edge2);
 }
 
 struct vec3 light_planar_before(const struct light *light, struct vec3 from, struct vec3 at) {
     struct vec3 away = vec3_sub(from, at);
-    double gap = light_gap(planar_size(light), vec3_length(away)), height = fabs(vec3_dot(unit_normal(light), away));
+    double gap = light_gap(light->plane.size, vec3_length(away)), height = fabs(vec3_dot(light->plane.normal, away));
     return vec3_add_scaled(at, away, gap < height ? gap / height : 1);
 }
 
 /* The plane through a point, from the emitting side; p: relative to that point. */
 static bool plane_meets_ray(const struct light *light, struct vec3 on_plane, const struct ray *ray, double *t,
                             struct vec3 *p) {
-    struct vec3 normal = unit_normal(light);
+    struct vec3 normal = light->plane.normal;
     double across = vec3_dot(normal, ray->direction);
     if (across == 0 || (light->one_sided && across > 0))
         return false;
     *t = vec3_dot(normal, vec3_sub(on_plane, ray->origin)) / across;
-    if (!light_plane_is_met(ray, *t, across, planar_size(light)))
+    if (!light_plane_is_met(ray, *t, across, light->plane.size))
         return false;
     *p = vec3_sub(ray_at(ray, *t), on_plane);
     return true;
@@ -55,7 +64,7 @@ bool light_parallelogram_meets_ray(const struct light *light, const struct ray *
     struct vec3 p;
     if (!plane_meets_ray(light, light->corner, ray, t, &p))
         return false;
-    struct vec3 normal = vec3_cross(light->edge1, light->edge2);
+    struct vec3 normal = light->plane.across;
     double n2 = vec3_dot(normal, normal);
     double u = vec3_dot(vec3_cross(p, light->edge2), normal) / n2;
     double v = vec3_dot(vec3_cross(light->edge1, p), normal) / n2;

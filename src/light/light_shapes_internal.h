@@ -40,7 +40,9 @@ static inline bool light_plane_is_met(const struct ray *ray, double t, double ac
     return before > ray->t_min && before < ray->t_max;
 }
 
-/* light_shapes.c: parallelograms and discs. The end of a shadow ray to a point of the lamp, on the way to it. */
+/* light_shapes.c: parallelograms and discs. */
+void light_plane_prepare(struct light *light);
+/* The end of a shadow ray to a point of the lamp, on the way to it. */
 struct vec3 light_planar_before(const struct light *light, struct vec3 from, struct vec3 at);
 /* False: a one-sided light is seen from its dark side. */
 bool light_planar_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);

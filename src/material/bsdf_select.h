@@ -25,6 +25,13 @@ static inline uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose pu
     return bsdf_select_of_many(bsdf, purpose);
 }
 
+/* Whether no lobe of the set scatters the light of a sampled light: each has one direction only. */
+static inline bool bsdf_is_smooth(const struct bsdf *bsdf, uint32_t lobes) {
+    if (lobes == 0)
+        return true;
+    return (lobe_flags(bsdf->lobes[0].kind) & BSDF_DELTA) && !(lobes & ~bsdf_lobes_with(bsdf, BSDF_DELTA));
+}
+
 /* The sum of the weights of a set of lobes, from which it removes black ones. *lambert: all others are Lambert's. */
 struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert);
 /* The largest component of the light that Lambert's lobe reflects. */

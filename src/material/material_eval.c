@@ -225,7 +225,7 @@ void material_eval(const struct surface_tables *tables, const struct hit *hit, c
 
 /* --- observers --- */
 
-void material_observe(const struct surface_tables *tables, const struct hit *hit, const struct material *authored,
+bool material_observe(const struct surface_tables *tables, const struct hit *hit, const struct material *authored,
                       const struct material_context *context, material_observer *observer, void *observer_context) {
     const struct surface_material *material = &tables->materials[hit->material];
     const struct material *chain[MATERIAL_DEPTH];
@@ -235,16 +235,17 @@ void material_observe(const struct surface_tables *tables, const struct hit *hit
     uint32_t depth = 0;
     bool replaced = !material->has_layers && authored->openpbr; /* by openpbr_classic */
     if (context->no_black_highlight && is_matte(material, &material->phong))
-        return;
+        return true;
     /* The links below the material are in no table of the world. */
     for (const struct material *link = authored->base; link && !replaced && depth < MATERIAL_DEPTH; link = link->base)
         chain[depth++] = link;
-    if (depth > 0 && surface_tables_build(&below, chain, depth, false, &arena, NULL))
-        for (uint32_t i = depth; i-- > 0;) {
-            material_inputs_at(&below, &below.materials[i], hit, &inputs);
-            observer(observer_context, chain[i], &inputs);
-        }
+    bool ok = depth == 0 || surface_tables_build(&below, chain, depth, false, &arena, NULL);
+    for (uint32_t i = ok ? depth : 0; i-- > 0;) {
+        material_inputs_at(&below, &below.materials[i], hit, &inputs);
+        observer(observer_context, chain[i], &inputs);
+    }
     arena_destroy(&arena);
     material_inputs_at(tables, material, hit, &inputs);
     observer(observer_context, authored, &inputs);
+    return ok;
 }

@@ -42,9 +42,9 @@ void material_eval(const struct surface_tables *tables, const struct hit *hit, c
 
 /* Is called for every material of a chain, from the base on, with its inputs. */
 typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);
-/* For pixel traces: what material_eval of this context reads, and the links below, which it makes tables of.
- * authored: the material of the scene that the one of the hit was made from. */
-void material_observe(const struct surface_tables *tables, const struct hit *hit, const struct material *authored,
+/* For pixel traces: what material_eval of this context reads, and the links below, which it makes tables of. False: no
+ * memory. authored: the material of the scene that the one of the hit was made from. */
+bool material_observe(const struct surface_tables *tables, const struct hit *hit, const struct material *authored,
                       const struct material_context *context, material_observer *observer, void *observer_context);
 
 #endif

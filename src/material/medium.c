@@ -10,10 +10,25 @@ struct medium medium_outside(const struct fog *fog) {
     return (struct medium){.ior = 1, .tint = {1, 1, 1}, .fog = fog, .affects = fog ? MEDIUM_RAY_SIGHT : 0};
 }
 
-struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+static bool has_some(struct vec3 c) {
+    return c.x > 0 || c.y > 0 || c.z > 0;
+}
+
+struct medium medium_scattering(const struct medium_input *in) {
     const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
-    bool absorbs = absorption.x > 0 || absorption.y > 0 || absorption.z > 0;
-    return (struct medium){.ior = ior, .tint = tint, .extinction = absorption, .affects = absorbs ? all : 0};
+    struct medium medium = {.ior = 1, .tint = {1, 1, 1}, .phase = in->phase, .scatters = has_some(in->scattering)};
+    medium.scattering = in->scattering;
+    medium.emission = in->emission;
+    medium.extinction = vec3_add(in->absorption, in->scattering);
+    medium.affects = has_some(medium.extinction) || has_some(in->emission) ? all : 0;
+    return medium;
+}
+
+struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+    struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
+    medium.ior = ior;
+    medium.tint = tint;
+    return medium;
 }
 
 /* The law of Beer, Lambert and Bouguer. */
@@ -48,6 +63,18 @@ static bool fog_effect(const struct fog *fog, const struct ray *ray, double dist
     return true;
 }
 
+/* Emission over extinction. where_clear: of the channels without extinction. */
+static struct vec3 source_of(const struct medium *medium, struct vec3 where_clear) {
+    struct vec3 e = medium->emission, s = medium->extinction;
+    return vec3_make(s.x > 0 ? e.x / s.x : where_clear.x, s.y > 0 ? e.y / s.y : where_clear.y,
+                     s.z > 0 ? e.z / s.z : where_clear.z);
+}
+
+double medium_brightest(const struct medium *medium) {
+    struct vec3 source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
+    return fmax(source.x, fmax(source.y, source.z));
+}
+
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
     out->transmittance = vec3_all(1);
     out->added = out->source = vec3_all(0);
@@ -57,11 +84,9 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
     if (medium->fog)
         return fog_effect(medium->fog, ray, distance, out);
     out->transmittance = uniform_transmittance(medium->extinction, distance);
-    if (vec3_max_abs(medium->emission) > 0) {
-        struct vec3 e = medium->emission, s = medium->extinction, near = medium_emission(medium, distance);
-        out->added = near;
-        out->source =
-            vec3_make(s.x > 0 ? e.x / s.x : near.x, s.y > 0 ? e.y / s.y : near.y, s.z > 0 ? e.z / s.z : near.z);
+    if (has_some(medium->emission)) {
+        out->added = medium_emission(medium, distance);
+        out->source = source_of(medium, out->added);
     }
     return true;
 }

@@ -34,6 +34,12 @@ struct medium {
 
 /* Around all solids. fog: or NULL. */
 struct medium medium_outside(const struct fog *fog);
+/* One that absorbs, scatters and emits. */
+struct medium_input {
+    struct vec3 absorption, scattering, emission;
+    struct phase phase;
+};
+struct medium medium_scattering(const struct medium_input *in);
 /* Inside of a solid, without scattering and emission. */
 struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption);
 
@@ -116,6 +122,8 @@ struct medium_effect {
  * transmittance is 1. */
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out);
 
+/* The largest radiance that it shows over a long distance. */
+double medium_brightest(const struct medium *medium);
 /* The radiance that a medium without fog adds over a distance, itself attenuated. */
 struct vec3 medium_emission(const struct medium *medium, double distance);
 

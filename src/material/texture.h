@@ -1,8 +1,7 @@
 /* Textures: a colour or a number as a function of the hit. A texture is a value: a constant, a picture with its
  * mapping, filter and wrap, a pattern, or an operation on other textures, which never change. So marble over wood over
- * a picture is one tree. Authored trees have pointers; a world has its textures in one table, where the parts of a
- * texture are indices into that table (union texture_ref). Source of the word and of the split into mappings and
- * textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
+ * a picture is one tree. A world has lists in place of trees (texture_tables.h). Source of the word and of the split
+ * into mappings and textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
  *
  * Every texture can be read as a colour and as a number. The number of a colour is the mean of its three components;
  * the number of a product is the product of the numbers, and likewise for mixes. A tree has at most TEXTURE_SIZE

@@ -10,6 +10,7 @@
 #include "material/texture_mapping_internal.h"
 #include "math/noise.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* --- making --- */
@@ -137,23 +138,23 @@ static bool list(struct texture_builder *builder, const struct texture *texture,
         return append_again(builder, *listed);
     bool begins = builder->start == builder->instruction_count;
     uint32_t first = builder->instruction_count;
+    unsigned positions = (unsigned)count << 2 * TEXTURE_PARTS;
     if (texture->shared) {
         instruction.action = ACTION_RECALL;
         if (!append(builder, &instruction, 1))
             return false;
     }
     for (int i = 0; i < count; i++) {
-        instruction.at[order[i]] = (uint8_t)(count - i);
+        positions |= (unsigned)(count - i) << 2 * order[i];
         if (!list(builder, texture->parts[order[i]], part_is_number(texture, order[i], is_number)))
             return false;
     }
     instruction.action = ACTION_APPLY;
-    instruction.taken = (uint8_t)count;
+    instruction.positions = (uint8_t)positions;
     if (!append(builder, &instruction, 1))
         return false;
     if (texture->shared) {
         instruction.action = ACTION_KEEP;
-        builder->instructions[first].skip = builder->instruction_count - first;
         if (!append(builder, &instruction, 1))
             return false;
     }
@@ -291,7 +292,19 @@ static double wood_at(const struct texture_operation *operation, struct vec3 p) 
     return noise_wood(p.x, p.y, p.z, operation->wood.f, operation->wood.density, operation->wood.interpolation);
 }
 
+static unsigned position_of(const struct texture_instruction *in, int part) {
+    return in->positions >> 2 * part & 3;
+}
+
+static unsigned taken_by(const struct texture_instruction *in) {
+    return in->positions >> 2 * TEXTURE_PARTS;
+}
+
 /* end: of the stack of values, where the parts are. */
+static struct vec3 part_of(const struct texture_instruction *in, int part, const struct vec3 *end) {
+    return end[-(ptrdiff_t)position_of(in, part)];
+}
+
 static struct vec3 apply(const struct texture_instruction *in, const struct vec3 *end,
                          const struct texture_reader *reader) {
     const struct texture_operation *operation = &reader->tables->operations[in->texture];
@@ -304,18 +317,18 @@ static struct vec3 apply(const struct texture_instruction *in, const struct vec3
     case TEXTURE_VERTEX_COLOUR:
         return hit->has_colour ? hit->colour : vec3_all(1);
     case TEXTURE_IMAGE:
-        return image_over(&operation->image, in->taken > 0 ? end[-1] : vec3_all(0), hit);
+        return image_over(&operation->image, in->positions != 0 ? end[-1] : vec3_all(0), hit);
     case TEXTURE_MARBLE:
         return vec3_all(marble_at(operation, hit->pattern_point));
     case TEXTURE_WOOD:
         return vec3_all(wood_at(operation, hit->pattern_point));
     case TEXTURE_MIX: {
-        struct vec3 a = end[-in->at[PART_A]], b = end[-in->at[PART_B]];
-        double ratio = end[-in->at[PART_RATIO]].x;
+        struct vec3 a = part_of(in, PART_A, end), b = part_of(in, PART_B, end);
+        double ratio = part_of(in, PART_RATIO, end).x;
         return vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
     }
     case TEXTURE_MULTIPLY:
-        return vec3_mul(end[-in->at[PART_A]], end[-in->at[PART_B]]);
+        return vec3_mul(part_of(in, PART_A, end), part_of(in, PART_B, end));
     case TEXTURE_MAP:
         return texture_map_colour(operation, end[-1]);
     case TEXTURE_FUNCTION:
@@ -336,17 +349,17 @@ static double apply_to_numbers(const struct texture_instruction *in, const struc
     case TEXTURE_VERTEX_COLOUR:
         return hit->has_colour ? mean(hit->colour) : 1;
     case TEXTURE_IMAGE:
-        return image_number_over(&operation->image, in->taken > 0 ? end[-1].x : 0, hit);
+        return image_number_over(&operation->image, in->positions != 0 ? end[-1].x : 0, hit);
     case TEXTURE_MARBLE:
         return marble_at(operation, hit->pattern_point);
     case TEXTURE_WOOD:
         return wood_at(operation, hit->pattern_point);
     case TEXTURE_MIX: {
-        double ratio = end[-in->at[PART_RATIO]].x;
-        return end[-in->at[PART_A]].x * ratio + end[-in->at[PART_B]].x * (1 - ratio);
+        double ratio = part_of(in, PART_RATIO, end).x;
+        return part_of(in, PART_A, end).x * ratio + part_of(in, PART_B, end).x * (1 - ratio);
     }
     case TEXTURE_MULTIPLY:
-        return end[-in->at[PART_A]].x * end[-in->at[PART_B]].x;
+        return part_of(in, PART_A, end).x * part_of(in, PART_B, end).x;
     case TEXTURE_MAP: {
         double component;
         return texture_map_component(operation, end[-1], &component) ? component
@@ -384,13 +397,14 @@ struct vec3 texture_read(uint32_t program, struct texture_reader *reader) {
         const struct vec3 *known = in->action == ACTION_RECALL ? recall(reader, in) : NULL;
         if (in->action == ACTION_APPLY) {
             struct vec3 value = in->is_number ? vec3_all(apply_to_numbers(in, end, reader)) : apply(in, end, reader);
-            end -= in->taken;
+            end -= taken_by(in);
             *end++ = value;
         } else if (in->action == ACTION_KEEP) {
             keep(reader, in, end[-1]);
         } else if (known) {
             *end++ = *known;
-            in += in->skip;
+            for (uint32_t texture = in->texture; in->action != ACTION_KEEP || in->texture != texture;)
+                in++;
         }
     }
     return values[0];
@@ -406,9 +420,9 @@ struct vec3 texture_program_estimate(const struct texture_tables *tables, uint32
         if (in->action != ACTION_APPLY)
             continue;
         for (int k = 0; k < TEXTURE_PARTS; k++)
-            if (in->at[k] > 0)
-                parts[k] = end[-in->at[k]];
-        end -= in->taken;
+            if (position_of(in, k) > 0)
+                parts[k] = part_of(in, k, end);
+        end -= taken_by(in);
         *end++ = texture_operation_estimate(&tables->operations[in->texture], parts, numbers, which);
     }
     return values[0];

@@ -18,16 +18,17 @@ enum { TEXTURE_DEPTH = 17 };
 #define TEXTURE_NONE UINT32_MAX /* in place of a program, or of an index */
 
 /* APPLY: the operation takes its parts off the stack and puts its value there. Around the instructions of a shared
- * texture, RECALL puts a known value there and skips them, KEEP makes the value known. */
+ * texture, RECALL puts a known value there and goes on after KEEP, which makes the value known. */
 enum texture_action { ACTION_APPLY, ACTION_RECALL, ACTION_KEEP };
 struct texture_instruction {
     uint32_t texture; /* its index in the table */
-    uint32_t skip;    /* of RECALL */
     uint8_t action, kind;
-    bool is_number;            /* the value is a number */
-    uint8_t taken;             /* values off the stack */
-    uint8_t at[TEXTURE_PARTS]; /* of each part: its place below the end of the stack, from 1; 0: there is none */
+    bool is_number; /* the value is a number */
+    /* Two bits for each part, its position below the end of the stack, from 1, or 0 if there is none; then the number
+     * of values that are taken off the stack. */
+    uint8_t positions;
 };
+_Static_assert(sizeof(struct texture_instruction) == 8, "lists of instructions are small");
 struct texture_program {
     uint32_t first, count;
 };

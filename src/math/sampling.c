@@ -89,15 +89,25 @@ static double corner_angle(double a, double b) {
     return el_acos(limited(-(a * b), -1, 1));
 }
 
-bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+struct rectangle_frame rectangle_frame_make(struct vec3 edge1, struct vec3 edge2) {
+    struct rectangle_frame frame = {.width = vec3_length(edge1), .height = vec3_length(edge2)};
+    if (!(frame.width > 0 && frame.height > 0) || fabs(vec3_dot(edge1, edge2)) > 0x1p-40 * frame.width * frame.height)
+        return frame;
+    frame.right = true;
+    frame.x = vec3_scale(edge1, 1 / frame.width);
+    frame.y = vec3_scale(edge2, 1 / frame.height);
+    frame.z = vec3_cross(frame.x, frame.y);
+    return frame;
+}
+
+bool spherical_rectangle_make(const struct rectangle_frame *frame, struct vec3 corner, struct vec3 from,
                               struct spherical_rectangle *out) {
-    double length1 = vec3_length(edge1), length2 = vec3_length(edge2);
-    if (!(length1 > 0 && length2 > 0) || fabs(vec3_dot(edge1, edge2)) > 0x1p-40 * length1 * length2)
+    if (!frame->right)
         return false;
     out->from = from;
-    out->x = vec3_scale(edge1, 1 / length1);
-    out->y = vec3_scale(edge2, 1 / length2);
-    out->z = vec3_cross(out->x, out->y);
+    out->x = frame->x;
+    out->y = frame->y;
+    out->z = frame->z;
     struct vec3 d = vec3_sub(corner, from);
     out->z0 = vec3_dot(d, out->z);
     if (out->z0 > 0) {
@@ -106,8 +116,8 @@ bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3
     }
     out->x0 = vec3_dot(d, out->x);
     out->y0 = vec3_dot(d, out->y);
-    out->x1 = out->x0 + length1;
-    out->y1 = out->y0 + length2;
+    out->x1 = out->x0 + frame->width;
+    out->y1 = out->y0 + frame->height;
     if (!(out->z0 < 0))
         return false;
     double x0 = out->x0, x1 = out->x1, y0 = out->y0, y1 = out->y1, z0 = out->z0;
@@ -212,7 +222,9 @@ bool spherical_box_make(const struct light_box *box, struct vec3 from, struct sp
             continue;
         struct vec3 corner = along > 1 ? vec3_add(box->corner, box->edges[axis]) : box->corner;
         struct spherical_rectangle *face = &out->faces[out->count];
-        if (!spherical_rectangle_make(corner, box->edges[(axis + 1) % 3], box->edges[(axis + 2) % 3], from, face))
+        const struct rectangle_frame frame =
+            rectangle_frame_make(box->edges[(axis + 1) % 3], box->edges[(axis + 2) % 3]);
+        if (!spherical_rectangle_make(&frame, corner, from, face))
             continue;
         out->angle += face->angle;
         out->axes[out->count++] = axis;

@@ -42,13 +42,21 @@ struct sample2 sample_disc(struct sample2 square);
 
 /* Rectangles and boxes sampled by their solid angle. */
 
+/* The directions and lengths of the edges of a rectangle. */
+struct rectangle_frame {
+    bool right; /* its edges have lengths, and are at right angles */
+    struct vec3 x, y, z;
+    double width, height;
+};
+struct rectangle_frame rectangle_frame_make(struct vec3 edge1, struct vec3 edge2);
+
 /* A rectangle as a point sees it. */
 struct spherical_rectangle {
     struct vec3 from, x, y, z;
     double x0, x1, y0, y1, z0, b0, b1, k, angle; /* angle: the solid angle */
 };
 /* False: its edges are not at right angles, or its solid angle is too small. */
-bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+bool spherical_rectangle_make(const struct rectangle_frame *frame, struct vec3 corner, struct vec3 from,
                               struct spherical_rectangle *out);
 struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 xi);
 

@@ -96,7 +96,8 @@ struct observation {
         } direct;
         struct observed_vertex {
             enum path_end end;
-            double distance; /* of PATH_SEES_LIGHT, world units */
+            double distance; /* of PATH_SEES_LIGHT and in_medium, world units */
+            bool in_medium;  /* scattered by the medium of the ray, before its hit */
             /* Of the emission of the hit or the sky and of lights, weighted by multiple importance sampling; direct:
              * photons and the light of the sampled light together. */
             struct vec3 emission, photons, direct;

@@ -170,7 +170,8 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     double pmf;
     struct light_part part = out->part = choose_part(&lights->sampler, vertex->receiver, draw->choice, &pmf);
     out->sent = false;
-    if (part.light == LIGHT_NONE)
+    if (part.light == LIGHT_NONE ||
+        (vertex->at.bsdf && !vertex->substitute && bsdf_is_smooth(vertex->at.bsdf, vertex->at.lobes)))
         return false;
     struct sample2 xi = {0, 0};
     if (!light_is_point(&lights->lights[part.light]))
@@ -178,6 +179,8 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (!world_lights_sample(lights, vertex->receiver, part, xi, sample))
         return false;
     struct vec3 f = scattered(vertex, vertex->at.lobes, sample->direction);
+    if (!vertex->substitute && is_black(f))
+        return false;
     uint32_t traced =
         tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !is_black(vertex->thrown)) {

@@ -27,7 +27,7 @@
 #include <string.h>
 
 enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
-static const double survival = 0.95; /* at most */
+static const double survival = 0.95; /* at most, on surfaces */
 
 /* --- layers and features --- */
 
@@ -194,10 +194,11 @@ static void leave_scene(const struct path_tracer *tracer, struct integrator_stat
 
 /* False: the path ends here. Paths with weights above 1 can end, too. The chance is the square root of the weight: if
  * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
- * noise than their rays cost. */
-static bool survives(struct path *path, double u) {
+ * noise than their rays cost. Media scatter so often that even .95 would leave few, heavy paths. */
+static bool survives(struct path *path, bool on_surface, double u) {
     double chance = sqrt(vec3_max_abs(path->weight) / path->radiance_scale);
-    chance = chance < survival ? chance : survival;
+    double limit = on_surface ? survival : 1;
+    chance = chance < limit ? chance : limit;
     if (!(u < chance))
         return false;
     path->weight = vec3_scale(path->weight, 1 / chance);
@@ -290,7 +291,7 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
         path->radiance_scale *= bsdf->eta * bsdf->eta;
     /* Roulette, or a weight of 0, ends paths that bring nothing. */
     bool plays = path->depth > tracer->roulette_depth;
-    if (plays ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
+    if (plays ? !survives(path, bsdf, u_roulette) : vec3_max_abs(path->weight) == 0)
         return watch_end(watch, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
@@ -336,6 +337,7 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    watch_medium(watch);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
@@ -360,9 +362,9 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
                                              .no_black_highlight = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
-    if (OBSERVED)
-        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
-                         state->observer);
+    if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
+                                      observe_material, state->observer))
+        state->scratch->failed = true;
     material_eval(&world->surfaces, hit, path->ray.media, &context, bsdf);
 }
 
@@ -483,7 +485,7 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
     if (to == ENDS_AT_LIGHT)
         return false;
-    watch_arrival(watch, path, 0);
+    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? distance : 0);
     if (to == ENDS_IN_MEDIUM)
         return meet_medium(tracer, state, path, distance, shadow, watch);
     if (met)

@@ -14,7 +14,8 @@ struct path_watch {
         struct vec3 weight, light;  /* of the path at the start of the ray */
         struct vec3 arriving;       /* the weight of the path at the hit */
         struct vec3 lights[STAGES]; /* the radiance of the path after each stage */
-        double distance;            /* at which a visible light ends the path */
+        double distance;            /* at which a visible light ends the path, or the medium scatters it */
+        bool in_medium;
     } rays[64];
     int count;
     bool cut; /* the current ray is none of them */
@@ -39,6 +40,13 @@ static inline void watch_arrival(struct path_watch *watch, const struct path *pa
     ray->arriving = path->weight;
     ray->distance = distance;
     watch_stage(watch, path, STAGE_BEFORE_HIT);
+}
+
+/* The medium scatters the path at the distance where watch_arrival said that it is. */
+static inline void watch_medium(struct path_watch *watch) {
+    struct watched_ray *ray = OBSERVED ? watched_ray(watch) : NULL;
+    if (ray)
+        ray->in_medium = true;
 }
 
 /* The path ends for this reason: false. */
@@ -88,6 +96,7 @@ static void watch_vertex(struct path_watch *watch, const struct observer *observ
     OBSERVE(observer, OBSERVED_VERTEX,
             .vertex = {.end = watch->end,
                        .distance = ray->distance,
+                       .in_medium = ray->in_medium,
                        .emission = gains[STAGE_EMISSION],
                        .photons = gains[STAGE_PHOTONS],
                        .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),

@@ -123,8 +123,8 @@ static bool shows_without_light(const struct check *check) {
     const struct world *world = check->world;
     bool paths = job->settings.integrator == INTEGRATOR_PATH;
     bool sky = !sky_is_black(&world->sky) && (!paths || job->background_lights);
-    if (job->settings.style == STYLE_INK || world_outside(world)->fog || world->emission_bound > 0 || (paths && sky) ||
-        (!paths && vec3_max_abs(job->ambient) > 0))
+    if (job->settings.style == STYLE_INK || medium_brightest(world_outside(world)) > 0 || world_outside(world)->fog ||
+        world->emission_bound > 0 || (paths && sky) || (!paths && vec3_max_abs(job->ambient) > 0))
         return true;
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct surface_material *material = &world->surfaces.materials[i];
@@ -304,7 +304,7 @@ void scene_check(const struct render_job *job, unsigned *noticed, world_warning 
     char ignored[256];
     struct error error;
     /* A camera that moves, and a picture of the sky or the fog alone, may be what was meant. */
-    bool has_fog = world_outside(world)->fog, moves = job->settings.motion.moves || has_fog;
+    bool has_fog = world_outside(world)->affects != 0, moves = job->settings.motion.moves || has_fog;
     if (!renderer_prepare_at(job, 0, &check.camera, ignored, &error))
         return;
     if (world->primitive_count == 0) {

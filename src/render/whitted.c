@@ -22,9 +22,9 @@ static double largest(struct vec3 c) {
 /* The squared distance of two colours is never larger: with these tolerances no pixel is marked. */
 static const double tolerance_of_all = 3;
 
-/* The largest radiance that a ray can find: the sky, a visible light, an emissive surface, the fog, or a white surface
- * in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with falloff it
- * may be brighter, so the bound holds for usual scenes only. */
+/* The largest radiance that a ray can find: the sky, a visible light, an emissive surface, the medium, or a white
+ * surface in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with
+ * falloff it may be brighter, so the bound holds for usual scenes only. */
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
     double max = sky_brightest(&world->sky), lit = largest(job->ambient);
@@ -36,8 +36,7 @@ static double brightest_of_scene(const struct render_job *job) {
             max = own;
     }
     max = fmax(max, lit + world->emission_bound);
-    const struct fog *fog = world_outside(world)->fog;
-    return fog ? fmax(max, largest(fog->colour)) : max;
+    return fmax(max, medium_brightest(world_outside(world)));
 }
 
 /* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: this

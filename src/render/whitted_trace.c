@@ -297,9 +297,9 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     struct bsdf bsdf;
     struct surface_point at = {ray, hit, &bsdf};
     state->hits++;
-    if (state->observer)
-        material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context, observe_material,
-                         state->observer);
+    if (state->observer && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
+                                             observe_material, state->observer))
+        state->scratch->failed = true;
     material_eval(&world->surfaces, hit, ray->media, &context, &bsdf);
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))

@@ -100,7 +100,7 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
     lua_setfield(L, -2, "line");
     return 1;
 }
-_Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in answer()");
+_Static_assert(RESULT_FRAMES == 12, "a new result kind needs its line in answer()");
 
 static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     if (function->in_lua)
@@ -129,6 +129,9 @@ static int answer(lua_State *L, const struct script_function *function, const st
         return answer_faces(L, result->mesh);
     case RESULT_FOG:
         handle_push(L, HANDLE_FOG, result->pointer);
+        return 1;
+    case RESULT_MEDIUM:
+        handle_push(L, HANDLE_MEDIUM, result->pointer);
         return 1;
     case RESULT_SKY:
         handle_push(L, HANDLE_SKY, result->pointer);

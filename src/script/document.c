@@ -235,6 +235,8 @@ static const char *annotation_result(const struct script_function *function) {
         return "number[][], integer[][]";
     case RESULT_FOG:
         return "gr.fog";
+    case RESULT_MEDIUM:
+        return "gr.medium";
     case RESULT_SKY:
         return "gr.sky";
     case RESULT_GLYPHS:
@@ -346,8 +348,8 @@ void script_annotations(struct document *document) {
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
         "---@class gr.material\n---@class gr.light\n---@class gr.texture\n"
-        "---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number\n---@class gr.fog\n---@class "
-        "gr.sky\n");
+        "---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number\n---@class gr.fog\n"
+        "---@class gr.medium\n---@class gr.sky\n");
     document_add(
         document,
         "---@class gr.vector: number[]\n---@field x number\n---@field y number\n---@field z number\n"

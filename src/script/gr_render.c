@@ -32,6 +32,7 @@ enum {
     RENDER_FIRST_SETTING,
     RENDER_LAST_SETTING = RENDER_FIRST_SETTING + LIST_COUNT(SETTINGS_WITH_FIELD) - 1,
     RENDER_FOG,
+    RENDER_MEDIUM,
     RENDER_PROJECTION,
     RENDER_VIEW_HEIGHT,
     RENDER_ANGLE,
@@ -94,6 +95,8 @@ static const struct script_parameter render_parameters[] = {
          "gr.render{...} without background, the default is light and neutral."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     SETTINGS_WITH_FIELD(PARAMETER_OF_SETTING)[RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_MEDIUM] = {"medium", KIND_MEDIUM, OPTIONAL, ANY, NULL, "none",
+                       "A medium around all solids, instead of a fog."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
                            "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
     [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
@@ -598,7 +601,9 @@ static bool gr_render(struct script_context *context, const struct script_value 
         decoded->display = false;
         fog = decoded;
     }
-    request.outside = medium_outside(fog);
+    if (fog && args[RENDER_MEDIUM].given)
+        return error_set(error, ERROR_SCENE, "fog and medium are both around the solids; give one of them");
+    request.outside = args[RENDER_MEDIUM].given ? *args[RENDER_MEDIUM].medium : medium_outside(fog);
     /* Functions, lens, motion, sky and light. */
     if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||

@@ -362,6 +362,8 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
     bool ok;
     if (!derive(&d, &ok))
         return ok;
+    if (!light_prepare(&d.light, b->arena, b->pool, b->error))
+        return false;
     uint32_t number = b->out->count++;
     b->lights[number] = d.light;
     b->emitters[number] = d.emitter;

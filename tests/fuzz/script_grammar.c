@@ -18,13 +18,14 @@ struct grammar {
 enum { STATEMENT_ROOM = 12000, STATEMENTS = 60 };
 
 static const char prelude[] =
-    "local N, M, L, T, F, S = {gr.node('root')}, {gr.material({1, 1, 1}, {0, 0, 0}, 1)}, {}, {}, {}, {}\n"
+    "local N, M, L, T, F, V, S = {gr.node('root')}, {gr.material({1, 1, 1}, {0, 0, 0}, 1)}, {}, {}, {}, {}, {}\n"
     "local function k(list, ok, v) if ok and v ~= nil then list[#list + 1] = v end end\n"
     "local function n(i) return N[i % #N + 1] end\n"
     "local function m(i) return M[i % #M + 1] end\n"
     "local function l(i) return L[i % (#L + 1)] end\n"
     "local function t(i) return T[i % (#T + 1)] end\n"
     "local function f(i) return F[i % (#F + 1)] end\n"
+    "local function v(i) return V[i % (#V + 1)] end\n"
     "local function s(i) return S[i % (#S + 1)] end\n"
     "local self = {} self[1], self[2], self.name = self, self, self\n"
     "local W = {nil, true, print, {}, '', 'x', 1e308, {{{}}}, {1, nil, 3}, '\\0', ('y'):rep(5000), '%s%n', self,\n"
@@ -201,6 +202,9 @@ static void say_argument(struct grammar *g, const struct script_parameter *p) {
     case KIND_FOG:
         say(g, "f(%u)", next(g));
         return;
+    case KIND_MEDIUM:
+        say(g, "v(%u)", next(g));
+        return;
     case KIND_CAUSTICS:
         say(g, "{photons = %u, radius = ", next(g));
         say_number(g, NULL);
@@ -287,6 +291,8 @@ static const char *list_of(enum result_kind result) {
         return "T";
     case RESULT_FOG:
         return "F";
+    case RESULT_MEDIUM:
+        return "V";
     case RESULT_SKY:
         return "S";
     }

@@ -73,8 +73,9 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     case KIND_COLOUR:
     case KIND_TRIPLE:
     case KIND_BACKGROUND:
-        text = strcmp(p->name, "target") == 0 ? "{3, 2, 1}"
-                                              : "{1, 2, 3}"; /* not at the position of a light or of the camera */
+        text = p->high == 1                     ? "{0.5, 1, 0}"
+               : strcmp(p->name, "target") == 0 ? "{3, 2, 1}"
+                                                : "{1, 2, 3}"; /* not at the position of a light or of the camera */
         if (strcmp(p->name, "max") == 0 || strcmp(p->name, "b") == 0 || strcmp(p->name, "up") == 0)
             text = "{4, 3, 8}"; /* corners and edges of one shape differ */
         if (strcmp(p->name, "c") == 0)
@@ -148,6 +149,9 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         break;
     case KIND_FOG:
         text = "mist";
+        break;
+    case KIND_MEDIUM:
+        text = "smoke";
         break;
     case KIND_STOPS:
         text = "{{-1, 0, 0, 0}, {1, 1, 1, 1}}";

@@ -7,6 +7,7 @@
 #include "image/png_write.h"
 #include "image/tone.h"
 #include "light/light.h"
+#include "material/material_eval.h"
 #include "material/material_inputs.h"
 
 #include <math.h>
@@ -99,6 +100,25 @@ TEST(pictures_are_decoded_where_they_are_read_as_colours) {
             image_release(image);
         }
     }
+}
+
+static void keep_last(void *context, const struct material *link, const struct surface_inputs *inputs) {
+    (void)link;
+    *(struct surface_inputs *)context = *inputs;
+}
+
+TEST(a_pixel_trace_reports_the_decoded_colours_of_the_picture) {
+    struct stage s;
+    struct surface_inputs reported = {.kd = {0, 0, 0}};
+    struct hit hit = {.has_uv = true, .u = 0.25, .v = 0.5, .normal = {0, 0, 1}, .view = {0, 0, 1}};
+    stage_begin(&s, 1);
+    struct image *image = ramp(&s.error);
+    CHECK(in_world(&s, image, INPUT_KD, ENCODING_AUTO, COLOUR_LINEAR));
+    CHECK(material_observe(&s.world.surfaces, &hit, s.world.authored.materials[0],
+                           &(struct material_context){.thin = false}, keep_last, &reported));
+    CHECK_NEAR(reported.kd.x, decoded(64 / 255.0) * (255 - 64) / 255, 1e-4); /* with its alpha, over black */
+    stage_end(&s);
+    image_release(image);
 }
 
 /* The byte of the first pixel of a picture that is all background. */

@@ -35,6 +35,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     struct light *const area_lights[] = {&disc, &writer};
     struct light_hit met;
     for (int k = 0; k < 2; k++) {
+        CHECK(light_prepare(area_lights[k], NULL, NULL, NULL));
         struct ray below = part_of(vec3_make(0.2, 0, 0.2), vec3_make(0, 2, 0), 0, INFINITY);
         struct ray above = part_of(vec3_make(0.2, 9, 0.2), vec3_make(0, -1, 0), 0, INFINITY);
         CHECK(light_meets_ray(area_lights[k], &below, &met) && met.t == 2);
@@ -106,6 +107,7 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
     struct light area_light = {.kind = LIGHT_MESH, .mesh = &mesh, .colour = {1, 1, 1}, .emissive = true};
     struct light_context context;
     const struct vec3 points[] = {{0.75, 0.5, 0}, {5, 0, 0}, {0, 0, 0}};
+    CHECK(light_prepare(&writer, NULL, NULL, NULL));
     for (size_t i = 0; i < sizeof points / sizeof points[0]; i++)
         for (int k = 0; k < 9; k++) {
             struct sample2 xi = {k / 8.0, (8 - k) / 8.0};

@@ -47,13 +47,19 @@ static double corner_angle(double a, double b, double h) {
 
 /* --- rectangles by solid angle --- */
 
+static bool rectangle_seen(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+                           struct spherical_rectangle *out) {
+    const struct rectangle_frame frame = rectangle_frame_make(edge1, edge2);
+    return spherical_rectangle_make(&frame, corner, from, out);
+}
+
 TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
     static const double heights[] = {0.01, 0.3, 2};
     for (int i = 0; i < 3; i++) {
         double h = heights[i];
         struct spherical_rectangle seen;
         struct vec3 from = {0.5, 0, 0.25}, corner = {0.5, h, 0.25};
-        CHECK(spherical_rectangle_make(corner, vec3_make(2, 0, 0), vec3_make(0, 0, 1), from, &seen));
+        CHECK(rectangle_seen(corner, vec3_make(2, 0, 0), vec3_make(0, 0, 1), from, &seen));
         CHECK_NEAR(seen.angle, corner_angle(2, 1, h), 1e-10);
         enum { N = 200 };
         int inside = 0;
@@ -68,9 +74,9 @@ TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
     }
     struct spherical_rectangle seen;
     struct vec3 from = {0, 0, 0}, corner = {0, 1, 0};
-    CHECK(!spherical_rectangle_make(corner, vec3_make(1, 0, 0), vec3_make(1, 0, 1), from, &seen));
-    CHECK(!spherical_rectangle_make(corner, vec3_make(1e-3, 0, 0), vec3_make(0, 0, 1e-3), from, &seen));
-    CHECK(!spherical_rectangle_make(from, vec3_make(1, 0, 0), vec3_make(0, 0, 1), from, &seen));
+    CHECK(!rectangle_seen(corner, vec3_make(1, 0, 0), vec3_make(1, 0, 1), from, &seen));
+    CHECK(!rectangle_seen(corner, vec3_make(1e-3, 0, 0), vec3_make(0, 0, 1e-3), from, &seen));
+    CHECK(!rectangle_seen(from, vec3_make(1, 0, 0), vec3_make(0, 0, 1), from, &seen));
 }
 
 /* --- triangles by solid angle --- */

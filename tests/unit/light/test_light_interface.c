@@ -181,6 +181,8 @@ static bool area_light_begin(struct example *e, enum light_kind kind, bool far, 
     example_begin(e, kind, true, 1.5);
     e->light.edge1.z = far ? e->light.edge1.z : 0; /* at right angles: by solid angle */
     e->light.edge2.y = far ? e->light.edge2.y : 0;
+    struct error error;
+    CHECK(kind == LIGHT_SKY || light_prepare(&e->light, &e->arena, e->pool, &error));
     struct light_sample sample;
     bool made = light_context_make(&e->light, from, from, context);
     if (made)

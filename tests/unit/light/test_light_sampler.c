@@ -45,6 +45,7 @@ static struct light random_light(uint64_t seed, uint64_t i) {
     light.corner = vec3_sub(light.position, vec3_scale(vec3_add(light.edge1, light.edge2), 0.5));
     light.emissive = light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT && random_combine(key, 13) % 2;
     light.one_sided = random_combine(key, 14) % 2;
+    CHECK(light_prepare(&light, NULL, NULL, NULL));
     return light;
 }
 

@@ -183,7 +183,8 @@ static const char preparation[] =
     "floor = gr.plane{name = 'floor', normal = {0, 1, 0}, distance = -1.5, material = white} root:add_child(floor)\n"
     "mirror = gr.sphere{name = 'mirror', centre = {2, 0, -2}, material = gr.material{kd = {0.1, 0.1, 0.1}, ks = {1, 1, "
     "1}, reflect = 0.9}} root:add_child(mirror)\n"
-    "lamp = gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 0.1}\n"
+    "lamp = gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 0.1}; "
+    "smoke = gr.medium{scattering = {1, 2, 3}}\n"
     "function show(t) t.file = 'x.png' t.width = 6 t.height = 6 t.eye = t.eye or {0, 1, 7} t.node = t.node or root\n"
     "if not t.view then t.target = t.target or {0, 0, 0} end t.lights = t.lights or {lamp} gr.render(t) end\n";
 
@@ -203,6 +204,8 @@ static const char *use_of(const struct script_function *function) {
                    : "ball:set_texture(X) floor:set_texture(X) root:add_child(ball) show{}";
     case RESULT_FOG:
         return "root:add_child(ball) show{fog = X}";
+    case RESULT_MEDIUM:
+        return "root:add_child(ball) show{medium = X, integrator = 'path'}";
     case RESULT_SKY:
         return "root:add_child(ball) show{background = X, lights = {gr.sky_light{sky = X}}}";
     case RESULT_SELF:
@@ -248,6 +251,7 @@ static bool is_numeric(enum argument_kind kind) {
     case KIND_MATERIALS:
     case KIND_IMAGE:
     case KIND_FOG:
+    case KIND_MEDIUM:
     case KIND_NODES:
     case KIND_LIGHTS:
     case KIND_FACES:
@@ -582,7 +586,7 @@ TEST_LONG(extreme_numbers_of_every_size_give_one_line_or_a_finite_picture) {
                false, true, true);
 }
 
-/* The language allows colours above 1 and below 0; only the absorption of a medium has a minimum. */
+/* The language allows colours above 1 and below 0; only coefficients of media have a minimum, and shares a maximum. */
 TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
     struct gallery gallery;
     open_gallery(&gallery);
@@ -591,7 +595,7 @@ TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
         for (int p = 0; p < function->parameter_count && has_table_form(function); p++) {
             char call[CALL_SIZE];
             struct error error;
-            if (function->parameters[p].kind != KIND_COLOUR)
+            if (function->parameters[p].kind != KIND_COLOUR || function->parameters[p].high == 1)
                 continue;
             for (int sign = 0; sign < 2; sign++) {
                 char scene[TEXT_SIZE / 2], text[TEXT_SIZE];

@@ -232,6 +232,7 @@ TEST(lamps_with_a_profile_light_a_surface_by_their_integral) {
     light.position = vec3_make(0, 1, 0);
     light.direction = vec3_make(0, -1, 0);
     CHECK(light_set_profile(&light, lobe(&arena, 1, -1, 3), &error));
+    CHECK(light_prepare(&light, &arena, NULL, &error));
     struct light_context context;
     CHECK(light_context_make(&light, vec3_all(0), vec3_all(0), &context));
     enum { N = 300 };

@@ -1,5 +1,6 @@
 /* The tables of textures and bumps of a world: at a hit, lists of instructions give the values of the authored trees,
  * which are evaluated by recursion here. */
+#include "base/fault.h"
 #include "material/material_inputs.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -311,4 +312,32 @@ TEST(a_texture_over_a_listed_one_adds_only_its_own_instructions) {
     }
     texture_builder_destroy(&builder);
     arena_destroy(&deep.arena);
+}
+
+TEST(tables_of_materials_survive_any_allocation_that_fails) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    static struct authored_materials a;
+    struct test_random random = {7};
+    int failed = 0;
+    bool built = false;
+    a = (struct authored_materials){.texture_count = 0};
+    stage_begin(&a.stage, 1);
+    make_materials(&a, &random);
+    for (uint64_t at = 1; !built; at++) {
+        const struct material *materials[MATERIALS];
+        struct surface_tables tables;
+        struct arena arena = {.head = NULL};
+        for (int i = 0; i < MATERIALS; i++)
+            materials[i] = a.materials[i];
+        fault_at(FAULT_OF_ALLOCATION, at);
+        built = surface_tables_build(&tables, materials, MATERIALS, false, &arena, NULL);
+        fault_at(FAULT_OF_ALLOCATION, 0);
+        failed += !built;
+        arena_destroy(&arena);
+    }
+    CHECK(failed > 8);
+    stage_end(&a.stage);
+    image_release(a.image);
 }

@@ -1,4 +1,5 @@
-/* The recipes of CONTRIBUTING.md: each is a diff in tests/recipes. Its first line names the tests that it must pass. */
+/* What CONTRIBUTING.md promises of the tree: its recipes, each a diff in tests/recipes whose first line names the tests
+ * that it must pass; and what the pieces of a path do not call. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -86,6 +87,17 @@ static void add_words(const char *name, const char *text) {
     size_t used = strlen(words);
     (void)snprintf(words + used, sizeof words - used, " %.*s", (int)strcspn(text + 7, "\n"), text + 7);
     (void)name;
+}
+
+TEST_LONG(the_pieces_of_a_path_reach_no_allocator_no_call_through_a_pointer_and_not_themselves) {
+    char root[4096], *line = NULL;
+    if (test_has_sanitizer())
+        test_skip("compiles a build of its own");
+    CHECK(realpath(".", root) != NULL);
+    if (asprintf(&line, "unset MAKEFLAGS MFLAGS MAKELEVEL; '%s/tools/pieces.sh' \"$PWD/pieces\"", root) < 0)
+        exit(1);
+    test_shell(line, 0, "no allocator, no call through a pointer, no recursion");
+    free(line);
 }
 
 /* All together, in a copy of the tree with its objects, so that only what they change is compiled. */

@@ -65,7 +65,7 @@ static const char *wrong_text(const struct script_parameter *p, int which, char 
         list[count++] = "-1";
         list[count++] = "0 / 0";
     }
-    if (p->kind == KIND_FOG)
+    if (p->kind == KIND_FOG || p->kind == KIND_MEDIUM)
         list[count++] = "glass";
     if (p->kind == KIND_STOPS) {
         list[count++] = "{{0, 1, 1}}";
@@ -137,7 +137,8 @@ static const char *wrong_text(const struct script_parameter *p, int which, char 
     "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) "                                                 \
     "sheet = gr.mesh(glass, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}})\n"                                         \
     "ball = gr.sphere('ball')\n"                                                                                       \
-    "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 1}\n"
+    "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}); mist = gr.uniform_fog{density = 1}; "                           \
+    "smoke = gr.medium{scattering = {1, 1, 1}}\n"
 
 /* The call stands in line 4. */
 static bool run_call(const char *call, struct error *error) {

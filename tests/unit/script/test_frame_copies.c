@@ -232,6 +232,8 @@ static const char *value_of(const struct script_parameter *parameter, int which)
         return which ? "{0.1, 0.2, 0.3}" : "function(d) return {d.x * d.x, 0, 0} end";
     case KIND_FOG:
         return which ? "gr.uniform_fog(0.1)" : "gr.uniform_fog(0.2)";
+    case KIND_MEDIUM:
+        return which ? "gr.medium{g = 0.1}" : "gr.medium{g = 0.2}";
     case KIND_CAUSTICS:
         return which ? "100" : "{200, 0.5}";
     case KIND_NODES:
@@ -267,6 +269,8 @@ static const char *use_of(const struct script_function *function) {
         return "show.lights = {it}";
     case RESULT_FOG:
         return "show.fog = it";
+    case RESULT_MEDIUM:
+        return "show.medium = it";
     case RESULT_SKY:
         return "show.background = it";
     case RESULT_NOTHING:
