@@ -51,7 +51,7 @@ building=""
 [ -x build/release/gray ] || building=", plus the build"
 echo "rendering $scenes scenes takes $(about_time "$total") with $processors processors$building"
 
-tools/setup.sh "$@" || exit 1
+tools/setup.sh "$@" --no-window || exit 1
 make -s -j2 || { echo "render_all.sh: the build failed" >&2; exit 1; }
 mkdir -p "$gallery" || exit 1
 rm -f "$gallery"/*.png "$gallery"/*.apng "$gallery"/*.txt "$gallery"/*.err "$gallery"/index.html

@@ -94,6 +94,7 @@ const char *test_name(void);
  * are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the desktop may
  * leak. Leaks of the supervisor itself are found by the tests with a simulated window. */
 void test_need_window(void);
+void test_need_gtk_window(void); /* the same for gray-gtk, with a window manager (openbox) */
 
 /* A new empty folder for this test; the working directory stays the repository root. The folder is removed when the
  * test ends, except that of a failed test under run --keep. TMPDIR names its parent folder, which also belongs to this

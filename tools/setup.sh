@@ -1,15 +1,19 @@
 #!/bin/sh
 # Installs missing packages from the Debian archive of the machine, after a line for each group of them: those that the
-# build needs, the window (SDL2), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
+# build needs, the windows (SDL2, GTK 4), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
 # does not need cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
 # install packages, it prints one line with the command. On systems not derived from Debian it lists the packages to
 # install by hand.
-# Usage: tools/setup.sh [--minimal | --check | --tests]
+# GTK 4 is large: it is installed with --window, or where a display is set and apt-get would add fewer than 100 packages.
+# Usage: tools/setup.sh [--minimal | --check | --tests] [--window | --no-window]
 #   --minimal   only the packages that the build needs
 #   --check     only prints the missing packages; exit status 1 if the build needs one of them
 #   --tests     everything that make test can use: also clang, a screen without a monitor, MPI, readers of animations
 set -u
-mode=${1:-}
+mode="" window=""
+for word in "$@"; do
+    case $word in --window | --no-window) window=$word ;; *) mode=$word ;; esac
+done
 missing=""
 wanted="" # lines "GROUP PACKAGE"
 need() { # need PACKAGE COMMAND...: the command shows whether it is installed
@@ -42,6 +46,17 @@ have_mpi() {
     pkg-config --exists ompi-c || pkg-config --exists mpich
 }
 
+# Whether the window by GTK 4 is wanted here; prints what it costs where nobody has asked for it.
+want_gtk() {
+    pkg-config --exists gtk4 && return 0
+    [ "$window" != --window ] || return 0
+    [ "$window" != --no-window ] && [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || return 1
+    plan=$(apt-get install --assume-no --no-install-recommends libgtk-4-dev 2>/dev/null)
+    count=$(echo "$plan" | sed -n 's/.*upgraded, \([0-9]*\) newly installed.*/\1/p')
+    [ "${count:-100}" -lt 100 ] || return 1
+    echo "GTK 4: $count packages, $(echo "$plan" | sed -n 's/^After this operation, \(.*\) of additional.*/\1/p')" >&2
+}
+
 # Headers of the C library: a compiler alone cannot build anything.
 have_headers() {
     echo '#include <stdio.h>' | "${CC:-gcc}" -E -x c -
@@ -56,6 +71,8 @@ need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
 if [ "$mode" != --minimal ]; then
     want window libsdl2-dev pkg-config --exists sdl2
+    gtk=""
+    want_gtk && gtk=yes && want window libgtk-4-dev pkg-config --exists gtk4
     want libraries libjpeg-dev pkg-config --exists libjpeg
     want libraries libjansson-dev pkg-config --exists jansson
     want libraries libfreetype-dev pkg-config --exists freetype2
@@ -67,6 +84,7 @@ if [ "$mode" = --tests ]; then
     want window xvfb command -v xvfb-run
     want window xauth command -v xauth
     want window xdotool command -v xdotool
+    [ -z "$gtk" ] || want window openbox command -v openbox
     want machines libopenmpi-dev have_mpi
     want machines openmpi-bin command -v mpirun
     want animations ffmpeg command -v ffmpeg

@@ -8,6 +8,7 @@
 #include "host/supervisor_messages.h"
 #include "host/supervisor_signals.h"
 #include "session/text.h"
+#include "settings/setting.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -49,12 +50,23 @@ static void leave_abandoned(struct supervisor *supervisor) {
     supervisor_note_status(supervisor, ERROR_CANCELLED);
 }
 
+/* That becomes readable with an event of the window, or -1. */
+static int window_descriptor(const struct supervisor *supervisor) {
+    const struct window_driver *window = supervisor->window;
+    return window && window->descriptor ? window->descriptor(window->context) : -1;
+}
+
+/* Milliseconds between two looks at the window. */
+static int window_patience(const struct supervisor *supervisor) {
+    return window_descriptor(supervisor) >= 0 && viewer_rests(&supervisor->viewer) ? 250 : 4;
+}
+
 /* Milliseconds to wait for the next message at most; -1: until it comes. */
 static int poll_time(const struct supervisor *supervisor) {
     if (supervisor->output.farm)
         return 2;
     if (supervisor->window)
-        return 4;
+        return window_patience(supervisor);
     if (supervisor->deadline > 0)
         return 5;
     if (supervisor->output.current.open || supervisor->watch.open)
@@ -86,9 +98,10 @@ static bool files_changed(struct supervisor *supervisor) {
 static void talk_to_child(struct supervisor *supervisor) {
     struct message message;
     while (!supervisor->broken) {
-        struct pollfd watched[2] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
-                                    {.fd = supervisor->signals, .events = POLLIN}};
-        if (poll(watched, 2, poll_time(supervisor)) < 0 && errno != EINTR)
+        struct pollfd watched[3] = {{.fd = supervisor->channel.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN},
+                                    {.fd = window_descriptor(supervisor), .events = POLLIN}};
+        if (poll(watched, 3, poll_time(supervisor)) < 0 && errno != EINTR)
             break;
         /* A child that is beyond its limits is killed, unless it is ending anyway. */
         if (supervisor_script_patience(supervisor) == 0) {
@@ -162,10 +175,12 @@ static bool wait_for_change(struct supervisor *supervisor) {
     if (supervisor->status != 0)
         supervisor_open_window(supervisor); /* for the error */
     while (!supervisor->ended && !supervisor->restarts) {
-        struct pollfd watched[2] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
-                                    {.fd = supervisor->signals, .events = POLLIN}};
+        struct pollfd watched[3] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
+                                    {.fd = supervisor->signals, .events = POLLIN},
+                                    {.fd = window_descriptor(supervisor), .events = POLLIN}};
         /* Not at once: a file that was read while it was being written is checked again. */
-        (void)poll(watched, 2, supervisor->window ? 4 : supervisor->watch.last > 0 ? 20 : 500);
+        int patience = supervisor->window ? window_patience(supervisor) : 500;
+        (void)poll(watched, 3, patience > 20 && supervisor->watch.last > 0 ? 20 : patience);
         if (watched[1].revents)
             supervisor_read_signals(supervisor);
         supervisor_step_window(supervisor);
@@ -223,7 +238,8 @@ static void run_and_watch(struct supervisor *supervisor) {
         supervisor->script.used = 0;
         supervisor->script.frames = 0;
         atomic_store(&supervisor->control->cancel, CANCEL_NOTHING);
-        answer_again(supervisor, !supervisor->watch.assets_differ);
+        answer_again(supervisor, !supervisor->watch.assets_differ && !supervisor->options_differ);
+        supervisor->options_differ = false;
         run_children(supervisor);
     }
     supervisor->waits = false;
@@ -321,14 +337,22 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
 /* Not on the stack, which may be small. */
 int supervisor_run(const struct options *options, const struct program_parts *parts) {
     struct supervisor *supervisor = mem_alloc_zero(1, sizeof *supervisor);
-    if (!supervisor) {
+    struct options own = *options;
+    const char **given = mem_alloc_zero((size_t)setting_count, sizeof *given);
+    if (!supervisor || !given) {
         (void)fputs("gray: out of memory\n", stderr);
+        mem_free(supervisor);
+        mem_free(given);
         return ERROR_MACHINE;
     }
-    supervisor->options = options;
+    for (int i = 0; options->script.given && i < setting_count; i++)
+        given[i] = options->script.given[i];
+    own.script.given = supervisor->given = given;
+    supervisor->options = supervisor->own_options = &own;
     supervisor->window = parts->window;
     supervisor->signals = supervisor->channel.descriptor = -1;
     int status = run(supervisor, parts->transport);
     mem_free(supervisor);
+    mem_free(given);
     return status;
 }

@@ -41,6 +41,9 @@ struct script_retry {
 
 struct supervisor {
     const struct options *options;
+    struct options *own_options; /* the same; the user may change settings in the window */
+    const char **given;          /* their script.given, by setting; owned */
+    bool options_differ;         /* the child does not know them */
     struct output_session output;
     const struct window_driver *window; /* or NULL */
     struct viewer viewer;               /* the picture in the window */

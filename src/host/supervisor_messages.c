@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "settings/setting.h"
 #include "viewer/viewer_save.h"
 
 #include <poll.h>
@@ -170,6 +171,14 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* As if its option were given from now on: another child runs the scripts. */
+static void change_setting(struct supervisor *supervisor, const struct viewer_setting *change) {
+    setting_store(&setting_table[change->index], &supervisor->own_options->settings, change->number);
+    supervisor->given[change->index] = "";
+    supervisor->options_differ = true;
+    supervisor_restart(supervisor);
+}
+
 /* ok: a file with that name was written. */
 static void show_written(struct supervisor *supervisor, bool ok, const char *name, const struct error *error) {
     char line[NAME_LIMIT + 64];
@@ -177,7 +186,7 @@ static void show_written(struct supervisor *supervisor, bool ok, const char *nam
     viewer_show_notice(&supervisor->viewer, line, !ok);
 }
 
-static void save_from_window(struct supervisor *supervisor,
+static bool save_from_window(struct supervisor *supervisor,
                              bool (*take)(const struct viewer *viewer, const struct file_target *picture, char *name,
                                           struct error *error)) {
     struct error error;
@@ -187,6 +196,7 @@ static void save_from_window(struct supervisor *supervisor,
     output_say(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, ok ? "gray: notice: %s is written" : "%s",
                ok ? name : error.text);
     show_written(supervisor, ok, name, &error);
+    return ok;
 }
 
 /* The script's picture, under its name. */
@@ -211,7 +221,8 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    if (!supervisor->waits && clock_now() - supervisor->viewer.window.script_began > patience_open)
+    bool at_once = supervisor->window && supervisor->window->status;
+    if (!supervisor->waits && (at_once || clock_now() - supervisor->viewer.window.script_began > patience_open))
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
@@ -232,14 +243,21 @@ void supervisor_step_window(struct supervisor *supervisor) {
             write_from_window(supervisor);
             break;
         case VIEWER_SAVE_IMAGE:
-            save_from_window(supervisor, viewer_save_image);
+            (void)save_from_window(supervisor, viewer_save_image);
             break;
         case VIEWER_SAVE_CAMERA:
-            save_from_window(supervisor, viewer_save_camera);
+            (void)save_from_window(supervisor, viewer_save_camera);
             break;
         case VIEWER_SAVE_EDITS:
-            save_from_window(supervisor, viewer_save_edits);
+            if (save_from_window(supervisor, viewer_save_edits))
+                viewer->edit.saved_at = viewer->edit.steps.at;
             break;
+        case VIEWER_CHANGE_SETTING:
+            change_setting(supervisor, &viewer->setting);
+            return;
+        case VIEWER_RUN_AGAIN:
+            supervisor_restart(supervisor);
+            return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
             viewer->note[0] = '\0';
@@ -376,6 +394,7 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
     case MESSAGE_FILM:
     case MESSAGE_ANSWER:
     case MESSAGE_PREVIEW_COMMAND:
+    case MESSAGE_WINDOW:
         break;
     }
     supervisor->broken = true;

@@ -222,6 +222,23 @@ static uint32_t idle_parts(const struct surface_tables *tables, const struct hit
     return idle;
 }
 
+static bool describe_node(struct picking *p, const struct node *root, struct error *error) {
+    struct picked *out = p->out;
+    const struct node *node = p->steps[p->depth - 1].node;
+    out->serial = node->serial;
+    out->route = route_hash(p->steps, p->depth);
+    out->solid = p->depth > p->route ? route_hash(p->steps, p->route) : 0;
+    pick_copy_name(out->name, node->name);
+    if (p->depth > 1) {
+        out->parent_serial = p->steps[p->depth - 2].node->serial;
+        pick_copy_name(out->parent_name, p->steps[p->depth - 2].node->name);
+    }
+    pick_copy_name(out->shape, shape_description(p, node));
+    out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
+    out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
+    return box_node(p, root, error);
+}
+
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
                      struct error *error) {
     struct picked *out = p->out;
@@ -233,22 +250,55 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     /* The route leads to the shape; the user moves up and down on it. */
     if (!choose_node(p, hit, up))
         return error_no_memory(error, "the route to an operand");
-    const struct node *node = p->steps[p->depth - 1].node;
-    out->serial = node->serial;
-    out->route = route_hash(p->steps, p->depth);
-    out->solid = p->depth > p->route ? route_hash(p->steps, p->route) : 0;
-    pick_copy_name(out->name, node->name);
-    if (p->depth > 1) {
-        out->parent_serial = p->steps[p->depth - 2].node->serial;
-        pick_copy_name(out->parent_name, p->steps[p->depth - 2].node->name);
-    }
-    pick_copy_name(out->shape, shape_description(p, node));
     /* Of the material, what can be changed, and which changes would not be seen. */
     describe_material(p->world->authored.materials[hit->material], out);
     out->idle_parts = idle_parts(&p->world->surfaces, hit);
-    out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
-    out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
-    return box_node(p, root, error);
+    return describe_node(p, root, error);
+}
+
+/* The path to the first primitive under the nodes that are known: `depth` of them, without placements. */
+static bool find_first(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
+    struct picking *p = context;
+    bool below = depth >= p->depth && depth <= ROUTE_LIMIT && count > 0;
+    for (uint32_t i = 0; below && i < p->depth; i++)
+        below = steps[i].node == p->steps[i].node;
+    if (!below)
+        return true;
+    p->primitive = first;
+    p->route = p->whole = depth;
+    memcpy(p->steps, steps, depth * sizeof *steps);
+    return false;
+}
+
+bool pick_node(const struct render_job *job, const struct node *root, const struct node_query *query,
+               struct picked *out, struct error *error) {
+    struct picking p = {.world = job->world, .out = out, .depth = query->depth};
+    struct node_query part = *query;
+    *out = (struct picked){0};
+    for (part.depth = 1; part.depth <= query->depth && part.depth <= NODE_LEVELS; part.depth++) {
+        p.steps[part.depth - 1].node = node_list_find(root, &part);
+        if (!p.steps[part.depth - 1].node)
+            return true;
+    }
+    if (query->depth == 0 || query->depth > NODE_LEVELS)
+        return true;
+    if (!world_visit_node_paths(p.world, root, find_first, &p, error))
+        return false;
+    out->hit = p.route > 0;
+    if (!out->hit)
+        return true;
+    out->up = (int32_t)(p.route - p.depth);
+    out->levels = p.depth - 1;
+    (void)node_path_text(p.steps, p.depth, out->node_path, sizeof out->node_path);
+    const struct node *node = p.steps[p.depth - 1].node;
+    if (node->kind == NODE_GEOMETRY && node->material)
+        describe_material(node->material, out);
+    if (!describe_node(&p, root, error))
+        return false;
+    for (int i = 0; i < 8; i++)
+        out->position = vec3_add_scaled(out->position, out->corners[i], 0.125);
+    out->distance = vec3_length(vec3_sub(out->position, job->camera.eye));
+    return true;
 }
 
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,

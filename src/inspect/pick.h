@@ -2,6 +2,7 @@
 #ifndef GRAY_INSPECT_PICK_H
 #define GRAY_INSPECT_PICK_H
 
+#include "inspect/node_list.h"
 #include "math/affine.h"
 #include "render/render.h"
 #include "scene/change_material.h"
@@ -46,5 +47,9 @@ struct pick_query {
  * camera. */
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error);
+
+/* The same for a node of the tree, at the middle of its box; a node of which nothing is drawn is not hit. */
+bool pick_node(const struct render_job *job, const struct node *root, const struct node_query *query,
+               struct picked *out, struct error *error);
 
 #endif

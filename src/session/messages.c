@@ -57,6 +57,7 @@ bool message_is_valid(const struct message *message) {
         return message->size == sizeof message->body.report;
     case MESSAGE_PREVIEW_REPLY:
     case MESSAGE_PREVIEW_COMMAND:
+    case MESSAGE_WINDOW:
         return message->size <= sizeof message->body.bytes;
     case MESSAGE_ABANDON:
     case MESSAGE_FRAME:
@@ -198,7 +199,8 @@ enum channel_result channel_receive(struct channel *channel, struct message *mes
     bool lost = (packet.msg_flags & MSG_CTRUNC) != 0;
     bool sound = (size_t)got >= sizeof word && (packet.msg_flags & MSG_TRUNC) == 0 &&
                  (!lost || (message->kind == MESSAGE_FILM && message->descriptor < 0)) && message_is_valid(message) &&
-                 (message->descriptor < 0 || message->kind == MESSAGE_FILM || message->kind == MESSAGE_PREVIEW_COMMAND);
+                 (message->descriptor < 0 || message->kind == MESSAGE_FILM ||
+                  message->kind == MESSAGE_PREVIEW_COMMAND || message->kind == MESSAGE_WINDOW);
     if (sound)
         return CHANNEL_MESSAGE;
     if (message->descriptor >= 0)

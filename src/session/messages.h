@@ -32,6 +32,8 @@ enum message_kind {
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
     MESSAGE_ANSWER, /* struct message_answer */
     MESSAGE_PREVIEW_COMMAND, /* with the descriptor of a film's memory for a larger pass */
+    MESSAGE_WINDOW, /* between the viewer and the process of its window (viewer/window_channel.h), with the descriptor
+                     * of a picture's memory */
 };
 
 /* The kind of a line: decides whether -q or --verbose print it, and on which stream. */

@@ -17,7 +17,7 @@ static bool check_together(const struct options *options, struct error *error) {
         return error_set(error, ERROR_USAGE, "--threshold is for gray compare; the noise of a picture is --noise X");
     if (options->action != ACTION_RENDER && !merge)
         return true;
-    if (options->script_count == 0)
+    if (options->script_count == 0 && (merge || !options->window)) /* a window may be empty */
         return error_set(error, ERROR_USAGE, merge ? "no parts to merge were given" : "no scene script was given");
     /* The names of scripts. */
     for (int i = 0; i < options->script_count; i++) {

@@ -32,6 +32,10 @@ static const char *const group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_REPORTS] = "Display and messages",
 };
 
+const char *option_group_title(enum option_group group) {
+    return group_titles[group];
+}
+
 /* The columns are those of struct setting; defaults other than 0 are set by options_parse. */
 static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_SAMPLES, OPTION_GROUP_RAYS, "--quick", NULL, "", NULL, FIELD(quick), 0, 0, 0, NULL,

@@ -9,6 +9,7 @@ struct document;
 /* All options in one row: the settings, some of which have no option, and then the others. */
 int option_count(void);
 const struct setting *option_at(int index);
+const char *option_group_title(enum option_group group);
 /* One option; and all in groups, with their defaults, the exit status and the environment. */
 void option_describe(const struct setting *option, struct document *document);
 void options_describe(struct document *document);

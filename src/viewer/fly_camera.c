@@ -102,10 +102,16 @@ void fly_camera_turn(struct fly_camera *fly_camera, double x, double y) {
     fly_camera->pose.turn = multiply(turn, turn_about(vec3_make(1, 0, 0), -y * angle));
 }
 
+/* A level camera keeps its horizon: it turns about the y axis, and not over the poles. */
 void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y) {
     struct pose *pose = &fly_camera->pose;
-    struct quaternion by = turn_about(rotate(pose->turn, vec3_make(0, 1, 0)), -x * 180 * degree);
-    by = multiply(by, turn_about(rotate(pose->turn, vec3_make(1, 0, 0)), -y * 180 * degree));
+    struct vec3 right = rotate(pose->turn, vec3_make(1, 0, 0)), up = rotate(pose->turn, vec3_make(0, 1, 0));
+    bool level = fabs(right.y) < 1e-6 && fabs(up.y) > 1e-3;
+    struct quaternion pitch = turn_about(right, -y * 180 * degree);
+    if (level && rotate(pitch, up).y * up.y < 1e-3 * up.y * up.y)
+        pitch = turn_about(right, 0);
+    struct quaternion by =
+        multiply(turn_about(level ? vec3_make(0, up.y < 0 ? -1 : 1, 0) : up, -x * 180 * degree), pitch);
     pose->position = vec3_add(fly_camera->centre, rotate(by, vec3_sub(pose->position, fly_camera->centre)));
     pose->turn = multiply(by, pose->turn);
 }
@@ -113,6 +119,48 @@ void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y) {
 void fly_camera_zoom(struct fly_camera *fly_camera, double steps) {
     double fov = fly_camera->pose.fov * el_exp(-0.1 * steps);
     fly_camera->pose.fov = fov < 0.01 ? 0.01 : fov > 170 ? 170 : fov;
+}
+
+/* How far the centre is along the view, at least a little. */
+static double depth_of_centre(const struct fly_camera *fly_camera) {
+    struct vec3 to = vec3_sub(fly_camera->centre, fly_camera->pose.position);
+    return fmax(vec3_dot(to, forward_of(&fly_camera->pose)), 0.01 * fly_camera->speed);
+}
+
+/* World units across the height of the picture, at the depth of the centre. */
+static double height_at_centre(const struct fly_camera *fly_camera) {
+    double half = 0.5 * fly_camera->pose.fov * degree;
+    return 2 * depth_of_centre(fly_camera) * el_sin(half) / el_cos(half);
+}
+
+void fly_camera_pan(struct fly_camera *fly_camera, double x, double y) {
+    double height = height_at_centre(fly_camera);
+    struct vec3 route = rotate(fly_camera->pose.turn, vec3_make(-x * height, y * height, 0));
+    fly_camera->pose.position = vec3_add(fly_camera->pose.position, route);
+}
+
+void fly_camera_dolly(struct fly_camera *fly_camera, double x, double y, double steps) {
+    double depth = depth_of_centre(fly_camera), height = height_at_centre(fly_camera);
+    struct vec3 to = rotate(fly_camera->pose.turn, vec3_make(x * height, -y * height, -depth));
+    double share = 1 - el_exp(-0.1 * steps);
+    fly_camera->pose.position = vec3_add_scaled(fly_camera->pose.position, to, share);
+}
+
+void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction) {
+    struct pose *pose = &fly_camera->pose;
+    double distance = vec3_length(vec3_sub(fly_camera->centre, pose->position));
+    pose->turn = looking(direction, fabs(direction.y) > 0.99 ? vec3_make(0, 0, -1) : vec3_make(0, 1, 0));
+    pose->position = vec3_add_scaled(fly_camera->centre, direction, -distance);
+}
+
+void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box) {
+    struct pose *pose = &fly_camera->pose;
+    double radius = box_is_empty(box) ? 0 : 0.5 * vec3_length(vec3_sub(box->max, box->min));
+    double half = 0.5 * fmin(pose->fov, 120) * degree;
+    if (!(radius > 0) || !isfinite(radius))
+        return;
+    fly_camera->centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
+    pose->position = vec3_add_scaled(fly_camera->centre, forward_of(pose), -radius / el_sin(half));
 }
 
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees) {

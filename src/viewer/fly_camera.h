@@ -43,6 +43,15 @@ void fly_camera_turn(struct fly_camera *fly_camera, double x, double y);
 void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y);
 /* Narrows (steps > 0) or widens the angle of view, by a tenth each. */
 void fly_camera_zoom(struct fly_camera *fly_camera, double steps);
+/* Moves it in the plane of the picture: the centre follows the mouse. */
+void fly_camera_pan(struct fly_camera *fly_camera, double x, double y);
+/* Moves it along the ray through a point of the picture (from its middle, in heights), by a tenth of the distance of
+ * the centre for each step; never beyond the centre. */
+void fly_camera_dolly(struct fly_camera *fly_camera, double x, double y, double steps);
+/* Looks along a direction at the centre, from the same distance; up is y, or -z where that is the direction. */
+void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction);
+/* Moves back or forth until the box fills the picture, which becomes the centre. A box without a size: not at all. */
+void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box);
 /* Rolls to the right by degrees; fly_camera_level rolls until the horizon is level (y is up), and keeps the view
  * direction. */
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees);

@@ -17,8 +17,12 @@ static bool ends_with_zero(const char *text, size_t size) {
 static bool reply_is_valid(const struct preview_reply *reply) {
     const struct picked *picked = &reply->picked;
     const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, reply->root_name};
-    bool sound = (unsigned)reply->kind <= REPLY_OVERLAY && ends_with_zero(reply->text, sizeof reply->text) &&
+    bool sound = (unsigned)reply->kind <= REPLY_NODES && reply->nodes.count <= NODE_ROWS &&
+                 ends_with_zero(reply->text, sizeof reply->text) &&
                  ends_with_zero(picked->node_path, sizeof picked->node_path);
+    for (uint32_t i = 0; sound && i < reply->nodes.count; i++)
+        sound = ends_with_zero(reply->nodes.rows[i].name, NODE_NAME) &&
+                ends_with_zero(reply->nodes.rows[i].kind, sizeof reply->nodes.rows[i].kind);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         sound = sound && ends_with_zero(words[i], PICK_NAME);
     return sound;

@@ -35,6 +35,8 @@ struct pass_view {
     double exposure;        /* stops: it decides which pixels are sampled again */
     uint32_t divide;        /* one pixel represents a square with this side; from 1 */
     bool plain;             /* one sample a pixel, coarse soft light */
+    bool headlight;         /* plain, and shaded by a light at the eye (render/headlight.h) */
+    uint32_t samples;       /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
     bool own;               /* the camera, lens and motion of the script */
     uint32_t width, height; /* not 0: so many pixels in place of those of the picture, in the memory of the command */
 };
@@ -58,7 +60,8 @@ enum preview_reply_kind {
     REPLY_CHANGED,
     REPLY_PIXEL_TRACE,
     REPLY_LIGHTS,
-    REPLY_OVERLAY
+    REPLY_OVERLAY,
+    REPLY_NODES
 };
 /* The result of a command of the window; the render process waits for the next one. */
 struct preview_reply {
@@ -74,6 +77,7 @@ struct preview_reply {
     struct affine world_from_root;
     uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those reported begin with first_light, from 0 */
     uint32_t first_light;
+    struct node_rows nodes; /* of NODES */
     struct light_info lights[LIGHTS_PER_MESSAGE];
     char text[512]; /* of CHANGED: why an edit failed, or empty */
     bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass starts it again */
@@ -86,17 +90,20 @@ enum preview_command_kind {
     COMMAND_CHANGE,
     COMMAND_PIXEL_TRACE,
     COMMAND_LIGHTS,
-    COMMAND_OVERLAY
+    COMMAND_OVERLAY,
+    COMMAND_NODES
 };
 struct preview_command {
     enum preview_command_kind kind;
     bool quit;             /* of END: the window was closed */
     struct pass_view view; /* of PASS, PICK, PIXEL_TRACE and OVERLAY */
     struct view_overlay_request
-        overlay;          /* of PASS: made after it; of OVERLAY. After PICK the outline is that of the picked node */
-    double x, y;          /* of PICK and PIXEL_TRACE: pixels of the whole picture */
-    int32_t up;           /* of PICK: nodes above the one that is hit, or operands below it */
-    uint32_t first_light; /* of CHANGE and LIGHTS: report lights from this one on, counted from 0 */
+        overlay;            /* of PASS: made after it; of OVERLAY. After PICK the outline is that of the picked node */
+    double x, y;            /* of PICK and PIXEL_TRACE: pixels of the whole picture */
+    int32_t up;             /* of PICK: nodes above the one that is hit, or operands below it */
+    bool by_node;           /* of PICK: not at x, y, but this node */
+    struct node_query node; /* of PICK; of NODES: whose children */
+    uint32_t first_light;   /* of CHANGE and LIGHTS: report lights from this one on, counted from 0 */
     struct change change;
     bool present; /* of CHANGE: it is applied; else it is undone */
     bool more;    /* of CHANGE: another change follows at once */

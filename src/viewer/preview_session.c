@@ -6,6 +6,7 @@
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
+#include "render/headlight.h"
 #include "viewer/view_overlay_internal.h"
 
 #include <stdio.h>
@@ -31,10 +32,10 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->settings.show_refined = true;
     job->settings.tile_order = TILE_ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
-    job->settings.passes = view->divide <= 1 && !view->plain;
+    job->settings.passes = (view->divide <= 1 && !view->plain) || view->samples > 0;
     settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
-    if (!job->settings.passes) {
-        job->settings.path_samples = 1;
+    if (!job->settings.passes || view->samples > 0) {
+        job->settings.path_samples = view->samples > 0 ? (int)view->samples : 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
     if (view->divide > 1 || view->width > 0) { /* the film determines the part */
@@ -91,7 +92,8 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     progress_estimate_reset(progress_estimate, fine);
     job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = render_run(&job, preview->pool, &report->rays, error);
+    bool ok = work->view.headlight ? render_headlight(&job, preview->pool, &report->rays, error)
+                                   : render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
         return false;
@@ -201,8 +203,10 @@ static struct render_job view_job(const struct preview_state *work, const struct
 static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
     struct render_job job = view_job(work, &command->view);
-    if (!pick_at(&job, work->preview->request->root, (struct pick_query){command->x, command->y, command->up}, picked,
-                 error))
+    const struct node *root = work->preview->request->root;
+    const struct pick_query query = {command->x, command->y, command->up};
+    if (!(command->by_node ? pick_node(&job, root, &command->node, picked, error)
+                           : pick_at(&job, root, query, picked, error)))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < MATERIAL_PART_PARTS; part++)
@@ -301,6 +305,10 @@ static bool execute_command(struct preview_state *work, const struct preview_com
     case COMMAND_LIGHTS:
         reply->kind = REPLY_LIGHTS;
         describe_lights(work, command->first_light, reply);
+        return true;
+    case COMMAND_NODES:
+        reply->kind = REPLY_NODES;
+        node_list_rows(work->preview->request->root, &command->node, &reply->nodes);
         return true;
     case COMMAND_END:
         break;

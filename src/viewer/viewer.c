@@ -22,6 +22,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .exposure = viewer->request.settings.tone.exposure,
                               .divide = divide,
                               .plain = plain,
+                              .headlight = plain && viewer_has_widgets(viewer) && !viewer_plays(viewer),
                               .own = !viewer->camera_moved};
 }
 
@@ -36,6 +37,7 @@ static void keep_work(struct viewer *viewer, const struct viewer *before) {
     if (is_different(before->request.settings.tone.exposure, before->script_exposure))
         viewer->request.settings.tone.exposure = before->request.settings.tone.exposure;
     viewer->edit.steps = before->edit.steps;
+    viewer->edit.saved_at = before->edit.saved_at;
     viewer->edit.pending = before->edit.pending;
     viewer->edit.tool = before->edit.tool;
     viewer_resend_edits(viewer);
@@ -167,8 +169,8 @@ void viewer_detach(struct viewer *viewer) {
 
 bool viewer_has_tiles(const struct viewer *viewer) {
     const struct viewer_pass *pass = &viewer->pass;
-    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.width == 0 &&
-           !pass->edited;
+    return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.samples == 0 &&
+           pass->view.width == 0 && !pass->edited;
 }
 
 void viewer_keep(struct viewer *viewer) {
@@ -215,13 +217,22 @@ bool viewer_is_idle(const struct viewer *viewer) {
            !viewer_wants_large(viewer) && !viewer_large_is_outdated(viewer);
 }
 
+bool viewer_rests(const struct viewer *viewer) {
+    bool flies = false;
+    for (int key = 0; key < FLY_KEYS; key++)
+        flies = flies || viewer->fly_camera.down[key];
+    bool done = viewer->window.waits || (viewer->block && (viewer_is_idle(viewer) || viewer->pass.halted));
+    return viewer->window.open && done && !flies && !viewer->window.dirty && !viewer_plays(viewer);
+}
+
 bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
-    viewer->pass.result = report->stopped ? RESULT_STOPPED : viewer->pass.view.plain ? RESULT_COARSE : RESULT_COMPLETE;
+    bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
+    viewer->pass.result = report->stopped ? RESULT_STOPPED : few ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
     /* Tiles that were finished before a pass was stopped may be denoised now. */
@@ -255,6 +266,9 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer->pass.outdated = true;
         viewer->built = reply->built;
         viewer->scene = *reply;
+        viewer->nodes.count = 0;
+        if (viewer_has_widgets(viewer))
+            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PASS:
@@ -267,6 +281,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         return;
     case REPLY_PICKED:
         viewer_receive_picked(viewer, &reply->picked);
+        if (viewer->edit.probes)
+            return;
         viewer->command.overlay = viewer_overlay_request(viewer, false);
         viewer->command.overlay.lines.kind = OVERLAY_NONE;
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
@@ -281,6 +297,9 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         return;
     case REPLY_LIGHTS:
         viewer_receive_lights(viewer, reply);
+        return;
+    case REPLY_NODES:
+        viewer->window.driver->nodes(viewer->window.driver->context, &viewer->command.node, &reply->nodes);
         return;
     case REPLY_PIXEL_TRACE:
         return;
@@ -299,6 +318,8 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     if (!resume) {
         viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
+        viewer->pass.view.samples = viewer->pass.draft_samples;
+        viewer->pass.draft_samples = 0;
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
                               is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
@@ -344,7 +365,17 @@ static void command_pick(struct viewer *viewer) {
                                                .view = current_view(viewer, 1, true),
                                                .x = viewer->edit.click.x,
                                                .y = viewer->edit.click.y,
-                                               .up = viewer->edit.click.up};
+                                               .up = viewer->edit.click.up,
+                                               .by_node = viewer->edit.by_node,
+                                               .node = viewer->edit.node};
+    viewer->edit.by_node = false;
+}
+
+/* Rows that were wanted first. */
+static void command_nodes(struct viewer *viewer) {
+    struct viewer_nodes *nodes = &viewer->nodes;
+    viewer->command = (struct preview_command){.kind = COMMAND_NODES, .node = nodes->wanted[0]};
+    memmove(nodes->wanted, nodes->wanted + 1, --nodes->count * sizeof *nodes->wanted);
 }
 
 static void command_pixel_trace(struct viewer *viewer) {
@@ -363,10 +394,32 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
+/* Between the preview and the picture of a progressive integrator: few samples, denoised, since many take long. */
+static const struct { uint32_t divide, samples; } drafts[] = {{3, 4}, {2, 8}, {1, 16}};
+
+/* The draft after this pass, or that which comes first. False: the picture itself. */
+static bool begin_draft(struct viewer *viewer, double now) {
+    const struct pass_view *view = &viewer->pass.view;
+    size_t next = 0;
+    while (view->samples > 0 && next < sizeof drafts / sizeof *drafts && drafts[next].samples <= view->samples)
+        next++;
+    if (next == sizeof drafts / sizeof *drafts || !viewer_shows_denoised(viewer) ||
+        drafts[next].samples > settings_path_samples(&viewer->request.settings) / 2)
+        return false;
+    viewer->pass.draft_samples = drafts[next].samples;
+    begin_pass(viewer, drafts[next].divide, false, false, now);
+    return true;
+}
+
+bool viewer_shows_denoised(const struct viewer *viewer) {
+    return viewer_has_widgets(viewer) && (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
+}
+
 static enum viewer_action next_command(struct viewer *viewer, double now) {
     if (viewer_large_is_outdated(viewer) && !viewer->pass.outdated)
         viewer_drop_large(viewer);
-    uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
+    bool first = viewer->pass.from_coarse && !viewer_has_widgets(viewer);
+    uint32_t divide = first ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
         viewer->edit.click_waits = viewer->trace.requested = false;
@@ -376,6 +429,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         command_pick(viewer);
     } else if (viewer->trace.requested) {
         command_pixel_trace(viewer);
+    } else if (viewer->nodes.count > 0) {
+        command_nodes(viewer);
     } else if (!viewer->pass.outdated && !coarse && viewer_needs_overlay(viewer)) {
         command_overlay(viewer);
     } else if (viewer->pass.halted) {
@@ -394,9 +449,11 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         if (!viewer_wants_large(viewer) || !viewer_begin_large(viewer))
             return VIEWER_NOTHING;
         begin_large_pass(viewer, now);
+    } else if (viewer->pass.view.headlight && viewer->pass.view.divide > 1) {
+        begin_pass(viewer, viewer->pass.view.divide / 2, true, false, now);
     } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
-    } else {
+    } else if (!begin_draft(viewer, now)) {
         begin_pass(viewer, 1, false, false, now);
     }
     if (viewer->command.kind != COMMAND_PASS)
@@ -414,7 +471,7 @@ static enum viewer_action step_running(struct viewer *viewer) {
     }
     bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.target > 0 ||
                   (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.requested ||
-                  viewer->edit.pending.count > 0 ||
+                  viewer->nodes.count > 0 || viewer->edit.pending.count > 0 ||
                   is_different(viewer->pass.view.exposure, viewer->request.settings.tone.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;

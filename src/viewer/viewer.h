@@ -25,16 +25,18 @@ struct outline_side {
 
 enum viewer_action {
     VIEWER_NOTHING,
-    VIEWER_STOP_PASS,     /* the current pass is obsolete */
-    VIEWER_SEND_COMMAND,  /* viewer->command must be sent */
-    VIEWER_WRITE_PICTURE, /* the script's own picture is complete for the first time: write it */
-    VIEWER_SAVE_IMAGE,    /* the displayed image must be saved: viewer->window.image */
-    VIEWER_SAVE_CAMERA,   /* the camera must be saved */
-    VIEWER_SAVE_EDITS,    /* the edits must be saved */
-    VIEWER_LOG_NOTE,      /* viewer->note is a line for the log */
-    VIEWER_NEXT_FRAME,    /* the same, and the animation goes to viewer_next_frame */
-    VIEWER_NEXT_PICTURE,  /* this picture is finished: the script continues */
-    VIEWER_QUIT,          /* the window was closed, or Q */
+    VIEWER_STOP_PASS,      /* the current pass is obsolete */
+    VIEWER_SEND_COMMAND,   /* viewer->command must be sent */
+    VIEWER_WRITE_PICTURE,  /* the script's own picture is complete for the first time: write it */
+    VIEWER_SAVE_IMAGE,     /* the displayed image must be saved: viewer->window.image */
+    VIEWER_SAVE_CAMERA,    /* the camera must be saved */
+    VIEWER_SAVE_EDITS,     /* the edits must be saved */
+    VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
+    VIEWER_RUN_AGAIN,      /* the scripts must run again, which have ended */
+    VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
+    VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
+    VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
+    VIEWER_QUIT,           /* the window was closed, or Q */
 };
 
 /* The window, and the position of the picture in it, in pixels of the screen. */
@@ -52,6 +54,7 @@ struct selection {
     struct transform applied; /* the change of its pose at that time */
     uint32_t light;           /* number, from 1 */
     double x, y;              /* the clicked position: pixels of the whole picture */
+    struct node_query node;   /* where it was chosen in the tree; depth 0: by a click */
     int32_t up;               /* levels above the node that was hit; if negative, levels of operands below it */
 };
 /* The action of the mouse on the selection. */
@@ -80,6 +83,7 @@ struct viewer_pass {
     struct picture_report report; /* of the last pass that was finished */
     bool edited;                  /* for a changed scene */
     uint32_t divide;              /* of passes while the camera moves */
+    uint32_t draft_samples;       /* of the next pass, or 0: all */
     double began;
     bool outdated;    /* the camera is not that of `view`, or the scene was changed */
     bool from_coarse; /* the next pass is a coarse one (R) */
@@ -88,13 +92,24 @@ struct viewer_pass {
     double halted_at; /* 0: the time of the stop was reported */
 };
 
+/* Rows of the tree that the window wants; later ones are dropped, and wanted again when they come into view. */
+enum { NODE_QUERIES = 64 };
+struct viewer_nodes {
+    struct node_query wanted[NODE_QUERIES];
+    uint32_t count;
+};
+
 /* The changes of the scene, and the state for making them. */
 struct viewer_edit {
     struct edits steps;
+    uint32_t saved_at;          /* steps.at when the edits were saved last */
     struct change_list pending; /* not sent yet: the current changes of these targets */
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */
     bool click_waits;
+    bool by_node; /* the click is on this node in the tree */
+    struct node_query node;
+    bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
     enum material_part part; /* of the material, for which the panel has sliders */
     bool joins;              /* the next change by the mouse is part of the last one */
@@ -138,8 +153,9 @@ struct viewer_display {
 
 /* The mouse. */
 struct viewer_input {
-    bool grabbed;            /* it turns the camera */
-    bool pressed, dragged;   /* the left button is down on the picture, and has moved since */
+    bool grabbed;            /* flying: the mouse turns the camera (with widgets: while a button is held) */
+    int pressed;             /* the button that is down on the picture, or 0 */
+    bool dragged, shift;     /* the mouse has moved since; shift was held */
     double press_x, press_y; /* where */
 };
 
@@ -177,6 +193,12 @@ struct viewer_notice {
     char text[512];
     bool warns;
     double until; /* 0: it is new */
+};
+
+/* A setting that the user has changed, as if its option were given. */
+struct viewer_setting {
+    int index; /* of setting_table */
+    double number;
 };
 
 /* The window and its state: what stays from one picture to the next. */
@@ -220,6 +242,7 @@ struct viewer {
     bool camera_moved; /* it differs from the script's */
     struct viewer_pass pass;
     struct viewer_edit edit;
+    struct viewer_nodes nodes;
     struct viewer_lights lights;
     struct viewer_trace trace;
     struct viewer_overlay overlay;
@@ -229,6 +252,7 @@ struct viewer {
 
     double stepped;                 /* time of the last call of viewer_step */
     struct preview_command command; /* for VIEWER_SEND_COMMAND */
+    struct viewer_setting setting;  /* for VIEWER_CHANGE_SETTING */
     enum viewer_action action;      /* requested by a key or a button */
     bool next, quit;                /* likewise: the next picture, the end */
 };
@@ -254,6 +278,8 @@ bool viewer_has_tiles(const struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* Nothing happens before the user does something. */
+bool viewer_rests(const struct viewer *viewer);
 /* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;
  * or 0. */
 uint32_t viewer_next_frame(const struct viewer *viewer);

@@ -100,6 +100,42 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
+/* Bytes between those of four pixels of a row of 3 bytes each: part of 256. */
+static void blend_row(uint8_t *out, const uint8_t *above, const uint8_t *below, uint32_t down, uint32_t width) {
+    for (size_t i = 0; i < (size_t)3 * width; i++)
+        out[i] = (uint8_t)((above[i] * (256 - down) + below[i] * down) >> 8);
+}
+
+/* A pass of few samples, enlarged smoothly: what it shows is replaced soon. */
+static bool draw_smooth(struct viewer *viewer) {
+    const struct film *film = &viewer->pass.film;
+    uint32_t width = film->width, divide = viewer->pass.view.divide;
+    struct tone tone = picture_tone(&viewer->request);
+    uint8_t *small = mem_alloc_zero((size_t)3 * width, (size_t)film->height + 1), *row = small;
+    if (!small)
+        return false;
+    for (size_t i = 0; i < (size_t)width * film->height; i++)
+        for (size_t c = 0; c < 3; c++)
+            small[3 * i + c] = png_write_byte(tone_apply(&tone, (double)film->pixels[i].rgb[c]));
+    row += (size_t)3 * width * film->height;
+    /* A row between two of the film, then pixels between two of that; positions in parts of 256, of pixels' middles. */
+    for (uint32_t y = 0; y < viewer->request.height; y++) {
+        uint8_t *out = viewer->window.image + (size_t)3 * viewer->request.width * y;
+        uint32_t v = (256 * y + 128) / divide, v0 = v < 128 ? 0 : (v - 128) >> 8,
+                 v1 = v0 + 1 < film->height ? v0 + 1 : v0;
+        blend_row(row, small + (size_t)3 * width * v0, small + (size_t)3 * width * v1, v < 128 ? 0 : (v - 128) & 255,
+                  width);
+        for (uint32_t x = 0; x < viewer->request.width; x++) {
+            uint32_t u = (256 * x + 128) / divide, u0 = u < 128 ? 0 : (u - 128) >> 8, u1 = u0 + 1 < width ? u0 + 1 : u0;
+            blend_row(out + (size_t)3 * x, row + (size_t)3 * u0, row + (size_t)3 * u1, u < 128 ? 0 : (u - 128) & 255,
+                      1);
+        }
+    }
+    mem_free(small);
+    viewer->window.dirty = true;
+    return true;
+}
+
 /* Draws tiles that are finished or, after a pass over the picture, have more samples than before. In tiles in progress,
  * pixels that are being sampled again are red. */
 void viewer_draw_tiles(struct viewer *viewer) {
@@ -108,10 +144,16 @@ void viewer_draw_tiles(struct viewer *viewer) {
         return;
     }
     const struct film *film = &viewer->pass.film;
+    const struct pass_view *view = &viewer->pass.view;
+    bool smooth = (view->headlight || view->samples > 0) && view->divide > 1 && !viewer->overlay.has_lines;
+    bool denoised = !view->plain && viewer_shows_denoised(viewer);
+    if (smooth && (viewer->pass.result != RESULT_COARSE || draw_smooth(viewer)))
+        return;
     struct tone tone = picture_tone(&viewer->request);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        bool shows = denoised ? state == FILM_TILE_DONE : film_tile_shows(state);
+        bool in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain && !viewer_has_widgets(viewer);
         /* Only what has changed since the last time. */
         if (shows ? viewer->window.drawn[tile] == state : !in_progress || !film->marked)
             continue;
@@ -415,19 +457,58 @@ static int draw_lines(struct panel *panel, const char *line, bool warns, int bot
     return top;
 }
 
-static void draw_hud(struct viewer *viewer, const struct figures *figures) {
+/* On the picture: the selection and the symbols of the lights. */
+static void draw_symbols(struct viewer *viewer) {
     struct camera_frame frame;
+    if (!viewer->block || !viewer_camera_frame(viewer, &frame))
+        return;
+    draw_selection(viewer, &frame);
+    viewer_draw_lights(viewer, &frame);
+}
+
+/* What a window with widgets shows in them. */
+static void show_widgets(struct viewer *viewer, const struct figures *figures) {
+    const struct window_driver *driver = viewer->window.driver;
+    const struct viewer_notice *notice = &viewer->window.notice;
+    struct window_status status = {.share = figures->share,
+                                   .action_on = viewer_needs_met(viewer),
+                                   .warns = notice->warns,
+                                   .halted = viewer->pass.halted,
+                                   .busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer)),
+                                   .playing = viewer->player.playing,
+                                   .loops = viewer->player.loops,
+                                   .unsaved = viewer->edit.steps.at != viewer->edit.saved_at,
+                                   .frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0,
+                                   .frame_count = viewer->player.count,
+                                   .exposure = viewer->request.settings.tone.exposure};
+    (void)snprintf(status.file, sizeof status.file, "%.250s", viewer->request.file);
+    (void)snprintf(status.state, sizeof status.state, "%s", figures->state);
+    (void)snprintf(status.figures, sizeof status.figures, "%s, %s, %s, %s, %s", figures->size, figures->rays,
+                   figures->triangles, figures->voxels, figures->frames);
+    (void)snprintf(status.frame, sizeof status.frame, "%s", figures->frame);
+    (void)snprintf(status.message, sizeof status.message, "%s", viewer->message);
+    (void)snprintf(status.notice, sizeof status.notice, "%s", notice->text);
+    driver->status(driver->context, &status);
+    driver->trace(driver->context, viewer->trace.text);
+    viewer_show_form(viewer);
+}
+
+static void draw_hud(struct viewer *viewer, const struct figures *figures) {
     struct panel *panel = &viewer->window.panel;
     panel_begin(panel);
     int bottom = panel->canvas.height;
+    if (viewer_has_widgets(viewer)) {
+        if (!viewer->window.hides_hud)
+            draw_symbols(viewer);
+        show_widgets(viewer, figures);
+        panel_end(panel);
+        return;
+    }
     if (!viewer->window.hides_hud) {
         /* A low window has one row of buttons. From the picture outwards: what is drawn later lies above. */
         bool room = viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel);
         int top = (room && viewer->block ? 30 : 15) * viewer->window.panel.canvas.scale;
-        if (viewer->block && viewer_camera_frame(viewer, &frame)) {
-            draw_selection(viewer, &frame);
-            viewer_draw_lights(viewer, &frame);
-        }
+        draw_symbols(viewer);
         bottom = draw_timeline(viewer, figures);
         draw_menu(viewer);
         if (room && viewer->block)

@@ -147,7 +147,7 @@ static void move_by(struct viewer *viewer, struct vec3 route) {
         viewer_light_move(viewer, route);
 }
 
-static struct vec3 selection_position(const struct viewer *viewer) {
+struct vec3 viewer_selection_position(const struct viewer *viewer) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     if (viewer->edit.selection.kind == SELECTED_LIGHT)
         return light && light->has_position ? light->position : viewer->fly_camera.centre;
@@ -161,11 +161,20 @@ static struct transform about(struct vec3 point, const struct transform *linear)
     return transform_compose(&back, &half);
 }
 
+/* A linear map, about the middle of the selection. */
+static void change_form(struct viewer *viewer, const struct transform *map, bool sizes) {
+    struct transform whole = about(viewer_selection_position(viewer), map);
+    if (viewer->edit.selection.kind == SELECTED_LIGHT)
+        viewer_light_turn(viewer, map, sizes);
+    else
+        apply_in_world(viewer, &whole);
+}
+
 void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
     struct camera_frame frame;
     if (viewer->edit.selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
         return;
-    struct vec3 at = selection_position(viewer);
+    struct vec3 at = viewer_selection_position(viewer);
     double depth = vec3_dot(vec3_sub(at, frame.eye), frame.forward), pixel = vec3_length(frame.right) / zoom(viewer);
     if (viewer->request.settings.lens.projection != PROJECTION_ORTHOGRAPHIC)
         pixel *= fabs(depth);
@@ -185,19 +194,30 @@ void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
     } else {
         map = transform_scale(vec3_all(el_exp(-2 * dy / viewer->window.layout.shown_height)));
     }
-    if (viewer->edit.selection.kind == SELECTED_LIGHT) {
-        viewer_light_turn(viewer, &map, viewer->edit.tool == TOOL_SIZE);
-        return;
+    change_form(viewer, &map, viewer->edit.tool == TOOL_SIZE);
+}
+
+void viewer_move_selection(struct viewer *viewer, struct vec3 to) {
+    move_by(viewer, vec3_sub(to, viewer_selection_position(viewer)));
+}
+
+void viewer_turn_selection(struct viewer *viewer, const double degrees[3], double factor) {
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    struct transform map = transform_scale(vec3_all(factor));
+    bool turns = false;
+    for (int i = 0; i < 3; i++) {
+        struct transform turn = transform_rotate_about(axes[i], degrees[i]);
+        map = transform_compose(&turn, &map);
+        turns = turns || degrees[i] < 0 || degrees[i] > 0;
     }
-    map = about(at, &map);
-    apply_in_world(viewer, &map);
+    change_form(viewer, &map, !turns);
 }
 
 void viewer_push_selection(struct viewer *viewer, double steps) {
     struct camera_frame frame;
     if (viewer->edit.selection.kind == SELECTED_NOTHING || !viewer_camera_frame(viewer, &frame))
         return;
-    struct vec3 to = vec3_sub(selection_position(viewer), frame.eye);
+    struct vec3 to = vec3_sub(viewer_selection_position(viewer), frame.eye);
     move_by(viewer, vec3_scale(to, 0.05 * steps));
 }
 
@@ -223,12 +243,36 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
     }
     /* The middle of the pixel: where its first ray goes. */
     viewer->edit.click = (struct selection){0};
+    viewer->edit.probes = viewer->edit.by_node = false;
     if (!pixel_at(viewer, x, y, &viewer->edit.click.x, &viewer->edit.click.y))
         return;
     viewer->edit.click.up = operand ? -OPERANDS_BELOW : 0;
     viewer->edit.click.x += 0.5;
     viewer->edit.click.y += 0.5;
     viewer->edit.click_waits = true;
+}
+
+/* Not while another one, or a click, waits. */
+void viewer_probe(struct viewer *viewer, double x, double y) {
+    double u, v;
+    if (viewer->edit.click_waits || !pixel_at(viewer, x, y, &u, &v))
+        return;
+    viewer->edit.click = (struct selection){.x = u + 0.5, .y = v + 0.5};
+    viewer->edit.click_waits = viewer->edit.probes = true;
+}
+
+void viewer_frame(struct viewer *viewer, bool selection) {
+    const struct picked *picked = &viewer->edit.selection.picked;
+    struct box box = viewer->scene.report.bounds;
+    if (selection && viewer->edit.selection.kind == SELECTED_NODE && picked->has_box) {
+        box = box_empty();
+        for (int i = 0; i < 8; i++)
+            box = box_add_point(box, viewer_moved_point(viewer, picked->corners[i]));
+    } else if (selection) {
+        struct vec3 at = viewer_selection_position(viewer), half = vec3_all(0.25 * viewer->fly_camera.speed);
+        box = (struct box){vec3_sub(at, half), vec3_add(at, half)};
+    }
+    fly_camera_frame(&viewer->fly_camera, &box);
 }
 
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y) {
@@ -239,20 +283,33 @@ void viewer_select_up(struct viewer *viewer, bool down) {
     const struct picked *picked = &viewer->edit.selection.picked;
     if (viewer->edit.selection.kind != SELECTED_NODE || (down ? picked->below == 0 : picked->levels == 0))
         return;
+    if (viewer->edit.selection.node.depth > 0) { /* it may not be visible anywhere */
+        viewer->edit.node = viewer->edit.selection.node;
+        viewer->edit.by_node = viewer->edit.click_waits = !down && --viewer->edit.node.depth > 0;
+        return;
+    }
     viewer->edit.click = viewer->edit.selection;
     viewer->edit.click.up += down ? -1 : 1;
     viewer->edit.click_waits = true;
+    viewer->edit.probes = viewer->edit.by_node = false;
 }
 
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
-    viewer->edit.selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
-                                                .picked = *picked,
-                                                .applied = transform_identity(),
-                                                .x = viewer->edit.click.x,
-                                                .y = viewer->edit.click.y,
-                                                .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
-                                                      : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
-                                                                                    : picked->up};
+    if (viewer->edit.probes) {
+        if (picked->hit)
+            viewer->fly_camera.centre = picked->position;
+        return;
+    }
+    viewer->edit.selection =
+        (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
+                           .picked = *picked,
+                           .applied = transform_identity(),
+                           .x = viewer->edit.click.x,
+                           .y = viewer->edit.click.y,
+                           .node = viewer->command.by_node ? viewer->command.node : (struct node_query){0},
+                           .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
+                                 : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW
+                                                               : picked->up};
     viewer->edit.joins = false;
     if (!picked->hit)
         return;

@@ -8,10 +8,18 @@
 /* A click on the picture, at pixels of the window: selects a visible light mark there, else sends a request to the
  * render process. operand: selects the operand of a combined solid whose surface is there. */
 void viewer_click(struct viewer *viewer, double x, double y, bool operand);
+/* Asks what is there, for orbits and dollies. */
+void viewer_probe(struct viewer *viewer, double x, double y);
+/* The camera moves back or forth until the selection, or the scene, fills the picture. */
+void viewer_frame(struct viewer *viewer, bool selection);
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y);
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked);
 void viewer_select_up(struct viewer *viewer, bool down);                 /* the node above, or the operand below */
 void viewer_drag_selection(struct viewer *viewer, double dx, double dy); /* with the tool, by pixels of the window */
+void viewer_move_selection(struct viewer *viewer, struct vec3 to);
+/* About its middle: rotated by degrees about the axes of the world, or scaled. */
+void viewer_turn_selection(struct viewer *viewer, const double degrees[3], double factor);
+struct vec3 viewer_selection_position(const struct viewer *viewer);
 void viewer_push_selection(struct viewer *viewer,
                            double steps); /* moves the selection away from the camera, or nearer */
 void viewer_make_edit(struct viewer *viewer, const struct change *change, bool present, bool join);

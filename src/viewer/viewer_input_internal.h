@@ -4,6 +4,8 @@
 
 #include "viewer/viewer.h"
 
+void viewer_do(struct viewer *viewer, enum window_action action);
+uint32_t viewer_needs_met(const struct viewer *viewer); /* by enum action_need, as bits */
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event);
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Stops rendering and building, and keeps the image; or continues. */

@@ -133,7 +133,8 @@ void viewer_draw_large(struct viewer *viewer) {
     }
     for (uint32_t tile = 0; tile < large->tiles; tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && film->marked;
+        bool shows = viewer_shows_denoised(viewer) ? state == FILM_TILE_DONE : film_tile_shows(state);
+        bool in_progress = state == FILM_TILE_TAKEN && film->marked && !viewer_has_widgets(viewer);
         if (shows ? large->drawn[tile] == state : !in_progress)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);

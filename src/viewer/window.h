@@ -5,6 +5,8 @@
 #define GRAY_VIEWER_WINDOW_H
 
 #include "base/error.h"
+#include "inspect/node_list.h"
+#include "viewer/actions.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,6 +20,10 @@ enum window_event_kind {
     WINDOW_RELEASE, /* the same */
     WINDOW_LEAVE,   /* the window has lost the keyboard: no key is pressed */
     WINDOW_SIZE,    /* x, y: the size of the window in pixels; density: pixels per dot of a letter */
+    WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
+    WINDOW_NODES,   /* rows of the children of `node` are wanted */
+    WINDOW_SELECT,  /* `node` is selected in the tree */
+    WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
 
 /* Letters and digits are their own small ASCII codes. */
@@ -43,6 +49,47 @@ struct window_event {
     int key, button;
     bool down, control, shift; /* control, shift: held */
     double x, y, dx, dy, density;
+    enum window_action action;
+    uint32_t field;
+    double numbers[3];
+    bool joins;
+    struct node_query node;
+};
+
+/* What a window with widgets shows in them. */
+struct window_status {
+    char file[256], state[64], figures[288], frame[64];
+    char message[512], notice[512];                    /* an error that stays; a line that goes away by itself */
+    double share;                                      /* of the work, 0 to 1 */
+    uint32_t action_on;                                /* by enum action_need, as bits: what there is */
+    bool warns, halted, busy, playing, loops, unsaved; /* unsaved: edits */
+    uint32_t frame_index, frame_count;
+    double exposure;
+};
+
+/* One input of a form: the window makes a widget from it, and reports a change by its number. */
+enum window_field_kind {
+    FIELD_TEXT,   /* only shown */
+    FIELD_NUMBER, /* one number */
+    FIELD_VECTOR, /* three numbers */
+    FIELD_COLOUR, /* three numbers, linear, that may be above 1 */
+    FIELD_CHOICE, /* one of the words in `text`, divided by '|' */
+    FIELD_FLAG,
+};
+enum { FORM_FIELDS = 80, FORM_TEXT = 192, WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */ };
+struct window_field {
+    enum window_field_kind kind;
+    uint32_t number;                    /* what the field is, to the receiver of its events */
+    bool acts;                          /* a number is not a state: it does something, and the field is as before */
+    char group[32], name[32], unit[16]; /* unit #: whole numbers */
+    double numbers[3], low, high;       /* low and high may be infinite */
+    char text[FORM_TEXT], help[FORM_TEXT];
+};
+struct window_form {
+    uint64_t subject; /* another one: the widgets are made anew */
+    char title[64];
+    uint32_t count;
+    struct window_field fields[FORM_FIELDS];
 };
 
 struct window_content {
@@ -67,6 +114,14 @@ struct window_driver {
     void (*grab)(void *context, bool on); /* the mouse is hidden and kept inside the window */
     void (*full_screen)(void *context);   /* on, or off again */
     void (*close)(void *context);
+    /* Becomes readable with an event; NULL: the window must be polled often. */
+    int (*descriptor)(void *context);
+    /* A window with widgets of its own; NULL: all is drawn over the picture. */
+    void (*status)(void *context, const struct window_status *status);
+    void (*form)(void *context, const struct window_form *form);
+    void (*trace)(void *context, const char *text); /* of a pixel */
+    /* Rows that were wanted; query NULL: the tree is another one, and no row is known. */
+    void (*nodes)(void *context, const struct node_query *query, const struct node_rows *rows);
 };
 
 #endif

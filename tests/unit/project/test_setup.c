@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 /* Programs that stand before those of the machine: pkg-config and command -v know what is listed in the file `have`,
@@ -43,7 +44,7 @@ static int set_up(const char *have, const char *environment, const char *option)
     CHECK(realpath(".", root) != NULL);
     if (asprintf(&line,
                  "cd '%s/bin' && rm -f ../log ../installed && printf '%s' >../have && "
-                 "%s PATH=\"$PWD:$PATH\" CC=gcc sh '%s/tools/setup.sh' %s 2>../err",
+                 "DISPLAY= WAYLAND_DISPLAY= %s PATH=\"$PWD:$PATH\" CC=gcc sh '%s/tools/setup.sh' %s 2>../err",
                  test_folder(), have, environment, root, option) < 0)
         exit(1);
     int status = system(line);
@@ -69,6 +70,28 @@ TEST(the_set_up_installs_the_optional_libraries_too) {
     CHECK_EQ_INT(set_up(ALL, "uid=0", ""), 0);
     check_file("err", "");
     check_file("log", NULL);
+}
+
+/* On request, or where there is a display and apt-get names fewer than 100 packages. */
+TEST(the_set_up_installs_gtk_where_it_is_wanted) {
+    make_machine();
+    CHECK_EQ_INT(set_up(ALL, "uid=0", "--window"), 0);
+    check_file("installed", "libgtk-4-dev\n");
+    for (int large = 0; large < 2; large++) {
+        test_write_text(test_path("bin/plan"), large ? "0 upgraded, 310 newly installed, 0 to remove.\n"
+                                                     : "0 upgraded, 44 newly installed, 0 to remove.\n"
+                                                       "After this operation, 70 MB of additional disk space\n");
+        CHECK(rename(test_path("bin/apt-get"), test_path("bin/rest")) == 0);
+        test_write_text(test_path("bin/apt-get"),
+                        "#!/bin/sh\ncase \"$*\" in *assume-no*) cat plan ;; *) exec ./rest \"$@\" ;; "
+                        "esac\n");
+        CHECK(chmod(test_path("bin/apt-get"), 0755) == 0);
+        CHECK_EQ_INT(set_up(ALL, "uid=0 DISPLAY=:9", ""), 0);
+        check_file("installed", large ? NULL : "libgtk-4-dev\n");
+        CHECK_EQ_INT(set_up(ALL, "uid=0 DISPLAY=:9", "--no-window"), 0);
+        check_file("installed", NULL);
+        CHECK(rename(test_path("bin/rest"), test_path("bin/apt-get")) == 0);
+    }
 }
 
 TEST(a_library_that_cannot_be_had_is_named_and_left_out) {
@@ -180,7 +203,7 @@ static void check_has(const char *name, const char *words) {
 TEST(a_minimal_set_up_is_an_option_of_rendering_all_scenes) {
     make_gallery("[A]\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
     CHECK_EQ_INT(test_run_shell("sh render_all.sh --minimal", ">out.txt"), 0);
-    check_has("out.txt", "\nset up --minimal\n");
+    check_has("out.txt", "\nset up --minimal --no-window\n");
     CHECK_EQ_INT(test_run_shell("sh render_all.sh --small", "2>err.txt"), 2);
     check_has("err.txt", "Usage: ./render_all.sh [--minimal]\n");
 }

@@ -190,8 +190,14 @@ static void begin(struct table *t) {
                                     .width = 100,
                                     .height = 70,
                                     .camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40}}};
-    t->driver = (struct window_driver){&t->fake,   fake_open, fake_show,    fake_poll,
-                                       fake_title, fake_grab, fake_nothing, fake_nothing};
+    t->driver = (struct window_driver){.context = &t->fake,
+                                       .open = fake_open,
+                                       .show = fake_show,
+                                       .poll = fake_poll,
+                                       .title = fake_title,
+                                       .grab = fake_grab,
+                                       .full_screen = fake_nothing,
+                                       .close = fake_nothing};
     CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(

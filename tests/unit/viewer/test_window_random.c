@@ -204,8 +204,14 @@ static void crowd_close(void *context) {
 /* One session with this many polls for events. Returns the number of displayed frames. */
 static int sit(uint64_t seed, int polls) {
     struct crowd crowd = {.random = {seed}, .polls_left = polls};
-    const struct window_driver driver = {&crowd,      crowd_open, crowd_show,    crowd_poll,
-                                         crowd_title, crowd_grab, crowd_nothing, crowd_close};
+    const struct window_driver driver = {.context = &crowd,
+                                         .open = crowd_open,
+                                         .show = crowd_show,
+                                         .poll = crowd_poll,
+                                         .title = crowd_title,
+                                         .grab = crowd_grab,
+                                         .full_screen = crowd_nothing,
+                                         .close = crowd_close};
     struct arena arena = {0};
     struct options options;
     struct error error;

@@ -28,8 +28,11 @@ struct person {
     bool open, size_sent;
     const char *other_scene; /* that scene.lua is from the deed WINDOW_LEAVE on */
     char title[1024];
-    uint8_t *over;  /* the last overlay, of the whole window */
-    uint8_t *large; /* or NULL: the last picture that had the pixels of the window */
+    uint8_t *over;          /* the last overlay, of the whole window */
+    uint8_t *large;         /* or NULL: the last picture that had the pixels of the window */
+    const char *field;      /* of forms, that events of fields are for; NULL: the window has no widgets */
+    uint32_t number;        /* of that field */
+    uint32_t seen_nodes[3]; /* rows of the tree, by depth */
 };
 
 static bool person_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
@@ -69,6 +72,7 @@ static bool person_poll(void *context, struct window_event *event) {
     person->waited = 0;
     person->title[0] = '\0';
     *event = deed->event;
+    event->field = person->number;
     return true;
 }
 static void person_title(void *context, const char *text) {
@@ -77,6 +81,27 @@ static void person_title(void *context, const char *text) {
 }
 static void person_grab(void *context, bool on) {
     (void)context, (void)on;
+}
+static void person_status(void *context, const struct window_status *status) {
+    (void)context;
+    CHECK(status->share >= 0 && status->share <= 1 && status->file[0] != '\0');
+}
+static void person_form(void *context, const struct window_form *form) {
+    struct person *person = context;
+    CHECK(form->count < FORM_FIELDS);
+    for (uint32_t i = 0; i < form->count; i++) {
+        CHECK(form->fields[i].group[0] != '\0' && form->fields[i].name[0] != '\0');
+        if (strcmp(form->fields[i].name, person->field) == 0)
+            person->number = form->fields[i].number;
+    }
+}
+static void person_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
+    struct person *person = context;
+    for (uint32_t i = 0; query && i < rows->count; i++)
+        person->seen_nodes[query->depth > 2 ? 2 : query->depth] += rows->rows[i].name[0] != '\0';
+}
+static void person_trace(void *context, const char *text) {
+    (void)context, (void)text;
 }
 static void person_nothing(void *context) {
     (void)context;
@@ -107,12 +132,30 @@ struct setting {
     const char *overlay;        /* NULL: none */
     const char *other_scene;    /* for the deed WINDOW_LEAVE */
     uint8_t *large;             /* as in struct person */
+    const char *field;          /* the same */
+    uint32_t *seen_nodes;       /* or NULL: takes the three numbers */
 };
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting, uint8_t *over) {
-    struct person person = {.deeds = deeds, .over = over, .large = setting->large, .other_scene = setting->other_scene};
-    const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
-                                         person_title, person_grab, person_nothing, person_close};
+    struct person person = {.deeds = deeds,
+                            .over = over,
+                            .large = setting->large,
+                            .other_scene = setting->other_scene,
+                            .field = setting->field};
+    struct window_driver driver = {.context = &person,
+                                   .open = person_open,
+                                   .show = person_show,
+                                   .poll = person_poll,
+                                   .title = person_title,
+                                   .grab = person_grab,
+                                   .full_screen = person_nothing,
+                                   .close = person_close};
+    if (setting->field) {
+        driver.status = person_status;
+        driver.form = person_form;
+        driver.trace = person_trace;
+        driver.nodes = person_nodes;
+    }
     struct arena arena = {0};
     struct options options;
     struct error error;
@@ -126,6 +169,8 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting, 
     CHECK(options_parse(&options, 7, words, &arena, &error));
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
+    if (setting->seen_nodes)
+        memcpy(setting->seen_nodes, person.seen_nodes, sizeof person.seen_nodes);
     arena_destroy(&arena);
     CHECK(chdir(before) == 0);
     return status;
@@ -384,4 +429,49 @@ TEST(window_ends_with_the_denoised_picture_of_paths_also_after_a_restart) {
     CHECK(test_same_files("out.png", "whole.png"));
     CHECK(test_same_files("out-view1.png", "whole.png"));
     test_free_result(&result);
+}
+
+TEST(window_with_a_changed_setting_makes_the_picture_of_its_option) {
+    const struct deed deeds[] = {{"ready", {.kind = WINDOW_FIELD, .numbers = {INTEGRATOR_PATH}}, 0},
+                                 {NULL, KEY(0), 100},
+                                 {"ready", KEY('q'), 0}};
+    const struct setting setting = {.option = "--watch", .field = "integrator"};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    struct test_result result = test_gray(NULL, "-q --progress=none scene.lua --integrator path -o whole.png");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(test_same_files("out.png", "whole.png"));
+    test_free_result(&result);
+}
+
+/* Few samples come first, and the last pass has all of them. */
+TEST(window_that_shows_paths_denoised_ends_with_the_picture_of_the_program) {
+    const struct deed deeds[] = {{"ready", KEY('q'), 0}};
+    const struct setting setting = {
+        .scene = "local r = gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"
+                 "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3}, view = {0, 0, -1},\n"
+                 "  integrator = 'path', denoise = true, background = {0.5, 0.6, 0.7}}\n",
+        .field = "integrator"};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    struct test_result result = test_gray(NULL, "-q --progress=none scene.lua -o whole.png");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(test_same_files("out.png", "whole.png"));
+    test_free_result(&result);
+}
+
+TEST(window_lists_nodes_and_selects_them_in_the_tree) {
+    const struct deed deeds[] = {
+        {"ready", {.kind = WINDOW_NODES}, 0},
+        {NULL, {.kind = WINDOW_NODES, .node = {.depth = 1}}, 5},
+        {"ready", {.kind = WINDOW_SELECT, .node = {.depth = 2, .path = {0, 1}}}, 5},
+        {"ready", {.kind = WINDOW_ACTION, .action = DO_DELETE}, 50},
+        {"ready", {.kind = WINDOW_SELECT, .node = {.depth = 2, .path = {0, 7}}}, 5}, /* there is none */
+        {"ready", {.kind = WINDOW_ACTION, .action = DO_SAVE_CHANGES}, 50},
+        {"ready", KEY('q'), 20}};
+    uint32_t seen[3];
+    const struct setting setting = {.field = "exposure", .seen_nodes = seen};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    CHECK(seen[0] == 1 && seen[1] == 2 && seen[2] == 0);
+    char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
+    CHECK(saved && strstr(saved, "gr.change_delete('many', "));
+    free(saved);
 }

@@ -1,0 +1,149 @@
+/* Rays of a pinhole go through the scene in packets of 8 x 8 pixels; those of other cameras one by one. */
+#include "render/headlight.h"
+
+#include "base/mem.h"
+#include "material/material_eval.h"
+#include "math/elementary.h"
+#include "render/camera.h"
+#include "world/packet.h"
+#include "world/world_describe.h"
+
+#include <math.h>
+
+enum { SIDE = 8, HOLES = 16 }; /* of a packet; that a ray may pass */
+/* The share of light from everywhere, and of reflected or transmitted light in the colour of a surface. */
+static const double ambient = 0.25, glossy = 0.6;
+
+_Static_assert((int)SIDE *SIDE == (int)PACKET_RAYS, "a patch is a packet");
+
+struct headlight {
+    const struct render_job *job;
+    struct pool *pool;
+    struct camera_frame camera;
+    struct world_scratch *scratch; /* by worker */
+    double brightness;             /* that undoes the exposure */
+    bool plain;
+};
+
+static struct vec3 shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
+    struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction)), colour = bsdf->albedo;
+    for (int i = 0; i < bsdf->count; i++) {
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
+            colour = vec3_add_scaled(colour, bsdf->lobes[i].weight, glossy);
+    }
+    double largest = vec3_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
+    double light = headlight->brightness * (ambient + (1 - ambient) * facing) / fmax(1, largest);
+    return vec3_add(vec3_scale(colour, light), bsdf->emission);
+}
+
+/* The colour along a ray. met: its hit, or NULL. */
+static struct vec3 colour_of(const struct headlight *headlight, struct world_scratch *scratch, struct ray ray,
+                             const struct packet_answer *met) {
+    const struct world *world = headlight->job->world;
+    struct hit hit;
+    struct bsdf bsdf;
+    bool found = met != NULL;
+    if (met)
+        world_describe(world, &ray, met->primitive, &met->crossing, &hit);
+    for (int i = 0; found && i < HOLES; i++) {
+        material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
+        if (bsdf.opacity >= 0.5)
+            return shade(headlight, &ray, &bsdf);
+        ray = hit_ray(&hit, &ray, ray.direction, ray.media);
+        found = world_nearest_surface(world, &ray, scratch, &hit);
+    }
+    return sky_colour(&world->sky, vec3_normalize(ray.direction), ray.footprint.spread);
+}
+
+static void store(struct film_pixel *pixel, struct vec3 colour) {
+    const double parts[3] = {colour.x, colour.y, colour.z};
+    for (int c = 0; c < 3; c++)
+        pixel->rgb[c] = isfinite(parts[c]) ? (float)fmin(fmax(parts[c], 0), 1e30) : 0;
+}
+
+/* Other lenses: a ray through the middle of each pixel. */
+static void render_single(const struct headlight *headlight, struct world_scratch *scratch, uint32_t x, uint32_t y,
+                          struct film_pixel *pixel) {
+    struct ray ray;
+    struct packet_answer met;
+    struct vec3 colour = {0, 0, 0};
+    if (camera_ray_through(&headlight->camera, x + 0.5, y + 0.5, (struct sample2){0.5, 0.5}, 0, &ray)) {
+        bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
+        colour = colour_of(headlight, scratch, ray, found ? &met : NULL);
+    }
+    store(pixel, colour);
+}
+
+/* The pixels of a patch, at most 8 x 8. */
+static void render_patch(const struct headlight *headlight, struct world_scratch *scratch,
+                         const struct film_rectangle *r) {
+    const struct film *film = headlight->job->film;
+    struct ray_packet packet = {.origin = headlight->camera.eye};
+    struct packet_answer answers[PACKET_RAYS];
+    struct ray rays[PACKET_RAYS];
+    for (uint32_t y = r->y0; y < r->y1; y++) {
+        for (uint32_t x = r->x0; x < r->x1; x++) {
+            struct ray ray = rays[packet.count] = camera_ray(&headlight->camera, x + 0.5, y + 0.5);
+            packet.direction[0][packet.count] = ray.direction.x;
+            packet.direction[1][packet.count] = ray.direction.y;
+            packet.direction[2][packet.count] = ray.direction.z;
+            packet.t_max[packet.count++] = ray.t_max;
+        }
+    }
+    ray_packet_pad(&packet);
+    uint64_t met = world_nearest_packet(headlight->job->world, &packet, scratch, answers);
+    uint32_t width = r->x1 - r->x0;
+    for (uint32_t i = 0; i < packet.count; i++) {
+        size_t at = (size_t)(r->y0 - film->y0 + i / width) * film->width + (r->x0 - film->x0 + i % width);
+        store(&film->pixels[at], colour_of(headlight, scratch, rays[i], met >> i & 1 ? &answers[i] : NULL));
+    }
+}
+
+/* A pool_function: a tile. */
+static void render_tile(void *context, uint32_t tile, int worker) {
+    const struct headlight *headlight = context;
+    const struct film *film = headlight->job->film;
+    struct world_scratch *scratch = &headlight->scratch[worker];
+    struct film_rectangle whole = film_tile_rectangle(film, tile);
+    for (uint32_t y = whole.y0; y < whole.y1 && !pool_cancelled(headlight->pool); y += SIDE) {
+        for (uint32_t x = whole.x0; x < whole.x1; x += SIDE) {
+            struct film_rectangle r = {x, y, x + SIDE < whole.x1 ? x + SIDE : whole.x1,
+                                       y + SIDE < whole.y1 ? y + SIDE : whole.y1};
+            if (headlight->plain)
+                render_patch(headlight, scratch, &r);
+            for (uint32_t v = r.y0; !headlight->plain && v < r.y1; v++)
+                for (uint32_t u = r.x0; u < r.x1; u++)
+                    render_single(headlight, scratch, u, v,
+                                  &film->pixels[(size_t)(v - film->y0) * film->width + (u - film->x0)]);
+        }
+    }
+    atomic_store_explicit(&film->tiles[tile], pool_cancelled(headlight->pool) ? FILM_TILE_WANTED : FILM_TILE_DONE,
+                          memory_order_release);
+}
+
+bool render_headlight(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
+                      struct error *error) {
+    struct headlight headlight = {.job = job, .pool = pool, .brightness = el_exp2(-job->settings.tone.exposure)};
+    struct settings settings = job->settings;
+    char warning[256];
+    int workers = pool_workers(pool);
+    settings.lens.aperture = 0;
+    if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &headlight.camera,
+                        warning, error))
+        return false;
+    headlight.plain = camera_is_plain(&headlight.camera);
+    headlight.scratch = mem_alloc_zero((size_t)workers, sizeof *headlight.scratch);
+    bool ok = headlight.scratch != NULL;
+    for (int i = 0; ok && i < workers; i++)
+        ok = world_scratch_init(&headlight.scratch[i], job->world);
+    bool complete = ok && pool_run(pool, film_tile_count(job->film), render_tile, &headlight);
+    for (int i = 0; headlight.scratch && i < workers; i++) {
+        ok = ok && !headlight.scratch[i].failed;
+        world_scratch_destroy(&headlight.scratch[i]);
+    }
+    mem_free(headlight.scratch);
+    statistics->camera_rays += (uint64_t)job->film->width * job->film->height;
+    if (!ok)
+        return error_no_memory(error, "the preview of a picture");
+    return complete || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+}

@@ -1,0 +1,53 @@
+/* The process of the window: GTK 4.8. It holds widgets only; what they show comes as orders of the viewer, and what the
+ * user does goes there as notes (window_channel.h). gtk_window.c has the window and its menus, gtk_picture.c the
+ * picture and its input, gtk_form.c the inspector, gtk_tree.c the tree of nodes, gtk_start.c the page without a scene.
+ */
+#ifndef GRAY_VIEWER_GTK_INTERNAL_H
+#define GRAY_VIEWER_GTK_INTERNAL_H
+
+#define GDK_VERSION_MIN_REQUIRED GDK_VERSION_4_8
+#define GDK_VERSION_MAX_ALLOWED GDK_VERSION_4_8
+
+#include "viewer/window_channel.h"
+
+#include <gtk/gtk.h>
+
+/* Picture and overlay: a texture for each tile, so that only those that have changed are drawn again. */
+struct tile_layer {
+    struct window_layer shared;
+    GdkTexture **textures; /* NULL: a tile in which nothing is visible */
+    uint32_t *seen;        /* the number of each tile when its texture was made */
+    uint32_t count;
+};
+
+/* The widgets of a field of the form. */
+struct form_row {
+    struct window_field field;
+    GtkWidget *inputs[3];
+};
+
+struct gui {
+    struct channel channel;
+    GtkApplication *application;
+    GtkWidget *window, *pages, *picture, *start, *inspector, *inspector_title;
+    GtkWidget *progress, *figures, *notice, *error_bar, *error_text, *timeline, *frame_scale, *frame_label,
+        *play_button;
+    GtkWidget *trace, *trace_box;
+    GtkTextBuffer *trace_text;
+    GtkSingleSelection *node_selection; /* its model is the tree */
+    GPtrArray *open_nodes;              /* the lists of children; not owned */
+    struct tile_layer layers[2];        /* picture, overlay */
+    graphene_rect_t picture_area;       /* in pixels of the screen, as the layers */
+    double mouse_x, mouse_y;            /* in those of the picture's widget, times the scale */
+    GFile *next_scene; /* while the user is asked about unsaved edits */
+    struct window_status status;
+    enum window_key_set key_set;
+    bool flies, updates; /* updates: widgets are set by the program, not by the user */
+    struct form_row rows[FORM_FIELDS];
+    uint32_t row_count;
+    uint64_t form_subject;
+    uint32_t last_field; /* that was changed, and when: the next change of it may be part of the same edit */
+    gint64 last_change;
+};
+
+#endif

@@ -1,0 +1,10 @@
+/* The tree of nodes. */
+#ifndef GRAY_VIEWER_GTK_TREE_INTERNAL_H
+#define GRAY_VIEWER_GTK_TREE_INTERNAL_H
+
+#include "viewer/gtk_internal.h"
+
+GtkWidget *gui_tree_new(struct gui *gui);
+void gui_tree_receive(struct gui *gui, const struct window_order *order); /* of ORDER_NODES */
+
+#endif

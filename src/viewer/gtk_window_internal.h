@@ -1,0 +1,11 @@
+/* What other widgets report to the viewer. */
+#ifndef GRAY_VIEWER_GTK_WINDOW_INTERNAL_H
+#define GRAY_VIEWER_GTK_WINDOW_INTERNAL_H
+
+#include "viewer/gtk_internal.h"
+
+void gui_send_event(struct gui *gui, const struct window_event *event);
+void gui_send_action(struct gui *gui, enum window_action action);
+void gui_open_scene(struct gui *gui, GFile *file);
+
+#endif

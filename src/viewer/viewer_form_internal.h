@@ -1,0 +1,12 @@
+/* What a window with widgets shows beside the picture: the state of the work, and a form with every input of the
+ * selection and of the picture. */
+#ifndef GRAY_VIEWER_VIEWER_FORM_INTERNAL_H
+#define GRAY_VIEWER_VIEWER_FORM_INTERNAL_H
+
+#include "viewer/viewer.h"
+
+/* The form as it is now, to the window. */
+void viewer_show_form(struct viewer *viewer);
+void viewer_set_field(struct viewer *viewer, const struct window_event *event);
+
+#endif
