@@ -39,7 +39,7 @@ static double estimate(const struct light *light, enum pattern pattern, int bloc
     for (uint32_t c = 0; c < n * n; c++) {
         struct light_sample s = light_sample(light, &context, sample_position(pattern, key, c % n, c / n, n));
         if (!hidden(blocker, from, s.target.at))
-            sum += s.intensity.x * fmax(s.direction.y, 0);
+            sum += s.intensity.r * fmax(s.direction.y, 0);
     }
     return sum / ((double)n * n);
 }

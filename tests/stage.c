@@ -36,7 +36,7 @@ void stage_end(struct stage *s) {
 
 void stage_floor(struct stage *s) {
     stage_begin(s, 1);
-    struct node *node = stage_cube(s, s->root, stage_phong(s, vec3_all(1), vec3_all(0), 1));
+    struct node *node = stage_cube(s, s->root, stage_phong(s, colour_all(1), colour_all(0), 1));
     stage_move(s, node, -0.5, -1, -0.5);
     stage_scale(s, node, 40, 1, 40);
     s->settings.full = true;
@@ -52,7 +52,7 @@ double stage_variance_about_half(struct stage *s, bool single) {
             s->settings.seed = single ? 1000 + seed * 64 + i : seed;
             s->settings.samples = single ? 1 : 8;
             CHECK(stage_render(s, 1, 1));
-            mean += stage_pixel(s, 0, 0).x / (single ? 64 : 1);
+            mean += stage_pixel(s, 0, 0).r / (single ? 64 : 1);
         }
         error += (mean - 0.5) * (mean - 0.5);
     }
@@ -117,12 +117,12 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
     return ok;
 }
 
-struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y) {
+struct colour stage_pixel(const struct stage *s, uint32_t x, uint32_t y) {
     const float *rgb = s->film.pixels[(size_t)y * s->film.width + x].rgb;
-    return vec3_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    return colour_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }
 
-struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, double shininess) {
+struct material *stage_phong(struct stage *s, struct colour kd, struct colour ks, double shininess) {
     struct material *material = scene_material(&s->scene, MATERIAL_PHONG, NULL, &s->error);
     material->phong.kd = kd;
     material->phong.ks = ks;
@@ -132,7 +132,7 @@ struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, do
 }
 
 struct material *stage_glass(struct stage *s, double reflect, double refract, double ior) {
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(1), 1);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(1), 1);
     material->phong.reflect = reflect;
     material->phong.refract = refract;
     material->phong.ior = ior;
@@ -179,7 +179,7 @@ void stage_rotate(struct stage *s, struct node *node, int axis, double degrees) 
     CHECK(node_transform(&s->scene, node, NODE_ROTATE, &t));
 }
 
-void stage_point_light(struct stage *s, struct vec3 position, struct vec3 colour) {
+void stage_point_light(struct stage *s, struct vec3 position, struct colour colour) {
     s->lights[s->light_count++] =
         (struct light){.kind = LIGHT_POINT, .position = position, .colour = colour, .falloff = {1, 0, 0}};
 }

@@ -19,7 +19,7 @@ struct stage {
     struct scene_light authored[8]; /* what there is to say of them beside the light itself */
     uint32_t light_count;
     struct sky sky;
-    struct vec3 ambient;
+    struct colour ambient;
     const struct fog *fog;
     const struct medium *medium; /* around all solids, in the place of a fog */
     struct settings settings;
@@ -50,9 +50,9 @@ bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
 bool stage_render(struct stage *s, uint32_t width, uint32_t height);
 /* The job that stage_render renders, for other queries; borrows the stage's world and film. */
 struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height);
-struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
+struct colour stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
 
-struct material *stage_phong(struct stage *s, struct vec3 kd, struct vec3 ks, double shininess);
+struct material *stage_phong(struct stage *s, struct colour kd, struct colour ks, double shininess);
 struct material *stage_glass(struct stage *s, double reflect, double refract, double ior);
 struct node *stage_group(struct stage *s, struct node *parent);
 struct node *stage_sphere(struct stage *s, struct node *parent, const struct material *material);
@@ -60,6 +60,6 @@ struct node *stage_cube(struct stage *s, struct node *parent, const struct mater
 void stage_move(struct stage *s, struct node *node, double x, double y, double z);
 void stage_scale(struct stage *s, struct node *node, double x, double y, double z);
 void stage_rotate(struct stage *s, struct node *node, int axis, double degrees);
-void stage_point_light(struct stage *s, struct vec3 position, struct vec3 colour);
+void stage_point_light(struct stage *s, struct vec3 position, struct colour colour);
 
 #endif

@@ -568,7 +568,7 @@ static enum record_domain domain_of(const struct script_parameter *p) {
 static bool read_function(struct script_context *c, int index, const struct script_parameter *p,
                           struct script_value *value) {
     value->program = recorded_program(c, index, p->name, domain_of(p), &value->source);
-    value->vector = vec3_all(1);
+    value->colour = colour_all(1);
     return value->program != NULL;
 }
 
@@ -586,7 +586,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->texture = is_function ? recorded_texture(c, index, p->name) : handle->pointer;
         value->image = image_of(value->texture);
         value->number = 1;
-        value->vector = vec3_all(1);
+        value->colour = colour_all(1);
         return true;
     }
     switch (p->kind) {

@@ -85,13 +85,13 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
 }
 
 /* {200, 50, 50}: bytes, where numbers from 0 to 1 are meant. */
-void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 c) {
-    bool whole = c.x == floor(c.x) && c.y == floor(c.y) && c.z == floor(c.z);
-    double max = vec3_max_abs(c);
-    if (whole && max > 10 && max <= 255 && c.x >= 0 && c.y >= 0 && c.z >= 0)
+void context_warn_of_bytes(struct script_context *context, const char *name, struct colour c) {
+    bool whole = c.r == floor(c.r) && c.g == floor(c.g) && c.b == floor(c.b);
+    double max = colour_max_abs(c);
+    if (whole && max > 10 && max <= 255 && c.r >= 0 && c.g >= 0 && c.b >= 0)
         context_warn_once(context, WARNED_BYTES,
                           "%s {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
-                          name, c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
+                          name, c.r, c.g, c.b, c.r / 255, c.g / 255, c.b / 255);
 }
 
 /* The length of a name up to its last dot, which is not its first letter. */

@@ -46,7 +46,7 @@ enum {
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Warns once for a function if the colour has numbers from 0 to 255. */
-void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 colour);
+void context_warn_of_bytes(struct script_context *context, const char *name, struct colour colour);
 /* Warns once for a function if a number of degrees is a multiple or a simple fraction of pi. */
 void context_warn_of_radians(struct script_context *context, const char *name, double degrees);
 /* Nodes that are created from now on have the current line. */

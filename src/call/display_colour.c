@@ -14,7 +14,7 @@ static double digit(char c) {
 }
 
 /* '#rgb' or '#rrggbb'. */
-static bool read_hexadecimal(const char *text, struct vec3 *out) {
+static bool read_hexadecimal(const char *text, struct colour *out) {
     size_t count = strspn(text + 1, digits), each = count / 3;
     double x[3];
     if (text[1 + count] != '\0' || (count != 3 && count != 6))
@@ -23,12 +23,12 @@ static bool read_hexadecimal(const char *text, struct vec3 *out) {
         const char *at = text + 1 + k * each;
         x[k] = each == 1 ? digit(at[0]) / 15 : (16 * digit(at[0]) + digit(at[1])) / 255;
     }
-    *out = vec3_make(x[0], x[1], x[2]);
+    *out = colour_make(x[0], x[1], x[2]);
     return true;
 }
 
 /* A table of three numbers whose encoding is 'srgb'. */
-static bool read_marked(lua_State *L, int index, struct vec3 *out) {
+static bool read_marked(lua_State *L, int index, struct colour *out) {
     double x[3];
     bool ok = lua_rawlen(L, index) == 3;
     lua_pushliteral(L, "encoding");
@@ -41,11 +41,11 @@ static bool read_marked(lua_State *L, int index, struct vec3 *out) {
         lua_pop(L, 1);
     }
     if (ok)
-        *out = vec3_make(x[0], x[1], x[2]);
+        *out = colour_make(x[0], x[1], x[2]);
     return ok;
 }
 
-bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
+bool display_colour_at(lua_State *L, int index, struct colour *out) {
     index = lua_absindex(L, index);
     if (lua_type(L, index) == LUA_TTABLE)
         return read_marked(L, index, out);
@@ -59,13 +59,13 @@ bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
 
 bool display_colour_read(struct script_context *c, int index, const struct script_parameter *p,
                          struct script_value *value) {
-    struct vec3 colour;
+    struct colour colour;
     struct error error;
     if (!display_colour_at(c->sandbox.lua, index, &colour))
         return false;
     if (!(p->flags & (OR_TEXTURE | OR_DISPLAY)) && p->kind != KIND_BACKGROUND)
         sandbox_raise(&c->sandbox, "%s must be light: gr.linear converts a display colour to light", p->name);
-    value->vector = colour;
+    value->colour = colour;
     value->display = true;
     if (!(p->flags & OR_TEXTURE))
         return true;
@@ -75,13 +75,13 @@ bool display_colour_read(struct script_context *c, int index, const struct scrip
     if (!value->texture)
         sandbox_raise_no_memory(&c->sandbox);
     value->number = 1;
-    value->vector = vec3_all(1);
+    value->colour = colour_all(1);
     return true;
 }
 
 /* The colour of a call: a string, a table of three numbers, or three numbers. */
-static struct vec3 colour_of_call(lua_State *L) {
-    struct vec3 colour;
+static struct colour colour_of_call(lua_State *L) {
+    struct colour colour;
     if (lua_gettop(L) == 1 && display_colour_at(L, 1, &colour))
         return colour;
     bool is_table = lua_type(L, 1) == LUA_TTABLE;
@@ -98,12 +98,12 @@ static struct vec3 colour_of_call(lua_State *L) {
         x[k] = lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
-    return vec3_make(x[0], x[1], x[2]);
+    return colour_make(x[0], x[1], x[2]);
 }
 
 static int make_display_colour(lua_State *L) {
-    struct vec3 colour = colour_of_call(L);
-    const double x[3] = {colour.x, colour.y, colour.z};
+    struct colour colour = colour_of_call(L);
+    const double x[3] = {colour.r, colour.g, colour.b};
     lua_createtable(L, 3, 1);
     for (int k = 0; k < 3; k++) {
         lua_pushnumber(L, x[k]);
@@ -115,10 +115,10 @@ static int make_display_colour(lua_State *L) {
 }
 
 static int light_of_display_colour(lua_State *L) {
-    struct vec3 light = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, colour_of_call(L));
-    lua_pushnumber(L, light.x);
-    lua_pushnumber(L, light.y);
-    lua_pushnumber(L, light.z);
+    struct colour light = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, colour_of_call(L));
+    lua_pushnumber(L, light.r);
+    lua_pushnumber(L, light.g);
+    lua_pushnumber(L, light.b);
     push_vector(L);
     return 1;
 }

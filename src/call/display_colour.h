@@ -6,7 +6,7 @@
 #include "record/vector.h"
 
 /* Whether a value is a display colour. Raises an error for a string '#...' that is not a colour. */
-bool display_colour_at(lua_State *L, int index, struct vec3 *out);
+bool display_colour_at(lua_State *L, int index, struct colour *out);
 /* An argument that is a colour of the screen; where textures are accepted it is one. False: it is something else. */
 bool display_colour_read(struct script_context *context, int index, const struct script_parameter *parameter,
                          struct script_value *value);

@@ -89,7 +89,11 @@ struct script_value {
     bool boolean;
     int choice;
     double number;
-    struct vec3 vector;
+    /* Three numbers, which are the same by either name: a point, a direction, factors, or a colour. */
+    union {
+        struct vec3 vector;
+        struct colour colour;
+    };
     const char *text;
     struct node *node;
     const struct material *material;
@@ -110,7 +114,7 @@ struct script_value {
     const struct tone_table *curve;
     const uint32_t *starts, *indices;
     const double *numbers;
-    bool display; /* `vector` is a colour of the screen */
+    bool display; /* `colour` is one of the screen */
     bool single;  /* a number alone; of a REST parameter: arguments behind a form */
 };
 

@@ -13,19 +13,19 @@ static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
         double divisor = pixel.divisors[0] + pixel.divisors[1];
         for (int half = 0; half < 2; half++) {
             int from = pixel.weights[half] != 0 ? half : 1 - half; /* with one sample there is only one half */
-            struct vec3 colour = path_pixel_half(&pixel, from);
-            row[x].colour[half][0] = (float)colour.x;
-            row[x].colour[half][1] = (float)colour.y;
-            row[x].colour[half][2] = (float)colour.z;
+            struct colour colour = path_pixel_half(&pixel, from);
+            row[x].colour[half][0] = (float)colour.r;
+            row[x].colour[half][1] = (float)colour.g;
+            row[x].colour[half][2] = (float)colour.b;
             for (int i = 0; i < DENOISE_FEATURES; i++)
                 row[x].features[half][i] = (float)path_pixel_feature(&pixel, from, PATH_ALBEDO + i);
             for (int i = 0; i < 3; i++)
                 row[x].glow[half][i] = (float)path_pixel_feature(&pixel, from, PATH_GLOW + i);
         }
-        struct vec3 variance = path_pixel_variance_of_samples(&pixel);
-        row[x].variance[0] = (float)variance.x;
-        row[x].variance[1] = (float)variance.y;
-        row[x].variance[2] = (float)variance.z;
+        struct colour variance = path_pixel_variance_of_samples(&pixel);
+        row[x].variance[0] = (float)variance.r;
+        row[x].variance[1] = (float)variance.g;
+        row[x].variance[2] = (float)variance.b;
         row[x].share = divisor != 0 ? (float)(pixel.divisors[0] / divisor) : 0.5F;
     }
 }

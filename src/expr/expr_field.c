@@ -70,12 +70,12 @@ static double amount(double x) {
     return x > 0 && isfinite(x) ? x : 0;
 }
 
-struct vec3 expr_field_at(const struct expr_program *program, struct vec3 p) {
+struct colour expr_field_at(const struct expr_program *program, struct vec3 p) {
     double inputs[EXPR_INPUT_COUNT] = {p.x, p.y, p.z}, out[EXPR_OUTPUTS];
     expr_evaluate(program, inputs, out);
     if (program->output_count == 1)
-        return vec3_all(amount(out[0]));
-    return vec3_make(amount(out[0]), amount(out[1]), amount(out[2]));
+        return colour_all(amount(out[0]));
+    return colour_make(amount(out[0]), amount(out[1]), amount(out[2]));
 }
 
 /* Along each edge of a face. */
@@ -126,8 +126,8 @@ static double cell_largest(const struct expr_program *program, const struct expr
         largest = fmax(largest, bounds[k].high[at]);
     if (isfinite(largest))
         return largest;
-    struct vec3 value = expr_field_at(program, probe);
-    return fmax(value.x, fmax(value.y, value.z));
+    struct colour value = expr_field_at(program, probe);
+    return fmax(value.r, fmax(value.g, value.b));
 }
 
 bool expr_field_largest(const struct expr_program *program, double *largest) {

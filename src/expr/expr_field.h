@@ -15,7 +15,7 @@ bool expr_field_reads_only(const struct expr_program *program, unsigned inputs, 
 
 /* The value for a point or a unit direction p; the other inputs are 0. One output is all three components. Numbers
  * below 0 and those that are not finite count as 0. */
-struct vec3 expr_field_at(const struct expr_program *program, struct vec3 p);
+struct colour expr_field_at(const struct expr_program *program, struct vec3 p);
 
 /* Many points: `inputs` writes those of point i that the program reads. */
 struct expr_points {

@@ -57,15 +57,15 @@ static double rounded_float(double x) {
     return (double)(float)in_range(x);
 }
 
-static struct vec3 nearest_floats(struct vec3 c) {
-    return vec3_make(rounded_float(c.x), rounded_float(c.y), rounded_float(c.z));
+static struct colour nearest_floats(struct colour c) {
+    return colour_make(rounded_float(c.r), rounded_float(c.g), rounded_float(c.b));
 }
 
 /* --- in the film --- */
 
-static struct vec3 load_sum(const float *sum, const float *rest) {
-    return vec3_make((double)sum[0] + (double)rest[0], (double)sum[1] + (double)rest[1],
-                     (double)sum[2] + (double)rest[2]);
+static struct colour load_sum(const float *sum, const float *rest) {
+    return colour_make((double)sum[0] + (double)rest[0], (double)sum[1] + (double)rest[1],
+                       (double)sum[2] + (double)rest[2]);
 }
 
 struct path_pixel path_film_load(const struct film *film, size_t at) {
@@ -75,7 +75,7 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
         pixel.sums[half] = load_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half);
         pixel.weights[half] = pixel.divisors[half] = (double)record[RECORD_WEIGHTS + half];
     }
-    pixel.squares = vec3_make((double)squares[0], (double)squares[1], (double)squares[2]);
+    pixel.squares = colour_make((double)squares[0], (double)squares[1], (double)squares[2]);
     unsigned parts = path_film_parts(film->record);
     const float *more = record + RECORD_FLOATS;
     if (parts & PATH_PART_FEATURES) {
@@ -95,17 +95,17 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
     return pixel;
 }
 
-static void store_colour(float out[3], struct vec3 colour) {
-    out[0] = (float)colour.x;
-    out[1] = (float)colour.y;
-    out[2] = (float)colour.z;
+static void store_colour(float out[3], struct colour colour) {
+    out[0] = (float)colour.r;
+    out[1] = (float)colour.g;
+    out[2] = (float)colour.b;
 }
 
 /* A sum and what it leaves. */
-static void store_sum(float *sum, float *rest, struct vec3 value) {
-    struct vec3 near = nearest_floats(value);
+static void store_sum(float *sum, float *rest, struct colour value) {
+    struct colour near = nearest_floats(value);
     store_colour(sum, near);
-    store_colour(rest, vec3_sub(value, near));
+    store_colour(rest, colour_sub(value, near));
 }
 
 static void store_number(float out[2], double value) {
@@ -142,31 +142,31 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
 
 /* --- sums --- */
 
-static struct vec3 rounded_sums(struct vec3 sum) {
-    return vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
+static struct colour rounded_sums(struct colour sum) {
+    return colour_make(rounded_sum(sum.r), rounded_sum(sum.g), rounded_sum(sum.b));
 }
 
 /* By how much a sample counts less. */
-static double share_of(const struct path_pixel *pixel, struct vec3 c) {
-    return pixel->bright > 0 ? 1 / (1 + pixel->bright * fabs(0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z)) : 1;
+static double share_of(const struct path_pixel *pixel, struct colour c) {
+    return pixel->bright > 0 ? 1 / (1 + pixel->bright * fabs(0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b)) : 1;
 }
 
-void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct vec3 radiance,
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct colour radiance,
                           double weight) {
     float *features = pixel->features[pixel->samples % 2];
     weight *= share_of(pixel, radiance);
     for (int i = 0; i < PATH_FEATURES; i++)
         features[i] = (float)in_range((double)features[i] + weight * (double)parts->features[i]);
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
-        pixel->light[i] = rounded_sums(vec3_add(pixel->light[i], vec3_scale(parts->light[i], weight)));
+        pixel->light[i] = rounded_sums(colour_add(pixel->light[i], colour_scale(parts->light[i], weight)));
 }
 
-void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight) {
+void path_pixel_add(struct path_pixel *pixel, struct colour radiance, double seen_through, double weight) {
     unsigned half = pixel->samples % 2;
     double counted = weight * share_of(pixel, radiance);
-    struct vec3 value = vec3_scale(radiance, counted), sum = vec3_add(pixel->sums[half], value);
+    struct colour value = colour_scale(radiance, counted), sum = colour_add(pixel->sums[half], value);
     pixel->sums[half] = rounded_sums(sum);
-    pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
+    pixel->squares = nearest_floats(colour_add(pixel->squares, colour_mul(value, value)));
     pixel->seen_through = rounded_sum(pixel->seen_through + counted * seen_through);
     pixel->weights[half] += weight;
     pixel->divisors[half] = pixel->bright > 0 ? rounded_sum(pixel->divisors[half] + counted) : pixel->weights[half];
@@ -175,21 +175,21 @@ void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_
 
 /* --- means and variances --- */
 
-static struct vec3 over(struct vec3 sum, double weight) {
-    return weight == 0 ? vec3_all(0) : vec3_scale(sum, 1 / weight);
+static struct colour over(struct colour sum, double weight) {
+    return weight == 0 ? colour_all(0) : colour_scale(sum, 1 / weight);
 }
 
-struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
-    struct vec3 mean = over(vec3_add(pixel->sums[0], pixel->sums[1]), pixel->divisors[0] + pixel->divisors[1]);
-    return vec3_make(in_range(mean.x), in_range(mean.y), in_range(mean.z));
+struct colour path_pixel_mean(const struct path_pixel *pixel) {
+    struct colour mean = over(colour_add(pixel->sums[0], pixel->sums[1]), pixel->divisors[0] + pixel->divisors[1]);
+    return colour_make(in_range(mean.r), in_range(mean.g), in_range(mean.b));
 }
 
-struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
+struct colour path_pixel_half(const struct path_pixel *pixel, int half) {
     return over(pixel->sums[half], pixel->divisors[half]);
 }
 
-struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour) {
-    return pixel->line > 0 ? vec3_scale(colour, 1 - (double)pixel->line) : colour;
+struct colour path_pixel_below_line(const struct path_pixel *pixel, struct colour colour) {
+    return pixel->line > 0 ? colour_scale(colour, 1 - (double)pixel->line) : colour;
 }
 
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature) {
@@ -197,28 +197,28 @@ double path_pixel_feature(const struct path_pixel *pixel, int half, int feature)
     return weight == 0 ? 0 : (double)pixel->features[half][feature] / weight;
 }
 
-struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group) {
+struct colour path_pixel_light(const struct path_pixel *pixel, enum path_light_group group) {
     return over(pixel->light[group], pixel->divisors[0] + pixel->divisors[1]);
 }
 
 /* The mean of both halves has half of the variance of one half; their difference has twice that variance. */
-struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
+struct colour path_pixel_variance_of_halves(const struct path_pixel *pixel) {
     if (pixel->samples < 2)
-        return vec3_all(0);
-    struct vec3 difference = vec3_sub(path_pixel_half(pixel, 0), path_pixel_half(pixel, 1));
-    return vec3_scale(vec3_mul(difference, difference), 0.25);
+        return colour_all(0);
+    struct colour difference = colour_sub(path_pixel_half(pixel, 0), path_pixel_half(pixel, 1));
+    return colour_scale(colour_mul(difference, difference), 0.25);
 }
 
 /* With PATH_PART_BRIGHT the mean is x / (1 - x) of a mean x of weighted grey samples, and the derivative of that is the
  * square of weights / divisors; else they are equal. */
-struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
+struct colour path_pixel_variance_of_samples(const struct path_pixel *pixel) {
     double count = (double)pixel->samples, divisor = pixel->divisors[0] + pixel->divisors[1];
     double ratio = divisor == 0 ? 1 : (pixel->weights[0] + pixel->weights[1]) / divisor;
     if (pixel->samples < 2)
-        return vec3_all(0);
-    struct vec3 mean = vec3_scale(path_pixel_mean(pixel), 1 / ratio);
-    struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
-    return vec3_scale(vec3_max(variance, vec3_all(0)), ratio * ratio * ratio * ratio / (count - 1));
+        return colour_all(0);
+    struct colour mean = colour_scale(path_pixel_mean(pixel), 1 / ratio);
+    struct colour variance = colour_sub(colour_scale(pixel->squares, 1 / count), colour_mul(mean, mean));
+    return colour_scale(colour_max(variance, colour_all(0)), ratio * ratio * ratio * ratio / (count - 1));
 }
 
 /* The record of the integrator whitted has it after the first pass (whitted_record). */
@@ -232,7 +232,7 @@ float film_alpha(const struct film *film, size_t at) {
     if (film->record.marks)
         return film->floats[at * film->record.floats + 3];
     const struct path_pixel pixel = path_film_load(film, at);
-    double seen = over(vec3_all(pixel.seen_through), pixel.divisors[0] + pixel.divisors[1]).x;
+    double seen = over(colour_all(pixel.seen_through), pixel.divisors[0] + pixel.divisors[1]).r;
     double open = (seen > 1 ? 1 : seen > 0 ? seen : 0) * (1 - (double)pixel.line);
     return (float)(1 - open);
 }

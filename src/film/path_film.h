@@ -10,22 +10,22 @@
 
 #include "film/film.h"
 #include "film/path_parts.h"
-#include "math/vec3.h"
+#include "math/colour.h"
 
 /* The zero value is a pixel without samples. */
 struct path_pixel {
-    struct vec3 sums[2]; /* of the halves: weighted radiance */
-    double weights[2];   /* of the halves: sums of the weights of the samples */
-    double divisors[2];  /* of the halves: what all sums are divided by: the weights, each with `bright` times
-                            1 / (1 + bright luminance) of its sample, as the sums have them */
-    double bright;       /* 2^exposure with RESOLVE_BRIGHT, else 0; set by the caller that adds samples */
-    struct vec3 squares; /* of the weighted radiance of all samples */
-    uint32_t samples;    /* sample number k belongs to half k % 2 */
+    struct colour sums[2]; /* of the halves: weighted radiance */
+    double weights[2];     /* of the halves: sums of the weights of the samples */
+    double divisors[2];    /* of the halves: what all sums are divided by: the weights, each with `bright` times
+                              1 / (1 + bright luminance) of its sample, as the sums have them */
+    double bright;         /* 2^exposure with RESOLVE_BRIGHT, else 0; set by the caller that adds samples */
+    struct colour squares; /* of the weighted radiance of all samples */
+    uint32_t samples;      /* sample number k belongs to half k % 2 */
     /* Only in records with these parts (enum path_part). */
-    float features[2][PATH_FEATURES];     /* of the halves: weighted sums */
-    struct vec3 light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
-    double seen_through;                  /* weighted sum of the shares of the samples that see the background */
-    float line;                           /* the fraction of the pixel that black lines cover, 0..1 */
+    float features[2][PATH_FEATURES];       /* of the halves: weighted sums */
+    struct colour light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
+    double seen_through;                    /* weighted sum of the shares of the samples that see the background */
+    float line;                             /* the fraction of the pixel that black lines cover, 0..1 */
 };
 
 /* The record of films with these parts, a mask of enum path_part; and the mask of a record, 0 for records of other
@@ -43,24 +43,24 @@ float film_alpha(const struct film *film, size_t at);
 
 /* Adds sample number pixel->samples. weight: that of the reconstruction filter, 1 or -1. The parts of the sample are
  * added before it. */
-void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct vec3 radiance,
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, struct colour radiance,
                           double weight);
-void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double seen_through, double weight);
+void path_pixel_add(struct path_pixel *pixel, struct colour radiance, double seen_through, double weight);
 
 /* The mean of all samples, and the mean of one half (black if it has no samples); and a colour with the line of the
  * pixel drawn over it. */
-struct vec3 path_pixel_mean(const struct path_pixel *pixel);
-struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
-struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour);
+struct colour path_pixel_mean(const struct path_pixel *pixel);
+struct colour path_pixel_half(const struct path_pixel *pixel, int half);
+struct colour path_pixel_below_line(const struct path_pixel *pixel, struct colour colour);
 /* The mean of a feature over one half, and that of a group of light over all samples; 0 if the record does not
  * contain them. */
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature);
-struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group);
+struct colour path_pixel_light(const struct path_pixel *pixel, enum path_light_group group);
 /* The variance of path_pixel_mean by channel. The first estimate uses the difference of the halves and is unbiased,
  * with one degree of freedom. The second one treats the samples as independent: it is smoother, but too large where
  * stratification helps. 0 with less than two samples. */
-struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
-struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
+struct colour path_pixel_variance_of_halves(const struct path_pixel *pixel);
+struct colour path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
 /* Draws the lines of the film (PATH_PART_LINE) over other colours of its pixels, for instance denoised ones. */
 void path_film_draw_lines(const struct film *film, float (*colours)[3]);

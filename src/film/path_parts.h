@@ -3,7 +3,7 @@
 #ifndef GRAY_FILM_PATH_PARTS_H
 #define GRAY_FILM_PATH_PARTS_H
 
-#include "math/vec3.h"
+#include "math/colour.h"
 
 #include <stdbool.h>
 
@@ -46,12 +46,12 @@ struct path_parts {
     bool surface_known; /* the features are there */
     double travelled;   /* along the line of sight, to its last surface */
     double reflected;   /* the share of light that the first smooth glass reflects; 0 without glass */
-    struct vec3 seen;   /* this share of the path's weight at the glass, which may be seen in a mirror */
+    struct colour seen; /* this share of the path's weight at the glass, which may be seen in a mirror */
     float features[PATH_FEATURES];
-    struct vec3 light[PATH_LIGHT_GROUPS];
+    struct colour light[PATH_LIGHT_GROUPS];
     /* For each kind of scattering (diffuse, specular, transmission) and each channel: its fraction of the light
      * after the first scattering event. The fractions add up to 1. */
-    struct vec3 shares[PATH_SCATTERINGS];
+    struct colour shares[PATH_SCATTERINGS];
 };
 
 #endif

@@ -154,8 +154,8 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
     return find_image(g, image, map);
 }
 
-static struct vec3 unit_colour(const double colour[3]) {
-    return vec3_make(unit(colour[0]), unit(colour[1]), unit(colour[2]));
+static struct colour unit_colour(const double colour[3]) {
+    return colour_make(unit(colour[0]), unit(colour[1]), unit(colour[2]));
 }
 
 static void warn_of_pictures(struct gltf *g, const json_t *extensions, const char *where) {
@@ -179,7 +179,7 @@ static bool read_volume(struct gltf *g, const json_t *volume, struct model_mater
         return false;
     for (int i = 0; i < 3 && distance > 0 && !m->layers.thin_walled; i++)
         absorption[i] = colour[i] < 1 ? -el_log(fmax(colour[i], 1e-6)) / distance : 0;
-    m->absorption = vec3_make(absorption[0], absorption[1], absorption[2]);
+    m->absorption = colour_make(absorption[0], absorption[1], absorption[2]);
     return true;
 }
 
@@ -191,7 +191,8 @@ static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_materia
     m->layers.fuzz_weight = weight;
     m->layers.fuzz_roughness = share(sheen, "sheenRoughnessFactor", 0);
     if (weight > 0)
-        m->layers.fuzz_colour = vec3_make(unit(colour[0] / weight), unit(colour[1] / weight), unit(colour[2] / weight));
+        m->layers.fuzz_colour =
+            colour_make(unit(colour[0] / weight), unit(colour[1] / weight), unit(colour[2] / weight));
     return true;
 }
 
@@ -200,11 +201,11 @@ static bool read_gloss(struct gltf *g, const json_t *gloss, struct model_materia
     double colour[3] = {1, 1, 1};
     if (!gltf_numbers(g, gloss, "specularFactor", colour, 3, where))
         return false;
-    struct vec3 specular = unit_colour(colour);
-    double max = vec3_max_abs(specular), root = sqrt(fmin(max, 0.98));
+    struct colour specular = unit_colour(colour);
+    double max = colour_max_abs(specular), root = sqrt(fmin(max, 0.98));
     m->layers.base_metalness = 0;
     m->layers.specular_ior = (1 + root) / (1 - root);
-    m->ks = max > 0 ? vec3_scale(specular, 1 / max) : specular;
+    m->ks = max > 0 ? colour_scale(specular, 1 / max) : specular;
     m->gloss_colour = specular;
     m->roughness = 1 - share(gloss, "glossinessFactor", 1);
     return read_map(g, gloss, "specularGlossinessTexture", &m->map_gloss, where);
@@ -278,9 +279,9 @@ static bool read_emission(struct gltf *g, const json_t *source, struct model_mat
     double emitted[3] = {0, 0, 0};
     if (!gltf_numbers(g, source, "emissiveFactor", emitted, 3, where))
         return false;
-    m->ke =
-        vec3_scale(vec3_make(emitted[0], emitted[1], emitted[2]), fmax(number_or(strength, "emissiveStrength", 1), 0));
-    return vec3_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where);
+    m->ke = colour_scale(colour_make(emitted[0], emitted[1], emitted[2]),
+                         fmax(number_or(strength, "emissiveStrength", 1), 0));
+    return colour_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where);
 }
 
 static bool read_material(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
@@ -335,7 +336,7 @@ bool gltf_read_materials(struct gltf *g) {
     struct model_material *m = model_add_material(g->model, g->error);
     if (!m)
         return false;
-    m->kd = vec3_all(1);
+    m->kd = colour_all(1);
     m->by_vertex = true;
     return true;
 }

@@ -213,12 +213,12 @@ static bool shine_of(const json_t *source, struct model_light *light) {
         }
     for (size_t i = 0; colour && i < 3; i++)
         light_of[i] = fmax(json_number_value(json_array_get(colour, i)), 0);
-    light->intensity = vec3_scale(vec3_make(light_of[0], light_of[1], light_of[2]), strength);
+    light->intensity = colour_scale(colour_make(light_of[0], light_of[1], light_of[2]), strength);
     light->range = fmax(number_or(source, "range", 0), 0);
     light->outer = number_or(spot, "outerConeAngle", PI / 4);
     light->inner = number_or(spot, "innerConeAngle", 0);
-    return known && vec3_within(light->intensity, NUMBER_LIMIT) && number_in_range(light->range) && light->inner >= 0 &&
-           light->outer > 0 && light->inner <= light->outer && light->outer <= PI / 2 + 1e-6;
+    return known && colour_within(light->intensity, NUMBER_LIMIT) && number_in_range(light->range) &&
+           light->inner >= 0 && light->outer > 0 && light->inner <= light->outer && light->outer <= PI / 2 + 1e-6;
 }
 
 /* KHR_lights_punctual. */

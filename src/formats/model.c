@@ -248,7 +248,7 @@ bool model_show_colours(struct model *model, struct model_mesh *mesh, struct err
             struct model_material *material = model_add_material(model, error);
             if (!material)
                 return false;
-            material->kd = vec3_all(1);
+            material->kd = colour_all(1);
             material->by_vertex = true;
             white = (uint32_t)model->materials.count - 1;
         }
@@ -421,10 +421,11 @@ static bool material_in_range(struct model_material *m) {
     for (size_t k = 0; (map = model_map(m, k)); k++)
         if (!texture_in_range(map))
             return false;
-    return vec3_within(m->ka, NUMBER_LIMIT) && vec3_within(m->kd, NUMBER_LIMIT) && vec3_within(m->ks, NUMBER_LIMIT) &&
-           vec3_within(m->ke, NUMBER_LIMIT) && vec3_within(m->filter, NUMBER_LIMIT) && number_in_range(m->shininess) &&
-           vec3_within(m->absorption, NUMBER_LIMIT) && number_in_range(m->layers.specular_ior) &&
-           number_in_range(m->ior) && vec3_within(m->gloss_colour, NUMBER_LIMIT);
+    return colour_within(m->ka, NUMBER_LIMIT) && colour_within(m->kd, NUMBER_LIMIT) &&
+           colour_within(m->ks, NUMBER_LIMIT) && colour_within(m->ke, NUMBER_LIMIT) &&
+           colour_within(m->filter, NUMBER_LIMIT) && number_in_range(m->shininess) &&
+           colour_within(m->absorption, NUMBER_LIMIT) && number_in_range(m->layers.specular_ior) &&
+           number_in_range(m->ior) && colour_within(m->gloss_colour, NUMBER_LIMIT);
 }
 
 static bool node_in_range(const struct model_node *node) {

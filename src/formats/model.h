@@ -44,14 +44,14 @@ enum { MODEL_LAYER_MAPS = 6 };
 /* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {
     const char *name;
-    struct vec3 ka, kd, ks, ke, filter; /* filter: Tf, the colour of transmitted light */
+    struct colour ka, kd, ks, ke, filter; /* filter: Tf, the colour of transmitted light */
     double shininess, dissolve, ior, reflect;
     /* Of layered materials, kd is the colour of the base, ks that of the specular layer, dissolve the opacity; the
      * green channel of map_metal multiplies roughness, its blue channel metalness. */
     bool layered;
     struct openpbr layers;
     double roughness, transmission;
-    struct vec3 absorption;
+    struct colour absorption;
     bool has_shininess, has_ior, two_sided, unlit;
     bool by_vertex;      /* the colours of the mesh multiply kd */
     bool dissolve_of_tr; /* of Tr, not of d */
@@ -60,7 +60,7 @@ struct model_material {
     /* Of layered materials: the colour is the reflectance head on (times gloss_colour), alpha times 1 - roughness the
      * gloss; both take the place of the numbers. */
     struct model_texture map_gloss;
-    struct vec3 gloss_colour;
+    struct colour gloss_colour;
     struct model_layer_map layer_maps[MODEL_LAYER_MAPS];
     uint32_t layer_map_count;
 };
@@ -105,9 +105,9 @@ struct model_light {
     const char *name; /* as of cameras */
     enum model_light_kind kind;
     struct affine model_from_light;
-    struct vec3 intensity; /* colour times candela; of directional lights times lux */
-    double range;          /* it shines as far as this; 0: everywhere */
-    double inner, outer;   /* radians, of spots: full light up to inner, none from outer on */
+    struct colour intensity; /* colour times candela; of directional lights times lux */
+    double range;            /* it shines as far as this; 0: everywhere */
+    double inner, outer;     /* radians, of spots: full light up to inner, none from outer on */
 };
 
 struct model_animation {

@@ -136,16 +136,16 @@ static bool find_map(struct scene *scene, const struct model_texture *map, struc
                                   .cross = {map->cross[0], map->cross[1]},
                                   .offset = {map->offset[0], map->offset[1]},
                                   .second = map->second,
-                                  .tint = vec3_all(1)};
+                                  .tint = colour_all(1)};
     return true;
 }
 
-static struct vec3 or_white(struct vec3 colour) {
-    return vec3_max_abs(colour) == 0 ? vec3_all(1) : colour;
+static struct colour or_white(struct colour colour) {
+    return colour_max_abs(colour) == 0 ? colour_all(1) : colour;
 }
 
 /* A map over an input of *top, which becomes the new top; does nothing without a map. */
-static bool cover(struct scene *scene, const struct model_texture *map, enum material_input input, struct vec3 tint,
+static bool cover(struct scene *scene, const struct model_texture *map, enum material_input input, struct colour tint,
                   const struct material **top, struct error *error) {
     struct texture_image image;
     bool there;
@@ -279,7 +279,7 @@ static bool multiply_by_gloss(struct scene *scene, const struct model_material *
          (parts[5] = texture_keep(arena, texture_number(1 - from->roughness), error)) &&
          (parts[4] = texture_keep(arena, texture_multiply(parts[4], parts[5]), error)) &&
          (parts[5] = texture_keep(arena, texture_map(parts[4], FUNCTION_COMPLEMENT, 0), error));
-    m->phong.kd = m->phong.ks = vec3_all(1);
+    m->phong.kd = m->phong.ks = colour_all(1);
     m->phong.roughness = m->phong.reflect = layers->base_metalness = 1;
     layers->specular_ior = 1.5;
     return ok && material_multiply(m, INPUT_KD, parts[3], arena, error) &&
@@ -333,7 +333,7 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.ior = m->phong.has_ior ? openpbr_ior(layers->specular_ior, layers->specular_weight) : 1;
     m->phong.absorption = from->absorption;
     m->phong.two_sided = from->two_sided || from->transmission > 0;
-    m->phong.emission = from->map_ke.name ? vec3_all(0) : from->ke;
+    m->phong.emission = from->map_ke.name ? colour_all(0) : from->ke;
     bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_gloss(scene, from, layers, m, error) &&
               multiply_by_metal(scene, from, m, error) && multiply_by_opacity(scene, from, m, error);
     for (uint32_t i = 0; ok && i < from->layer_map_count; i++)
@@ -353,16 +353,16 @@ static const struct material *make_material(struct scene *scene, const struct mo
     bool shiny = from->illum != 0 && from->illum != 1, clear = from->dissolve < 1;
     bool bends = from->has_ior && (from->illum < 0 || from->illum == 6 || from->illum == 7);
     m->name = from->name;
-    m->phong.kd = vec3_scale(from->kd, from->dissolve);
-    m->phong.ks = shiny ? from->ks : vec3_all(0);
+    m->phong.kd = colour_scale(from->kd, from->dissolve);
+    m->phong.ks = shiny ? from->ks : colour_all(0);
     m->phong.shininess = from->has_shininess && from->shininess > 0 ? from->shininess : 1;
     m->phong.reflect = from->illum >= 3 && from->illum <= 9 ? 1 : from->reflect;
     m->phong.ior = bends && from->ior >= 1 ? from->ior : 1;
     m->phong.two_sided = from->two_sided;
-    m->phong.emission = from->map_ke.name ? vec3_all(0) : from->ke;
+    m->phong.emission = from->map_ke.name ? colour_all(0) : from->ke;
     m->phong.unlit = from->unlit;
     if (clear) {
-        bool dark = vec3_max_abs(m->phong.ks) == 0;
+        bool dark = colour_max_abs(m->phong.ks) == 0;
         m->phong.shininess = dark ? CLEAR_SHININESS : m->phong.shininess;
         m->phong.ks = from->filter;
         m->phong.reflect = 0;
@@ -370,10 +370,10 @@ static const struct material *make_material(struct scene *scene, const struct mo
         m->phong.has_ior = true;
     }
     /* The picture is multiplied by the final kd. */
-    struct vec3 tint = m->phong.kd;
-    if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
-        tint =
-            vec3_all(from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
+    struct colour tint = m->phong.kd;
+    if (colour_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
+        tint = colour_all(
+            from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
     const struct material *top = m;
     if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
         return NULL;

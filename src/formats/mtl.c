@@ -73,7 +73,7 @@ static bool read_numbers(struct library *l, double *out, int min, int max) {
 }
 
 /* One number for all three, or three numbers; other forms (spectral, xyz) are not read. */
-static void read_colour(struct library *l, const struct library *keyword, size_t keyword_length, struct vec3 *out) {
+static void read_colour(struct library *l, const struct library *keyword, size_t keyword_length, struct colour *out) {
     size_t length = next_word(l);
     double rgb[3] = {0, NAN, NAN};
     if (is_word(l, length, "spectral") || is_word(l, length, "xyz")) {
@@ -81,7 +81,7 @@ static void read_colour(struct library *l, const struct library *keyword, size_t
         return;
     }
     if (read_numbers(l, rgb, 1, 3))
-        *out = vec3_make(rgb[0], isnan(rgb[1]) ? rgb[0] : rgb[1], isnan(rgb[2]) ? rgb[0] : rgb[2]);
+        *out = colour_make(rgb[0], isnan(rgb[1]) ? rgb[0] : rgb[1], isnan(rgb[2]) ? rgb[0] : rgb[2]);
 }
 
 /* The rest of the line without blanks at its ends. */
@@ -211,7 +211,7 @@ static void read_dissolve(struct library *l, bool is_transparency) {
 /* Nothing of it is seen: neither refraction nor a coloured filter. */
 static bool is_invisible(const struct model_material *m) {
     bool bends = m->has_ior && m->ior != 1 && (m->illum < 0 || m->illum == 6 || m->illum == 7);
-    return m->dissolve == 0 && !bends && vec3_max_abs(vec3_sub(m->filter, vec3_all(1))) == 0;
+    return m->dissolve == 0 && !bends && colour_max_abs(colour_sub(m->filter, colour_all(1))) == 0;
 }
 
 /* MeshLab wrote Tr 1 for opaque materials until 2023. */
@@ -270,7 +270,7 @@ static bool read_statement(struct library *l) {
                 {"map_Kn", offsetof(struct model_material, map_normal)}};
     for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
         if (is_word(&word, length, colours[i].word)) {
-            read_colour(l, &word, length, (struct vec3 *)(void *)((char *)m + colours[i].offset));
+            read_colour(l, &word, length, (struct colour *)(void *)((char *)m + colours[i].offset));
             return true;
         }
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++)

@@ -824,7 +824,7 @@ static bool add_picture(struct ply *ply) {
     if (!material || !list_add_index(&ply->mesh->slots, 0))
         return no_memory(ply);
     struct model_texture *map = &material->map_kd;
-    material->kd = vec3_all(1);
+    material->kd = colour_all(1);
     map->name = arena_copy_text(&ply->model->arena, ply->picture.text, ply->picture.length);
     if (!map->name)
         return no_memory(ply);

@@ -2,6 +2,7 @@
 #ifndef GRAY_GEOMETRY_HIT_H
 #define GRAY_GEOMETRY_HIT_H
 
+#include "math/colour.h"
 #include "math/ray.h"
 #include "math/vec3.h"
 
@@ -27,7 +28,7 @@ struct surface {
     struct vec3 pattern_normal; /* geometric, in that space, as the operand has it (not flipped) */
     bool has_uv;
     bool has_colour;
-    struct vec3 colour; /* of the vertices, interpolated */
+    struct colour colour; /* of the vertices, interpolated */
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
     bool has_second;
@@ -45,7 +46,8 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     out->point = out->pattern_point = point;
     out->normal = out->shading_normal = out->pattern_normal = normal;
     out->has_uv = out->has_colour = out->has_second = false;
-    out->colour = out->dpdu = out->dpdv = zero;
+    out->dpdu = out->dpdv = zero;
+    out->colour = colour_all(0);
     out->u = out->v = 0;
     out->error = error;
     out->behind = 0;
@@ -63,7 +65,7 @@ struct hit {
     struct vec3 normal;           /* unit, interpolated where there are vertex normals; outward side as given */
     struct vec3 pattern_point, pattern_normal;
     bool has_uv, has_colour, has_second;
-    struct vec3 colour; /* of the vertices, interpolated */
+    struct colour colour; /* of the vertices, interpolated */
     double u, v;
     struct second_uv second; /* world; not set when has_second is false */
     struct vec3 dpdu, dpdv;  /* world; for spheres only if bumps or functions need them */

@@ -47,7 +47,7 @@ void palette_count_add(struct palette_count *count, const uint8_t *rgb, size_t p
 }
 
 /* A cell that occurs. */
-struct colour {
+struct counted_colour {
     uint64_t count;
     uint32_t cell;
     uint8_t mean[3];
@@ -61,7 +61,7 @@ struct cut_box {
 };
 
 static int by_channel(const void *left, const void *right, int channel) {
-    const struct colour *a = left, *b = right;
+    const struct counted_colour *a = left, *b = right;
     if (a->mean[channel] != b->mean[channel])
         return a->mean[channel] < b->mean[channel] ? -1 : 1;
     return a->cell < b->cell ? -1 : a->cell > b->cell;
@@ -80,7 +80,7 @@ static int by_blue(const void *a, const void *b) {
 }
 
 /* Sums are whole numbers below 2^53 for pictures with up to 10^11 pixels, and so exact. */
-static void measure(const struct colour *colours, struct cut_box *box) {
+static void measure(const struct counted_colour *colours, struct cut_box *box) {
     box->spread = -1;
     for (int channel = 0; channel < 3; channel++) {
         double count = 0, sum = 0, squares = 0;
@@ -101,7 +101,7 @@ static void measure(const struct colour *colours, struct cut_box *box) {
 }
 
 /* Cuts the box at the median of its axis; the second half is the result. */
-static struct cut_box cut(struct colour *colours, struct cut_box *box) {
+static struct cut_box cut(struct counted_colour *colours, struct cut_box *box) {
     static int (*const order[3])(const void *, const void *) = {by_red, by_green, by_blue};
     uint64_t all = 0, below = 0;
     qsort(colours + box->first, box->last - box->first, sizeof *colours, order[box->axis]);
@@ -141,8 +141,8 @@ static int spread_of(const struct palette *palette) {
     return mean > SPREAD_MAX ? SPREAD_MAX : mean;
 }
 
-static void put_colours(const struct palette_count *count, const struct colour *colours, const struct cut_box *boxes,
-                        struct palette *out) {
+static void put_colours(const struct palette_count *count, const struct counted_colour *colours,
+                        const struct cut_box *boxes, struct palette *out) {
     for (int k = 0; k < out->count; k++) {
         uint64_t all = 0, sum[3] = {0};
         for (size_t i = boxes[k].first; i < boxes[k].last; i++) {
@@ -162,7 +162,7 @@ bool palette_make(const struct palette_count *count, struct palette *out) {
     for (uint32_t cell = 0; cell < CELLS; cell++)
         all += count->cells[cell].count > 0;
     *out = (struct palette){0};
-    struct colour *colours = mem_alloc_zero(all + 1, sizeof *colours);
+    struct counted_colour *colours = mem_alloc_zero(all + 1, sizeof *colours);
     if (!colours)
         return false;
     /* The mean of a cell stands for its colours. */
@@ -170,7 +170,7 @@ bool palette_make(const struct palette_count *count, struct palette *out) {
         const struct cell *cell = &count->cells[number];
         if (cell->count == 0)
             continue;
-        colours[used] = (struct colour){.count = cell->count, .cell = number};
+        colours[used] = (struct counted_colour){.count = cell->count, .cell = number};
         for (int c = 0; c < 3; c++)
             colours[used].mean[c] = (uint8_t)((2 * cell->sum[c] + cell->count) / (2 * cell->count));
         used++;

@@ -2,8 +2,8 @@
 #ifndef GRAY_IMAGE_TRANSFER_H
 #define GRAY_IMAGE_TRANSFER_H
 
+#include "math/colour.h"
 #include "math/elementary.h"
-#include "math/vec3.h"
 
 #include <stdbool.h>
 
@@ -42,8 +42,8 @@ static inline double transfer_decode(struct transfer_function transfer, double c
     return c < 0 ? -light : light;
 }
 
-static inline struct vec3 transfer_decode_colour(struct transfer_function transfer, struct vec3 c) {
-    return vec3_make(transfer_decode(transfer, c.x), transfer_decode(transfer, c.y), transfer_decode(transfer, c.z));
+static inline struct colour transfer_decode_colour(struct transfer_function transfer, struct colour c) {
+    return colour_make(transfer_decode(transfer, c.r), transfer_decode(transfer, c.g), transfer_decode(transfer, c.b));
 }
 
 #endif

@@ -187,14 +187,14 @@ static void describe_material(const struct material *material, struct picked *ou
 }
 
 static bool same_inputs(const struct surface_inputs *a, const struct surface_inputs *b) {
-    const struct vec3 colours[][2] = {
+    const struct colour colours[][2] = {
         {a->kd, b->kd}, {a->ks, b->ks}, {a->emission, b->emission}, {a->absorption, b->absorption}};
     const double numbers[][2] = {{a->shininess, b->shininess}, {a->reflect, b->reflect},
                                  {a->refract, b->refract},     {a->ior, b->ior},
                                  {a->opacity, b->opacity},     {a->roughness, b->roughness}};
     bool same = true;
     for (size_t i = 0; i < sizeof colours / sizeof *colours; i++)
-        same = same && memcmp(&colours[i][0], &colours[i][1], sizeof(struct vec3)) == 0;
+        same = same && memcmp(&colours[i][0], &colours[i][1], sizeof colours[i][0]) == 0;
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         same = same && numbers[i][0] == numbers[i][1];
     return same;

@@ -9,9 +9,9 @@ static void json_link(struct text_writer *writer, const struct pixel_trace_link 
     text_writer_put(writer, "{\"kind\":\"%s\"", material_step_name(link->material));
     if (link->material->name && link->material->name[0])
         text_writer_put(writer, ",\"name\":%q", link->material->name);
-    text_writer_put(writer, ",\"kd\":%a,\"ks\":%a,\"shininess\":%j,\"reflect\":%j,\"refract\":%j,\"ior\":%j",
+    text_writer_put(writer, ",\"kd\":%r,\"ks\":%r,\"shininess\":%j,\"reflect\":%j,\"refract\":%j,\"ior\":%j",
                     inputs->kd, inputs->ks, inputs->shininess, inputs->reflect, inputs->refract, inputs->ior);
-    text_writer_put(writer, ",\"roughness\":%j,\"opacity\":%j,\"emission\":%a,\"absorption\":%a,\"normal\":%a",
+    text_writer_put(writer, ",\"roughness\":%j,\"opacity\":%j,\"emission\":%r,\"absorption\":%r,\"normal\":%a",
                     inputs->roughness, inputs->opacity, inputs->emission, inputs->absorption, inputs->normal);
     text_writer_put(writer, ",\"two_sided\":%b,\"unlit\":%b,\"fresnel\":%b}", inputs->two_sided, inputs->unlit,
                     inputs->fresnel);
@@ -21,7 +21,7 @@ static void json_lobes(struct text_writer *writer, const struct bsdf *bsdf) {
     for (int i = 0; i < bsdf->count; i++) {
         const struct lobe *lobe = &bsdf->lobes[i];
         bool has_exponent = lobe_flags(lobe->kind) & BSDF_EXPONENT;
-        text_writer_put(writer, "%s{\"kind\":\"%s\",\"weight\":%a", i > 0 ? "," : "", lobe_name(lobe->kind),
+        text_writer_put(writer, "%s{\"kind\":\"%s\",\"weight\":%r", i > 0 ? "," : "", lobe_name(lobe->kind),
                         lobe->weight);
         text_writer_put(writer, has_exponent ? ",\"exponent\":%j}" : "}", lobe->exponent);
     }
@@ -39,14 +39,14 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
                     light_kind_name(light->light->kind), lit[light->lit]);
     if (light->primitive != OBSERVER_NO_BLOCKER)
         text_writer_put(writer, ",\"emitter\":%q", trace_path(report, light->primitive));
-    text_writer_put(writer, ",\"of\":%a", light->light->colour);
+    text_writer_put(writer, ",\"of\":%r", light->light->colour);
     if (!light->area_light && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS && light->distance > 0)
-        text_writer_put(writer, ",\"distance\":%j,\"strength\":%j,\"to_light\":%a,\"reflected\":%a", light->distance,
+        text_writer_put(writer, ",\"distance\":%j,\"strength\":%j,\"to_light\":%a,\"reflected\":%r", light->distance,
                         light->strength, light->to_light, light->reflected);
     text_writer_put(writer, ",\"shadow_rays\":%u,\"arrived\":%u", light->asked, light->arrived);
     if (light->has_blocker)
         text_writer_put(writer, ",\"blocked_by\":%q", trace_path(report, light->blocker));
-    text_writer_put(writer, ",\"colour\":%a}", light->colour);
+    text_writer_put(writer, ",\"colour\":%r}", light->colour);
 }
 
 static void json_shading(const struct trace_report *report, struct text_writer *writer,
@@ -56,12 +56,12 @@ static void json_shading(const struct trace_report *report, struct text_writer *
     text_writer_put(writer, ray->bsdf.fresnel >= 0 ? ",\"fresnel\":%j" : "", ray->bsdf.fresnel);
     text_writer_put(writer, ",\"lobes\":[");
     json_lobes(writer, &ray->bsdf);
-    text_writer_put(writer, "],\"alpha\":%j,\"ambient\":%a,\"lights\":[", ray->bsdf.alpha, ray->ambient);
+    text_writer_put(writer, "],\"alpha\":%j,\"ambient\":%r,\"lights\":[", ray->bsdf.alpha, ray->ambient);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
         json_light(report, writer, light);
         text_writer_put(writer, light->next ? "," : "");
     }
-    text_writer_put(writer, "],\"caustics\":%a,\"direct\":%a,\"emission\":%a", ray->photons, ray->direct,
+    text_writer_put(writer, "],\"caustics\":%r,\"direct\":%r,\"emission\":%r", ray->photons, ray->direct,
                     ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission);
 }
 
@@ -100,7 +100,7 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
     };
     static const char *const cut[] = {[RAY_FOLLOWED] = "no", [RAY_OVER_LIMIT] = "limit", [RAY_TOO_WEAK] = "cutoff"};
     /* The ray. */
-    text_writer_put(writer, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\",\"weight\":%a,\"begun\":%b", ray->number,
+    text_writer_put(writer, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\",\"weight\":%r,\"begun\":%b", ray->number,
                     inspect_ray(ray->kind), cut[ray->cut], ray->weight, ray->begun);
     if (ray->begun) {
         text_writer_put(writer,
@@ -116,13 +116,13 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         if (ray->met && !in_medium)
             json_hit(report, writer, ray);
         else if (ray->is_vertex)
-            text_writer_put(writer, ",\"emission\":%a", ray->vertex.emission);
+            text_writer_put(writer, ",\"emission\":%r", ray->vertex.emission);
         if (ray->is_vertex)
             text_writer_put(writer, ",\"path\":\"%s\"", ends[ray->vertex.end]);
         /* The rays that follow, and the light. */
         text_writer_put(writer, ",\"rays\":[");
         json_rays(report, writer, ray->first);
-        text_writer_put(writer, "],\"seen\":%a,\"left\":%a,\"fog\":%a,\"brings\":%a", ray->seen, ray->left,
+        text_writer_put(writer, "],\"seen\":%r,\"left\":%r,\"fog\":%r,\"brings\":%r", ray->seen, ray->left,
                         ray->in_scattered, ray->brings);
     }
     text_writer_put(writer, "}");
@@ -142,9 +142,9 @@ static void json_sum(const struct trace_report *report, struct text_writer *writ
     double toned[3];
     for (int c = 0; c < 3; c++)
         toned[c] = tone_apply(&settings->tone, (double)rgb[c]);
-    text_writer_put(writer, ",\"film\":%a,\"exposure\":%j,\"tone\":%d,\"srgb\":%b,\"toned\":%a",
-                    vec3_make((double)rgb[0], (double)rgb[1], (double)rgb[2]), settings->tone.exposure,
-                    (int)settings->tone.curve, settings->tone.srgb, vec3_make(toned[0], toned[1], toned[2]));
+    text_writer_put(writer, ",\"film\":%r,\"exposure\":%j,\"tone\":%d,\"srgb\":%b,\"toned\":%r",
+                    colour_make((double)rgb[0], (double)rgb[1], (double)rgb[2]), settings->tone.exposure,
+                    (int)settings->tone.curve, settings->tone.srgb, colour_make(toned[0], toned[1], toned[2]));
     text_writer_put(writer, ",\"bytes\":[%u,%u,%u]", png_write_byte(toned[0]), png_write_byte(toned[1]),
                     png_write_byte(toned[2]));
     if (settings->deep)
@@ -167,7 +167,7 @@ void pixel_trace_print_json(const struct trace_report *report, struct text_write
         text_writer_put(writer, "{\"sample\":%u,\"x\":%j,\"y\":%j,\"counts\":%b,\"rays\":[", (unsigned)sample->number,
                         sample->x, sample->y, sample->counts);
         json_rays(report, writer, sample->first);
-        text_writer_put(writer, "],\"colour\":%a}%s", sample->colour, sample->next ? "," : "");
+        text_writer_put(writer, "],\"colour\":%r}%s", sample->colour, sample->next ? "," : "");
     }
     text_writer_put(writer, "],\"untold\":%u", pixel_trace->omitted);
     json_sum(report, writer);

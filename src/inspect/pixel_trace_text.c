@@ -24,11 +24,22 @@ static bool same(struct vec3 a, struct vec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+static bool same_colour(struct colour a, struct colour b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
 static void changed_triple(struct text_state *t, const char *name, struct vec3 now, struct vec3 before) {
     if (same(now, before))
         return;
     t->changed = true;
     text_writer_put(t->writer, " %s %v", name, now);
+}
+
+static void changed_colour(struct text_state *t, const char *name, struct colour now, struct colour before) {
+    if (same_colour(now, before))
+        return;
+    t->changed = true;
+    text_writer_put(t->writer, " %s %c", name, now);
 }
 
 static void changed_number(struct text_state *t, const char *name, double now, double before) {
@@ -51,16 +62,16 @@ static void print_link(struct text_state *t, const struct pixel_trace_link *link
     const char *name = link->material->name ? link->material->name : "";
     text_writer_put(t->writer, name[0] ? "%i%s '%n':" : "%i%s:", deep(t), material_step_name(link->material), name);
     t->changed = false;
-    changed_triple(t, "kd", inputs->kd, before->kd);
-    changed_triple(t, "ks", inputs->ks, before->ks);
+    changed_colour(t, "kd", inputs->kd, before->kd);
+    changed_colour(t, "ks", inputs->ks, before->ks);
     changed_number(t, "shininess", inputs->shininess, before->shininess);
     changed_number(t, "reflect", inputs->reflect, before->reflect);
     changed_number(t, "refract", inputs->refract, before->refract);
     changed_number(t, "ior", inputs->ior, before->ior);
     changed_number(t, "roughness", inputs->roughness, before->roughness);
     changed_number(t, "opacity", inputs->opacity, before->opacity);
-    changed_triple(t, "emission", inputs->emission, before->emission);
-    changed_triple(t, "absorption", inputs->absorption, before->absorption);
+    changed_colour(t, "emission", inputs->emission, before->emission);
+    changed_colour(t, "absorption", inputs->absorption, before->absorption);
     changed_triple(t, "normal", inputs->normal, before->normal);
     changed_flag(t, "two-sided", inputs->two_sided, before->two_sided);
     changed_flag(t, "unlit", inputs->unlit, before->unlit);
@@ -72,7 +83,7 @@ static void print_shading(const struct text_state *t, const struct pixel_trace_r
     text_writer_put(t->writer, "%ishading:", deep(t));
     for (int i = 0; i < ray->bsdf.count; i++) {
         const struct lobe *lobe = &ray->bsdf.lobes[i];
-        text_writer_put(t->writer, "%s %s %v", i > 0 ? "," : "", lobe_name(lobe->kind), lobe->weight);
+        text_writer_put(t->writer, "%s %s %c", i > 0 ? "," : "", lobe_name(lobe->kind), lobe->weight);
         if (lobe_flags(lobe->kind) & BSDF_EXPONENT)
             text_writer_put(t->writer, "^%g", lobe->exponent);
     }
@@ -105,7 +116,7 @@ static void print_light_name(const struct text_state *t, const struct pixel_trac
         text_writer_put(t->writer, " at %v", light->light->position);
     else if (has & LIGHT_HAS_DIRECTION)
         text_writer_put(t->writer, " along %v", light->light->direction);
-    text_writer_put(t->writer, " of %v", light->light->colour);
+    text_writer_put(t->writer, " of %c", light->light->colour);
 }
 
 static void print_light(const struct text_state *t, const struct pixel_trace_light *light) {
@@ -125,14 +136,14 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
     if (is_shaded_once && light->distance < INFINITY)
         text_writer_put(t->writer, ": distance %g, falloff %g", light->distance, light->strength);
     if (is_shaded_once)
-        text_writer_put(t->writer, ", reflected by %v", light->reflected);
+        text_writer_put(t->writer, ", reflected by %c", light->reflected);
     if (light->has_blocker)
         text_writer_put(t->writer, ", blocked by %n", trace_path(t->report, light->blocker));
     else if (light->asked == 1)
         text_writer_put(t->writer, light->arrived ? ", seen" : ", blocked");
     else
         text_writer_put(t->writer, ", %u of %u shadow rays arrive", light->arrived, light->asked);
-    text_writer_put(t->writer, ": %v\n", light->colour);
+    text_writer_put(t->writer, ": %c\n", light->colour);
 }
 
 static void print_hit(const struct text_state *t, const struct pixel_trace_ray *ray) {
@@ -159,17 +170,18 @@ static void print_hit(const struct text_state *t, const struct pixel_trace_ray *
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
 static void print_terms(struct text_state *t, const struct pixel_trace_ray *ray) {
-    struct vec3 emission = ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission;
+    struct colour emission = ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission;
     if (!ray->is_vertex)
-        text_writer_put(t->writer, "%iambient %v times %v: %v\n", deep(t), ray->ambient_light, ray->bsdf.ambient,
+        text_writer_put(t->writer, "%iambient %c times %c: %c\n", deep(t), ray->ambient_light, ray->bsdf.ambient,
                         ray->ambient);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
         print_light(t, light);
     if (ray->has_photons)
-        text_writer_put(t->writer, "%icaustics: %v\n", deep(t), ray->photons);
-    if (!same(ray->bsdf.emission, vec3_all(0)))
+        text_writer_put(t->writer, "%icaustics: %c\n", deep(t), ray->photons);
+    if (!same_colour(ray->bsdf.emission, colour_all(0)))
         text_writer_put(t->writer,
-                        same(ray->bsdf.emission, emission) ? "%iown light: %v\n" : "%iown light: %v, a part of %v\n",
+                        same_colour(ray->bsdf.emission, emission) ? "%iown light: %c\n"
+                                                                  : "%iown light: %c, a part of %c\n",
                         deep(t), emission, ray->bsdf.emission);
 }
 
@@ -244,7 +256,7 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
                         sky_kind_name(t->report->picture->job->world->sky.kind));
     bool leaves = ray->cut != RAY_TOO_WEAK && !ray->met && !ray->area_light;
     if (leaves && !ray->vertex.in_medium && ray->is_vertex && ray->vertex.end != PATH_SEES_LIGHT && ray->parent)
-        text_writer_put(t->writer, "%iits light: %v\n", deep(t), ray->vertex.emission);
+        text_writer_put(t->writer, "%iits light: %c\n", deep(t), ray->vertex.emission);
 }
 
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
@@ -252,7 +264,7 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     text_writer_put(writer, "%iray %u, %s", deep(t) - 2, ray->number,
                     ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
     if (ray->parent)
-        text_writer_put(writer, ", weight %v", ray->weight);
+        text_writer_put(writer, ", weight %c", ray->weight);
     if (!ray->begun) {
         text_writer_put(writer, ": not traced, %s\n",
                         ray->cut == RAY_OVER_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
@@ -266,13 +278,13 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     text_writer_put(writer, "\n");
     print_met(t, ray);
     /* What the way to the hit adds and leaves. */
-    bool clear = same(ray->left, vec3_all(1)), lit = !same(ray->in_scattered, vec3_all(0));
+    bool clear = same_colour(ray->left, colour_all(1)), lit = !same_colour(ray->in_scattered, colour_all(0));
     if (clear && lit && ray->is_vertex)
-        text_writer_put(writer, "%ilights on the way add %v\n", deep(t), ray->in_scattered);
+        text_writer_put(writer, "%ilights on the way add %c\n", deep(t), ray->in_scattered);
     else if (!clear)
-        text_writer_put(writer, lit ? "%iof %v the way leaves %v and fog adds %v\n" : "%iof %v the way leaves %v\n",
+        text_writer_put(writer, lit ? "%iof %c the way leaves %c and fog adds %c\n" : "%iof %c the way leaves %c\n",
                         deep(t), ray->seen, ray->left, ray->in_scattered);
-    text_writer_put(writer, "%ibrings %v\n", deep(t), ray->brings);
+    text_writer_put(writer, "%ibrings %c\n", deep(t), ray->brings);
 }
 
 static const char *direction(int x, int y) {
@@ -287,12 +299,12 @@ static void print_sample(struct text_state *t, const struct pixel_trace_sample *
     t->depth = 1;
     for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
         print_ray(t, ray);
-    text_writer_put(t->writer, "  colour %v\n", sample->colour);
+    text_writer_put(t->writer, "  colour %c\n", sample->colour);
 }
 
 /* Of two samples the one with more light, or the first one. */
 static bool is_before(const struct pixel_trace_sample *a, const struct pixel_trace_sample *b) {
-    double of_a = a->colour.x + a->colour.y + a->colour.z, of_b = b->colour.x + b->colour.y + b->colour.z;
+    double of_a = a->colour.r + a->colour.g + a->colour.b, of_b = b->colour.r + b->colour.g + b->colour.b;
     return of_a > of_b || (of_a == of_b && a->number < b->number);
 }
 
@@ -301,21 +313,22 @@ static bool is_before(const struct pixel_trace_sample *a, const struct pixel_tra
 static void print_paths(struct text_state *t) {
     enum { BRIGHTEST = 8 };
     const struct pixel_trace *pixel_trace = t->report->pixel_trace;
-    struct vec3 sum = {0, 0, 0}, squares = {0, 0, 0}, error = {0, 0, 0};
+    struct colour sum = {0, 0, 0}, squares = {0, 0, 0}, error = {0, 0, 0};
     double count = 0;
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next, count++) {
-        sum = vec3_add(sum, sample->colour);
-        squares = vec3_add(squares, vec3_mul(sample->colour, sample->colour));
+        sum = colour_add(sum, sample->colour);
+        squares = colour_add(squares, colour_mul(sample->colour, sample->colour));
     }
     if (count > 1) {
-        struct vec3 mean = vec3_scale(sum, 1 / count);
-        struct vec3 variance = vec3_max(vec3_sub(vec3_scale(squares, 1 / count), vec3_mul(mean, mean)), vec3_all(0));
-        error = vec3_scale(variance, 1 / (count - 1));
-        error = vec3_make(sqrt(error.x), sqrt(error.y), sqrt(error.z));
+        struct colour mean = colour_scale(sum, 1 / count);
+        struct colour variance =
+            colour_max(colour_sub(colour_scale(squares, 1 / count), colour_mul(mean, mean)), colour_all(0));
+        error = colour_scale(variance, 1 / (count - 1));
+        error = colour_make(sqrt(error.r), sqrt(error.g), sqrt(error.b));
     }
     const struct settings *settings = &t->report->picture->job->settings;
-    text_writer_put(t->writer, "mean %v, standard error %v, of %u samples%s; the brightest paths:\n",
-                    vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]),
+    text_writer_put(t->writer, "mean %c, standard error %c, of %u samples%s; the brightest paths:\n",
+                    colour_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]),
                     error, (unsigned)count,
                     settings->noise > 0        ? " (--spp; --noise may need fewer)"
                     : settings->time_limit > 0 ? " (--spp, without --time-limit)"

@@ -92,7 +92,7 @@ static void dump_link(const struct dump *d, const struct material *link) {
     if (name[0])
         text_writer_put(d->writer, d->json ? ",\"name\":%q" : " '%n'", name);
     if (!link->base)
-        text_writer_put(d->writer, d->json ? ",\"kd\":%a,\"ks\":%a" : " kd %v ks %v", phong->kd, phong->ks);
+        text_writer_put(d->writer, d->json ? ",\"kd\":%r,\"ks\":%r" : " kd %c ks %c", phong->kd, phong->ks);
     text_writer_put(d->writer, "%s%s", d->json ? "}" : "", !link->base ? "" : d->json ? "," : " over ");
 }
 
@@ -112,12 +112,12 @@ static void dump_light(const struct dump *d, uint32_t number) {
     bool area_light = !light_is_delta(light);
     const char *kind = light_kind_name(light->kind);
     if (d->json)
-        text_writer_put(d->writer, "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%b,\"colour\":%a", number > 0 ? "," : "",
+        text_writer_put(d->writer, "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%b,\"colour\":%r", number > 0 ? "," : "",
                         number + 1, kind, area_light, light->colour);
     else
         text_writer_print(d->writer, "%8u  ", number + 1);
     if (!d->json)
-        text_writer_put(d->writer, "%s of %v%s", kind, light->colour, area_light ? ", a lamp" : "");
+        text_writer_put(d->writer, "%s of %c%s", kind, light->colour, area_light ? ", a lamp" : "");
     if (has & LIGHT_HAS_POSITION)
         text_writer_put(d->writer, d->json ? ",\"position\":%a" : " at %v", light->position);
     else if (has & LIGHT_HAS_DIRECTION)

@@ -23,10 +23,10 @@ static const double disc_by_angle = 1.5;
 void light_decode(struct light *light) {
     if (!light->has_display)
         return;
-    struct vec3 c = light->colour, d = light->display;
-    struct vec3 decoded = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, d);
-    light->colour = vec3_make(d.x != 0 ? c.x / d.x * decoded.x : 0, d.y != 0 ? c.y / d.y * decoded.y : 0,
-                              d.z != 0 ? c.z / d.z * decoded.z : 0);
+    struct colour c = light->colour, d = light->display;
+    struct colour decoded = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, d);
+    light->colour = colour_make(d.r != 0 ? c.r / d.r * decoded.r : 0, d.g != 0 ? c.g / d.g * decoded.g : 0,
+                                d.b != 0 ? c.b / d.b * decoded.b : 0);
     light->has_display = false;
 }
 
@@ -55,10 +55,10 @@ bool light_set_profile(struct light *light, const struct expr_program *profile, 
 }
 
 /* Of the light that leaves in a direction, of any length. */
-static struct vec3 colour_along(const struct light *light, struct vec3 direction) {
+static struct colour colour_along(const struct light *light, struct vec3 direction) {
     if (!light->profile)
         return light->colour;
-    return vec3_mul(light->colour, expr_field_at(light->profile, vec3_normalize(direction)));
+    return colour_mul(light->colour, expr_field_at(light->profile, vec3_normalize(direction)));
 }
 
 /* --- delta lights --- */
@@ -194,7 +194,7 @@ static struct light_sample delta_sample(const struct light *light, const struct 
     struct light_arrival arrival;
     if (!light_arrive(light, context->point, &arrival))
         return (struct light_sample){.pdf = 1, .is_delta = true};
-    struct vec3 radiance = vec3_scale(arrival.colour, arrival.strength);
+    struct colour radiance = colour_scale(arrival.colour, arrival.strength);
     return (struct light_sample){
         .direction = arrival.direction,
         .target = {context->single ? arrival.middle.at : light_target_at(light, context, xi), arrival.middle.distant},
@@ -207,12 +207,12 @@ static struct light_sample delta_sample(const struct light *light, const struct 
 /* A lamp with a surface of its own: `weight` is the intensity of radiance 1. */
 static struct light_sample surface_sample(const struct light *light, const struct light_context *context,
                                           struct vec3 target, double weight) {
-    struct vec3 colour = colour_along(light, vec3_sub(context->from, target));
+    struct colour colour = colour_along(light, vec3_sub(context->from, target));
     return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
                                  .target = {target, false},
                                  .radiance = colour,
                                  .pdf = pdf_of(weight),
-                                 .intensity = vec3_scale(colour, weight)};
+                                 .intensity = colour_scale(colour, weight)};
 }
 
 static struct light_sample planar_sample(const struct light *light, const struct light_context *context,
@@ -229,9 +229,9 @@ static struct light_sample sky_sample(const struct light *light, struct sample2 
     struct sky_sample sky = sky_table_sample(light->sky, light->table, xi);
     return (struct light_sample){.direction = sky.direction,
                                  .target = {sky.direction, true},
-                                 .radiance = vec3_mul(sky.radiance, light->colour),
+                                 .radiance = colour_mul(sky.radiance, light->colour),
                                  .pdf = sky.pdf,
-                                 .intensity = vec3_mul(sky.intensity, light->colour)};
+                                 .intensity = colour_mul(sky.intensity, light->colour)};
 }
 
 struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 xi) {
@@ -244,7 +244,7 @@ struct light_sample light_sample(const struct light *light, const struct light_c
     case LIGHT_DISC:
         sample = planar_sample(light, context, xi);
         if (context->by_angle && light_is_beside_disc(light, sample.target.at))
-            sample.radiance = sample.intensity = vec3_all(0);
+            sample.radiance = sample.intensity = colour_all(0);
         return sample;
     case LIGHT_SPHERE:
         return surface_sample(light, context, light_sphere_target(light, context, xi), context->weight);
@@ -310,7 +310,7 @@ bool light_meets_ray(const struct light *light, const struct ray *ray, struct li
     return true;
 }
 
-struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit) {
+struct colour light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit) {
     const struct light_triangle *t;
     switch (light->kind) {
         POINT_LIGHTS(LIST_LABEL)
@@ -324,14 +324,14 @@ struct vec3 light_emitted(const struct light *light, const struct ray *ray, cons
         return light_triangle_radiance(t);
     case LIGHT_SKY:
         /* As its samples: mip levels would carry light to where their density is low. */
-        return vec3_mul(sky_colour(light->sky, vec3_normalize(ray->direction), 0), light->colour);
+        return colour_mul(sky_colour(light->sky, vec3_normalize(ray->direction), 0), light->colour);
     }
-    return vec3_all(0);
+    return colour_all(0);
 }
 
-static double largest(struct vec3 c) {
-    double max = c.x > c.y ? c.x : c.y;
-    return c.z > max ? c.z : max;
+static double largest(struct colour c) {
+    double max = c.r > c.g ? c.r : c.g;
+    return c.b > max ? c.b : max;
 }
 
 static double mesh_brightest(const struct light_mesh *mesh) {
@@ -531,7 +531,7 @@ bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 
     return true;
 }
 
-struct vec3 light_emitter_colour(const struct light_emitter *emitter) {
+struct colour light_emitter_colour(const struct light_emitter *emitter) {
     const struct light *light = emitter->light;
     switch (light->kind) {
     case LIGHT_MESH:
@@ -541,7 +541,7 @@ struct vec3 light_emitter_colour(const struct light_emitter *emitter) {
         SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
-    return light->profile ? vec3_scale(light->colour, light->profile_largest) : light->colour;
+    return light->profile ? colour_scale(light->colour, light->profile_largest) : light->colour;
 }
 
 double light_emitter_unit(const struct light_emitter *emitter) {
@@ -605,8 +605,8 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     case LIGHT_SPOT:
         SURFACE_LIGHTS(LIST_LABEL)
         photon.origin = emitter_point(emitter, direction, xi);
-        photon.power = vec3_scale(colour_along(light, direction),
-                                  light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
+        photon.power = colour_scale(colour_along(light, direction),
+                                    light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
         break;
     case LIGHT_MESH:
         return light_mesh_photon(light->mesh, direction, xi);

@@ -12,6 +12,7 @@
 
 #include "base/list.h"
 #include "math/box.h"
+#include "math/colour.h"
 #include "math/ray.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
@@ -63,13 +64,13 @@ struct light {
     enum light_kind kind;
     struct vec3 position; /* of a parallelogram, disc, sphere: its centre */
     struct vec3 corner, edge1, edge2;
-    struct vec3 colour; /* of a lamp: its radiance */
+    struct colour colour; /* of a lamp: its radiance */
     /* A factor of the colour of a light with a position: a function of the unit direction in which light leaves, with
      * one output or three; NULL: 1. profile_largest: a bound of its components. */
     const struct expr_program *profile;
     double profile_largest;
     /* `colour` has this factor, a colour of the screen. light_decode makes it light and clears has_display. */
-    struct vec3 display;
+    struct colour display;
     bool has_display;
     double falloff[3];
     enum light_attenuation attenuation;
@@ -80,7 +81,7 @@ struct light {
     bool emissive, one_sided, visible; /* one_sided: emits only on the side of edge1 x edge2 or of the disc's normal */
     int samples;                       /* N x N shadow rays; 0: as the settings say */
     bool has_emission;                 /* of a mesh: `emission` replaces that of the materials */
-    struct vec3 emission;
+    struct colour emission;
     const struct light_mesh *mesh; /* made by world_build (light_mesh.h) */
     const struct sky *sky;         /* its colour multiplies it */
     const struct sky_table *table; /* made by light_prepare */
@@ -139,7 +140,7 @@ struct light_arrival {
     struct vec3 direction; /* unit, to the light */
     double distance;       /* of its middle; infinite */
     double strength;       /* colour * strength arrives: the falloff times the cone of a spot */
-    struct vec3 colour;    /* of the light in that direction */
+    struct colour colour;  /* of the light in that direction */
 };
 /* False: the point is at the light. */
 bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out);
@@ -163,9 +164,10 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
 struct light_sample {
     struct vec3 direction;      /* unit, from the point: the surface is shaded for light from there */
     struct light_target target; /* the target of the shadow ray */
-    struct vec3 radiance;  /* of an area light, at the target; of a delta light the arriving light: colour * strength */
-    double pdf;            /* of the target, by solid angle at the point; of a delta light 1 */
-    struct vec3 intensity; /* the classic one: the arriving light is the mean over all samples of intensity * (n.l) */
+    struct colour
+        radiance; /* of an area light, at the target; of a delta light the arriving light: colour * strength */
+    double pdf;   /* of the target, by solid angle at the point; of a delta light 1 */
+    struct colour intensity; /* the classic one: the arriving light is the mean over all samples of intensity * (n.l) */
     bool is_delta;
     uint32_t triangle; /* of a mesh */
 };
@@ -193,7 +195,7 @@ double light_pdf(const struct light *light, const struct light_context *context,
  * scene (if it is not: light_triangle_meets_ray), nor a sky, which is behind everything. */
 bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit);
 /* The radiance that it emits along a ray that hits it. */
-struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
+struct colour light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit);
 /* The box of the surface that light_meets_ray tests. False: there is none. */
 bool light_surface_box(const struct light *light, struct box *out);
 /* A bound of the largest component of its light. */
@@ -224,12 +226,12 @@ double light_emitter_shine(const struct light_emitter *emitter, struct vec3 dire
 /* LOCAL: whether it emits within the cone about `axis`, if it does not along the axis and some directions around it. */
 bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 axis, double cos_half);
 /* Colour times unit is the power of a photon before shine: an estimate, to share photons by. */
-struct vec3 light_emitter_colour(const struct light_emitter *emitter);
+struct colour light_emitter_colour(const struct light_emitter *emitter);
 double light_emitter_unit(const struct light_emitter *emitter);
 
 struct light_photon {
     struct vec3 origin, direction; /* direction: unit */
-    struct vec3 power;
+    struct colour power;
 };
 /* LOCAL: a photon in the given unit direction, from the point xi of the light; its power is flux per solid angle, as a
  * mean over xi. Others: the direction follows from xi, the origin is not set, and the power is flux per area

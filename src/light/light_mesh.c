@@ -19,7 +19,7 @@ bool light_mesh_begin(struct light_mesh_builder *builder, uint64_t count, struct
 }
 
 void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corners[3], double sign, double size,
-                    struct vec3 emission) {
+                    struct colour emission) {
     struct light_triangle *t = &builder->triangles[builder->count];
     t->corner = corners[0];
     t->edge1 = vec3_sub(corners[1], corners[0]);
@@ -29,8 +29,8 @@ void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corner
     if (!(weight > 0) || area < dark || luminance < dark)
         return;
     t->normal = vec3_scale(across, sign / (2 * area));
-    t->intensity = vec3_scale(emission, 1 / radiance_of(luminance)); /* times the sum, once it is known */
-    t->density = luminance;                                          /* over the sum */
+    t->intensity = colour_scale(emission, 1 / radiance_of(luminance)); /* times the sum, once it is known */
+    t->density = luminance;                                            /* over the sum */
     t->offset = size * 0x1p-40;
     t->primitive = builder->primitive;
     t->part = builder->part;
@@ -40,11 +40,11 @@ void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corner
     builder->until[builder->count++] = builder->sum;
 }
 
-void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, struct light_mesh *out) {
+void light_mesh_end(struct light_mesh_builder *builder, struct colour colour, struct light_mesh *out) {
     for (uint32_t i = 0; i < builder->count; i++) {
         struct light_triangle *t = &builder->triangles[i];
         builder->until[i] = i + 1 < builder->count ? builder->until[i] / builder->sum : 1;
-        t->intensity = vec3_mul(vec3_scale(t->intensity, builder->sum), colour);
+        t->intensity = colour_mul(colour_scale(t->intensity, builder->sum), colour);
         t->density /= builder->sum;
     }
     *out = (struct light_mesh){.triangles = builder->triangles,
@@ -109,8 +109,8 @@ static struct light_point light_mesh_point(const struct light_mesh *mesh, struct
     return (struct light_point){t, triangle_point(t, x, xi.y)};
 }
 
-struct vec3 light_triangle_radiance(const struct light_triangle *triangle) {
-    return vec3_scale(triangle->intensity, radiance_of(triangle->density));
+struct colour light_triangle_radiance(const struct light_triangle *triangle) {
+    return colour_scale(triangle->intensity, radiance_of(triangle->density));
 }
 
 /* A square behind the mesh, perpendicular to the cone of its ball; none for a point in the ball. */
@@ -138,7 +138,7 @@ static struct light_sample sample_at(const struct light_mesh *mesh, const struct
                                  .target = {target, false},
                                  .radiance = light_triangle_radiance(t),
                                  .pdf = weight > 0 ? density / weight : 0,
-                                 .intensity = vec3_scale(t->intensity, weight),
+                                 .intensity = colour_scale(t->intensity, weight),
                                  .triangle = (uint32_t)(t - mesh->triangles)};
 }
 
@@ -161,11 +161,11 @@ double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context 
     return pdf_at(mesh, context->from, hit, mesh->triangles[hit->triangle].density);
 }
 
-struct vec3 light_mesh_colour(const struct light_mesh *mesh) {
-    struct vec3 sum = {0, 0, 0};
+struct colour light_mesh_colour(const struct light_mesh *mesh) {
+    struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < mesh->count; i++)
-        sum = vec3_add_scaled(sum, mesh->triangles[i].intensity, mesh->until[i] - (i > 0 ? mesh->until[i - 1] : 0));
-    return vec3_scale(sum, mesh->one_sided ? 0.25 : 0.5);
+        sum = colour_add_scaled(sum, mesh->triangles[i].intensity, mesh->until[i] - (i > 0 ? mesh->until[i - 1] : 0));
+    return colour_scale(sum, mesh->one_sided ? 0.25 : 0.5);
 }
 
 struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 xi) {
@@ -174,7 +174,7 @@ struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3
     double cosine = vec3_dot(t->normal, direction), side = cosine > 0 ? t->offset : -t->offset;
     double shines = cosine > 0 || !mesh->one_sided ? fabs(cosine) : 0;
     return (struct light_photon){vec3_add_scaled(point.xi, t->normal, side), direction,
-                                 vec3_scale(t->intensity, shines)};
+                                 colour_scale(t->intensity, shines)};
 }
 
 /* --- one triangle --- */

@@ -9,7 +9,7 @@
 
 struct light_triangle {
     struct vec3 corner, edge1, edge2, normal; /* normal: unit */
-    struct vec3 intensity;                    /* classic, of its radiance over the density of samples by area */
+    struct colour intensity;                  /* classic, of its radiance over the density of samples by area */
     double density;                           /* of samples by area */
     double offset;                            /* shadow rays end this far from it */
     uint32_t primitive, part;                 /* its origin: a primitive, and the triangle there */
@@ -39,9 +39,9 @@ bool light_mesh_begin(struct light_mesh_builder *builder, uint64_t count, struct
 /* corners: world space; sign: -1 to reverse the normal; size: the largest coordinate that the
  * corners were computed from. Triangles without area or light are left out. */
 void light_mesh_add(struct light_mesh_builder *builder, const struct vec3 corners[3], double sign, double size,
-                    struct vec3 emission);
+                    struct colour emission);
 /* colour: multiplies all emissions. */
-void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, struct light_mesh *out);
+void light_mesh_end(struct light_mesh_builder *builder, struct colour colour, struct light_mesh *out);
 
 /* The triangle made from that part of a primitive; LIGHT_NONE: it emits no light. */
 uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part);
@@ -53,9 +53,9 @@ struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struc
 double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit);
 struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 xi);
 /* Approximately the mean over points and directions. */
-struct vec3 light_mesh_colour(const struct light_mesh *mesh);
+struct colour light_mesh_colour(const struct light_mesh *mesh);
 /* The radiance of a triangle. */
-struct vec3 light_triangle_radiance(const struct light_triangle *triangle);
+struct colour light_triangle_radiance(const struct light_triangle *triangle);
 
 /* One triangle, for a point and a ray that starts at `from` next to it: uniform over its solid angle if that is large,
  * otherwise over its area. */

@@ -9,8 +9,8 @@
 #include <math.h>
 
 /* Of the magnitudes: negative light is sampled as often as positive light. */
-static inline double light_luminance(struct vec3 c) {
-    return 0.2126 * fabs(c.x) + 0.7152 * fabs(c.y) + 0.0722 * fabs(c.z);
+static inline double light_luminance(struct colour c) {
+    return 0.2126 * fabs(c.r) + 0.7152 * fabs(c.g) + 0.0722 * fabs(c.b);
 }
 
 /* The intensity of radiance 1 from a place on a plane, for the intensity of its area. */
@@ -58,8 +58,8 @@ struct box light_parallelogram_box(const struct light *light);
 struct box light_disc_box(const struct light *light);
 
 /* Parts of light_bounds_of. The brightness of a colour for light selection; negative light counts by its magnitude. */
-static inline double light_magnitude(struct vec3 c) {
-    return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
+static inline double light_magnitude(struct colour c) {
+    return (fabs(c.r) + fabs(c.g) + fabs(c.b)) / 3;
 }
 /* A bound of the colour in every direction. */
 static inline double light_strength(const struct light *light) {

@@ -39,7 +39,7 @@ static double zenith_chromaticity(const double m[3][4], double turbidity, double
     return sum;
 }
 
-void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out) {
+void sky_make_clear(struct vec3 sun, double turbidity, struct colour ground, struct sky *out) {
     static const double slope[3][5] = {{0.1787, -0.3554, -0.0227, 0.1206, -0.0670},
                                        {-0.0193, -0.0665, -0.0004, -0.0641, -0.0033},
                                        {-0.0167, -0.0950, -0.0079, -0.0441, -0.0109}};
@@ -68,7 +68,7 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 }
 
 /* Never negative. */
-static struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d) {
+static struct colour sky_clear_colour(const struct clear_sky *clear, struct vec3 d) {
     if (d.y < 0)
         return clear->ground;
     double cos_sun = vec3_dot(d, clear->sun), xyy[3];
@@ -76,9 +76,9 @@ static struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d
         xyy[i] = clear->scale[i] * perez(clear->perez[i], d.y, cos_sun);
     double luminance = xyy[0] > 0 ? xyy[0] : 0;
     double x = xyy[1] / xyy[2] * luminance, z = (1 - xyy[1] - xyy[2]) / xyy[2] * luminance;
-    struct vec3 c = {3.2406 * x - 1.5372 * luminance - 0.4986 * z, -0.9689 * x + 1.8758 * luminance + 0.0415 * z,
-                     0.0557 * x - 0.2040 * luminance + 1.0570 * z};
-    return vec3_max(c, vec3_all(0));
+    struct colour c = {3.2406 * x - 1.5372 * luminance - 0.4986 * z, -0.9689 * x + 1.8758 * luminance + 0.0415 * z,
+                       0.0557 * x - 0.2040 * luminance + 1.0570 * z};
+    return colour_max(c, colour_all(0));
 }
 
 /* The Julian day of 0 h on the first of January (Gregorian calendar). */
@@ -141,9 +141,9 @@ static struct rgba map_bilinear(const struct image *image, int level, double u, 
     return image_mix(row_at(image, level, j, x), row_at(image, level, j + 1, x), y - floor(y));
 }
 
-static struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spread) {
+static struct colour sky_map_colour(const struct image *image, struct vec3 d, double spread) {
     if (!vec3_finite(d))
-        return vec3_all(0);
+        return colour_all(0);
     double u = 0.5 + el_atan2(d.x, -d.z) / (2 * PI);
     double v = el_atan2(sqrt(d.x * d.x + d.z * d.z), d.y) / PI;
     double texels = spread / PI * image->levels[0].height;
@@ -153,7 +153,7 @@ static struct vec3 sky_map_colour(const struct image *image, struct vec3 d, doub
     if (level > lower)
         c = image_mix(c, map_bilinear(image, lower + 1, u, v), level - lower);
     c = image_from_units(c);
-    return (struct vec3){c.r, c.g, c.b};
+    return (struct colour){c.r, c.g, c.b};
 }
 
 const char *sky_kind_name(enum sky_kind kind) {
@@ -271,12 +271,12 @@ static int last_level(const struct sky *sky) {
     return last;
 }
 
-static struct vec3 cross_colour(const struct sky *sky, struct vec3 d, double spread) {
+static struct colour cross_colour(const struct sky *sky, struct vec3 d, double spread) {
     if (sky->mirror)
         d.x = -d.x;
     double depth = vec3_max_abs(d);
     if (!(depth > 0) || !vec3_finite(d))
-        return vec3_all(0);
+        return colour_all(0);
     int face = face_of(d);
     double s = (1 + vec3_dot(d, faces[face].right) / depth) / 2;
     double t = (1 - vec3_dot(d, faces[face].up) / depth) / 2;
@@ -294,7 +294,7 @@ static struct vec3 cross_colour(const struct sky *sky, struct vec3 d, double spr
         c = image_mix(c, bilinear(&coarse, face, s, t), level - lower);
     }
     c = image_from_units(c);
-    return (struct vec3){c.r, c.g, c.b};
+    return (struct colour){c.r, c.g, c.b};
 }
 
 bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct error *error) {
@@ -328,23 +328,23 @@ bool sky_from_function(const struct expr_program *program, struct sky *out, stru
            (expr_field_largest(program, &out->largest) || error_no_memory(error, "a sky"));
 }
 
-static struct vec3 stops_colour(const struct sky *sky, double y) {
+static struct colour stops_colour(const struct sky *sky, double y) {
     const double(*stops)[4] = sky->stops;
     uint32_t last = sky->stop_count - 1, i = 0;
     while (i < last && stops[i + 1][0] <= y)
         i++;
     if (y <= stops[0][0] || i == last)
-        return vec3_make(stops[i][1], stops[i][2], stops[i][3]);
+        return colour_make(stops[i][1], stops[i][2], stops[i][3]);
     double share = (y - stops[i][0]) / (stops[i + 1][0] - stops[i][0]);
-    struct vec3 low = {stops[i][1], stops[i][2], stops[i][3]};
-    struct vec3 high = {stops[i + 1][1], stops[i + 1][2], stops[i + 1][3]};
-    return vec3_add_scaled(low, vec3_sub(high, low), share);
+    struct colour low = {stops[i][1], stops[i][2], stops[i][3]};
+    struct colour high = {stops[i + 1][1], stops[i + 1][2], stops[i + 1][3]};
+    return colour_add_scaled(low, colour_sub(high, low), share);
 }
 
-static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction, double spread) {
+static struct colour unturned_colour(const struct sky *sky, struct vec3 direction, double spread) {
     switch (sky->kind) {
     case SKY_GRADIENT:
-        return vec3_make(0, 0, (1 + direction.y) / 2);
+        return colour_make(0, 0, (1 + direction.y) / 2);
     case SKY_CONSTANT:
         return sky->colour;
     case SKY_CROSS:
@@ -359,12 +359,12 @@ static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction,
     case SKY_FUNCTION:
         return expr_field_at(sky->program, direction);
     }
-    return vec3_all(0);
+    return colour_all(0);
 }
 
-static double largest(struct vec3 c) {
-    double max = c.x > c.y ? c.x : c.y;
-    return c.z > max ? c.z : max;
+static double largest(struct colour c) {
+    double max = c.r > c.g ? c.r : c.g;
+    return c.b > max ? c.b : max;
 }
 
 static double unturned_brightest(const struct sky *sky) {
@@ -383,7 +383,7 @@ static double unturned_brightest(const struct sky *sky) {
         return max;
     case SKY_STOPS:
         for (uint32_t i = 0; i < sky->stop_count; i++)
-            max = fmax(max, largest(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+            max = fmax(max, largest(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
         return max;
     case SKY_CLEAR:
         /* Brightest at the sun or at the horizon below it. */
@@ -405,11 +405,11 @@ bool sky_is_black(const struct sky *sky) {
     double max = 0;
     switch (sky->kind) {
     case SKY_CONSTANT:
-        max = vec3_max_abs(sky->colour);
+        max = colour_max_abs(sky->colour);
         break;
     case SKY_STOPS:
         for (uint32_t i = 0; i < sky->stop_count; i++)
-            max = fmax(max, vec3_max_abs(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+            max = fmax(max, colour_max_abs(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
         break;
     case SKY_GRADIENT:
     case SKY_CROSS:
@@ -491,10 +491,10 @@ bool sky_same(const struct sky *a, const struct sky *b) {
     return false;
 }
 
-struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
+struct colour sky_colour(const struct sky *sky, struct vec3 direction, double spread) {
     if (!sky->adjusted)
         return unturned_colour(sky, direction, spread);
     double s = sky->turn_sine, c = sky->turn_cosine;
     struct vec3 d = {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
-    return vec3_scale(unturned_colour(sky, d, spread), sky->intensity);
+    return colour_scale(unturned_colour(sky, d, spread), sky->intensity);
 }

@@ -23,17 +23,18 @@ const char *sky_kind_name(enum sky_kind kind);
 
 struct sky {
     enum sky_kind kind;
-    struct vec3 colour;  /* of SKY_CONSTANT */
-    struct image *image; /* of SKY_CROSS: a 4 x 3 cross `#T##` / `LFRK` / `#B##`, seen from inside */
+    struct colour colour; /* of SKY_CONSTANT */
+    struct image *image;  /* of SKY_CROSS: a 4 x 3 cross `#T##` / `LFRK` / `#B##`, seen from inside */
     bool mirror;
     struct image *faces[6]; /* of SKY_FACES: -x, +x, -y, +y, -z, +z as seen from the centre */
     /* Of SKY_STOPS: {y of the unit direction, r, g, b}, y never decreasing; linear between, constant beyond. */
     const double (*stops)[4];
     uint32_t stop_count;
     struct clear_sky {
-        struct vec3 sun, ground; /* unit, to the sun; for the part below the horizon */
-        double perez[3][5];      /* for Y, x, y */
-        double scale[3];         /* zenith over Perez' function there */
+        struct vec3 sun;      /* unit, to it */
+        struct colour ground; /* the colour of the part below the horizon */
+        double perez[3][5];   /* for Y, x, y */
+        double scale[3];      /* zenith over Perez' function there */
     } clear;
     const struct expr_program *program; /* of SKY_FUNCTION: of the unit direction alone */
     double largest;                     /* a bound of its components */
@@ -48,7 +49,7 @@ bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct er
 /* Six square images of one size; SKY_MAP: longitude along the rows, -z in the middle and +x right of it. */
 bool sky_from_faces(struct image *const faces[6], struct sky *out, struct error *error);
 /* Turbidity: 2 is very clear, 10 hazy. sun: unit, at or above the horizon. */
-void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out);
+void sky_make_clear(struct vec3 sun, double turbidity, struct colour ground, struct sky *out);
 /* For a function with one output or three. Errors: it reads more than the direction, or no memory. */
 bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error);
 /* A time of the clock; it is `zone` hours ahead of Greenwich. */
@@ -69,6 +70,6 @@ double sky_brightest(const struct sky *sky);
 /* Whether it is black in all directions. False where only its pictures or its function could show it. */
 bool sky_is_black(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
-struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);
+struct colour sky_colour(const struct sky *sky, struct vec3 direction, double spread);
 
 #endif

@@ -133,8 +133,8 @@ static void patch_directions(const struct sky *sky, const struct patch *p, struc
 }
 
 static double luminance_of(const struct sky *sky, double r, double g, double b) {
-    struct vec3 colour = sky->program->output_count == 1 ? vec3_all(r) : vec3_make(r, g, b);
-    return light_luminance(vec3_max(colour, vec3_all(0))) * (sky->adjusted ? fabs(sky->intensity) : 1);
+    struct colour colour = sky->program->output_count == 1 ? colour_all(r) : colour_make(r, g, b);
+    return light_luminance(colour_max(colour, colour_all(0))) * (sky->adjusted ? fabs(sky->intensity) : 1);
 }
 
 /* Bounds of the luminance of a function over a patch: all numbers where nothing is known. */
@@ -465,7 +465,7 @@ struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table
     if (!(sample.pdf > 0))
         return sample;
     sample.radiance = sky_colour(sky, sample.direction, 0);
-    sample.intensity = vec3_scale(sample.radiance, 1 / radiance_of(sample.pdf));
+    sample.intensity = colour_scale(sample.radiance, 1 / radiance_of(sample.pdf));
     return sample;
 }
 

@@ -27,9 +27,10 @@ struct sky_table {
 const struct sky_table *sky_table_build(const struct sky *sky, struct arena *arena, struct pool *pool);
 struct sky_sample {
     struct vec3 direction; /* unit */
-    struct vec3 radiance;
-    double pdf;            /* of the direction, by solid angle */
-    struct vec3 intensity; /* radiance / pdf as classic light: the colour of a white surface is its mean times (n.l) */
+    struct colour radiance;
+    double pdf; /* of the direction, by solid angle */
+    struct colour
+        intensity; /* radiance / pdf as classic light: the colour of a white surface is its mean times (n.l) */
 };
 /* The sample for a place of the unit square. */
 struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 xi);

@@ -53,9 +53,9 @@ static double classic_cosine(const struct bsdf *bsdf, struct vec3 wi) {
     return n_l > 0 && vec3_dot(bsdf->geometric_side, wi) > 0 ? n_l : 0;
 }
 
-struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
+struct colour bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
     double n_l = classic_cosine(bsdf, wi);
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     if (!(n_l > 0))
         return sum;
     for (int i = 0; i < bsdf->count; i++) {
@@ -75,8 +75,8 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
             break;
             ROUGH_LOBES(LIST_LABEL)
             if (lobe_flags(lobe->kind) & BSDF_CLASSIC)
-                sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
-                                      radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
+                sum = colour_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
+                                        radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
             continue;
         case LOBE_MIRROR:
         case LOBE_REFRACTION:
@@ -84,7 +84,7 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
         case LOBE_GGX_TRANSMISSION:
             continue;
         }
-        sum = vec3_add_scaled(sum, lobe->weight, factor);
+        sum = colour_add_scaled(sum, lobe->weight, factor);
     }
     return sum;
 }
@@ -372,7 +372,7 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
 static double lobe_chance(const struct bsdf *bsdf, const struct lobe *lobe) {
     if (!lobe_counts(bsdf, lobe) || (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1))
         return 0;
-    return vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe);
+    return colour_max_abs(lobe->weight) * expected_share(bsdf, lobe);
 }
 
 /* The only lobe of a set; NULL if there are none or several. */
@@ -407,16 +407,16 @@ static double pdf_of_chances(const struct bsdf *bsdf, const struct lobe_chances 
 }
 
 /* A single diffuse lobe, as most surfaces have. */
-static struct vec3 diffuse_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wi) {
+static struct colour diffuse_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wi) {
     double n_l = bsdf->dark ? 0 : classic_cosine(bsdf, wi);
-    return n_l > 0 ? vec3_scale(lobe->weight, intensity_of(n_l)) : vec3_all(0);
+    return n_l > 0 ? colour_scale(lobe->weight, intensity_of(n_l)) : colour_all(0);
 }
 
-struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi) {
+struct colour bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi) {
     const struct lobe *only = only_lobe(bsdf, lobes);
     if (only && only->kind == LOBE_DIFFUSE)
         return diffuse_eval(bsdf, only, wi);
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     for (uint32_t left = lobes & ((UINT32_C(1) << bsdf->count) - 1); left; left &= left - 1) {
         const struct lobe *lobe = &bsdf->lobes[__builtin_ctz(left)];
         if (!lobe_counts(bsdf, lobe))
@@ -424,8 +424,8 @@ struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mo
         bool transmits = (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && vec3_dot(wi, bsdf->geometric_side) < 0;
         double factor = radiance_factor(bsdf, mode, transmits);
         bool tinted = lobe_flags(lobe->kind) & BSDF_TINTED;
-        struct vec3 weight = tinted ? rough_lobe_weight(bsdf, lobe, wo, wi) : lobe->weight;
-        sum = vec3_add_scaled(sum, weight, factor * lobe_eval(bsdf, lobe, wo, wi));
+        struct colour weight = tinted ? rough_lobe_weight(bsdf, lobe, wo, wi) : lobe->weight;
+        sum = colour_add_scaled(sum, weight, factor * lobe_eval(bsdf, lobe, wo, wi));
     }
     return sum;
 }
@@ -465,7 +465,7 @@ static const struct lobe *choose_lobe(const struct bsdf *bsdf, const struct lobe
 
 static bool sample_diffuse(const struct bsdf *bsdf, const struct lobe *lobe, struct sample2 u,
                            struct bsdf_sample *out) {
-    if (bsdf->dark || !(vec3_max_abs(lobe->weight) > 0))
+    if (bsdf->dark || !(colour_max_abs(lobe->weight) > 0))
         return false;
     out->direction = diffuse_sample(bsdf->lit, u);
     out->pdf = classic_cosine(bsdf, out->direction) / PI;
@@ -497,7 +497,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     /* No other lobe reaches the direction of a mirror. */
     if (sampled.delta) {
         out->flags |= BSDF_DELTA;
-        out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
+        out->weight = colour_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }
     /* Where value and density are proportional, their ratio is exact. */
@@ -510,7 +510,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     out->pdf = only ? lobe_pdf(bsdf, only, wo, out->direction) : pdf_of_chances(bsdf, &chances, wo, out->direction);
     if (!(out->pdf > 0))
         return false;
-    out->weight = vec3_scale(bsdf_eval(bsdf, lobes, mode, wo, out->direction), 1 / out->pdf);
+    out->weight = colour_scale(bsdf_eval(bsdf, lobes, mode, wo, out->direction), 1 / out->pdf);
     return true;
 }
 
@@ -525,7 +525,7 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
             continue;
         /* At total reflection it has the mirror direction. */
         if ((flags & BSDF_TRANSMITS) && !lobe_transmits(bsdf, lobe) && count > 0) {
-            out[count - 1].weight = vec3_add(out[count - 1].weight, lobe->weight);
+            out[count - 1].weight = colour_add(out[count - 1].weight, lobe->weight);
             continue;
         }
         out[count].weight = lobe->weight;
@@ -534,8 +534,8 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
         out[count++].rough = !(flags & BSDF_DELTA);
     }
     for (int i = 0; i < count; i++) {
-        struct vec3 weight = out[i].weight;
-        if (weight.x != 0 || weight.y != 0 || weight.z != 0)
+        struct colour weight = out[i].weight;
+        if (weight.r != 0 || weight.g != 0 || weight.b != 0)
             out[kept++] = out[i];
     }
     return kept;
@@ -554,7 +554,7 @@ static bool rough_branch_sample(const struct bsdf *bsdf, const struct bsdf_branc
     if (!rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits))
         return false;
     double share = rough_lobe_share(bsdf, lobe, wo, out->direction);
-    out->weight = vec3_scale(rough_lobe_weight(bsdf, lobe, wo, out->direction), share);
+    out->weight = colour_scale(rough_lobe_weight(bsdf, lobe, wo, out->direction), share);
     return share > 0;
 }
 
@@ -571,7 +571,7 @@ bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branc
     if (!traced_direction(bsdf, lobe, wo, draw->facet, &sampled))
         return false;
     out->direction = sampled.direction;
-    out->weight = sampled.share == 1 ? branch->weight : vec3_scale(branch->weight, sampled.share);
+    out->weight = sampled.share == 1 ? branch->weight : colour_scale(branch->weight, sampled.share);
     out->transmits = sampled.transmits;
     return true;
 }

@@ -57,7 +57,7 @@ enum { LOBE_KINDS = LIST_COUNT(LOBES) };
 struct lobe {
     enum lobe_kind kind;
     int facets; /* of rough lobes of layered materials: index in the BSDF's facets */
-    struct vec3 weight;
+    struct colour weight;
     double exponent; /* of OREN_NAYAR and FUZZ: the roughness, in [0, 1] */
     double share;    /* the approximate share of its weight that it contributes, for choosing it; 0: unknown */
 };
@@ -71,7 +71,7 @@ struct bsdf_facets {
     enum facet_kind kind;
     struct facet_distribution distribution;
     double eta; /* index on the ray's side over that behind; 1 for metals */
-    struct vec3 f0, edge;
+    struct colour f0, edge;
     double reflected; /* of a boundary: by one facet, of light from the view */
     /* Light that is scattered by more than one facet (rough_lobes_internal.h). */
     double roughness;         /* for an isotropic surface */
@@ -90,9 +90,9 @@ struct bsdf {
     struct vec3 lit;                  /* the same, turned to the viewer where the surface has two sides */
     struct vec3 side, geometric_side; /* on the ray's side; `side` has an angle below 90 degrees to the view */
     bool dark;                        /* seen from behind: classic lobes reflect no light */
-    struct vec3 albedo;               /* kd, also without a diffuse lobe */
-    struct vec3 ambient;              /* multiplied with the scene's ambient colour */
-    struct vec3 emission;             /* added as it is */
+    struct colour albedo;             /* kd, also without a diffuse lobe */
+    struct colour ambient;            /* multiplied with the scene's ambient colour */
+    struct colour emission;           /* added as it is */
     double opacity;                   /* the rest is a hole, through which the ray continues unchanged */
     /* Traced lobes. */
     double alpha;       /* width of the facets' slopes; 0: smooth */
@@ -113,8 +113,8 @@ struct bsdf {
 
 /* Other surfaces that coincide with this one, for light that passes them all. */
 struct bsdf_joint {
-    double eta;       /* index before all of them over the index behind */
-    struct vec3 tint; /* the product of the tints of the other ones */
+    double eta;         /* index before all of them over the index behind */
+    struct colour tint; /* the product of the tints of the other ones */
     const struct medium_stack *behind;
 };
 
@@ -145,18 +145,18 @@ uint32_t bsdf_lobes_with(const struct bsdf *bsdf, unsigned flags);
 
 /* The sum of the classic lobes in `lobes` for unit light from wi towards wo, by docs/language.md 5.2: pi f |cos|. 0 for
  * light from the other side than `geometric_side`. */
-struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
+struct colour bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
 
 /* f |cos wi| of the lobes that are not delta. */
-struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi);
+struct colour bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi);
 /* The density of bsdf_sample's directions per solid angle, delta lobes aside. */
 double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
 
 struct bsdf_sample {
     struct vec3 direction;
-    struct vec3 weight; /* f |cos| / pdf; of delta lobes the limit of that */
-    double pdf;         /* with BSDF_DELTA: the probability of the lobe */
-    unsigned flags;     /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
+    struct colour weight; /* f |cos| / pdf; of delta lobes the limit of that */
+    double pdf;           /* with BSDF_DELTA: the probability of the lobe */
+    unsigned flags;       /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
 };
 /* A direction for a point of the unit square, of one of the lobes, chosen approximately in proportion to their
  * contributions. False: no direction, which counts as black (a sample below the surface, a lobe without
@@ -167,8 +167,8 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
 /* For integrators that follow traced lobes one by one. At total reflection a smooth refracting lobe joins the
  * mirror. */
 struct bsdf_branch {
-    struct vec3 weight; /* not black */
-    double expected;    /* approximately the mean share of `weight` in samples, above 0: for the choice of a branch */
+    struct colour weight; /* not black */
+    double expected;      /* approximately the mean share of `weight` in samples, above 0: for the choice of a branch */
     int lobe;
     bool rough;
 };
@@ -178,7 +178,8 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]);
 bool bsdf_branch_is_known(const struct bsdf *bsdf, const struct bsdf_branch *branch);
 
 struct bsdf_branch_direction {
-    struct vec3 direction, weight; /* mode IMPORTANCE */
+    struct vec3 direction;
+    struct colour weight; /* mode IMPORTANCE */
     bool transmits;
 };
 /* A point in the unit square for all rough branches of one ray, and the normal of the facet that is there. */

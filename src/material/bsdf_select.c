@@ -1,8 +1,8 @@
 /* Lobes by purpose. */
 #include "material/bsdf_select.h"
 
-static bool is_black(struct vec3 c) {
-    return c.x == 0 && c.y == 0 && c.z == 0;
+static bool is_black(struct colour c) {
+    return c.r == 0 && c.g == 0 && c.b == 0;
 }
 
 /* Lobes with a weight: highlights, and the others. */
@@ -47,8 +47,8 @@ uint32_t bsdf_select_of_many(const struct bsdf *bsdf, enum bsdf_purpose purpose)
     return 0;
 }
 
-struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert) {
-    struct vec3 sum = {0, 0, 0};
+struct colour bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert) {
+    struct colour sum = {0, 0, 0};
     uint32_t left = 0;
     *lambert = true;
     for (int i = 0; i < bsdf->count; i++) {
@@ -57,7 +57,7 @@ struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambe
             continue;
         left |= UINT32_C(1) << i;
         *lambert = *lambert && (lobe_flags(lobe->kind) & BSDF_LAMBERT);
-        sum = vec3_add(sum, lobe->weight);
+        sum = colour_add(sum, lobe->weight);
     }
     *lobes = left;
     return sum;
@@ -67,7 +67,7 @@ double bsdf_lambert(const struct bsdf *bsdf) {
     double largest = 0;
     for (int i = 0; i < bsdf->count; i++)
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
-            largest = fmax(largest, vec3_max_abs(bsdf->lobes[i].weight));
+            largest = fmax(largest, colour_max_abs(bsdf->lobes[i].weight));
     return largest;
 }
 
@@ -75,7 +75,7 @@ bool bsdf_branch_is_layered(const struct bsdf *bsdf, const struct bsdf_branch *b
     return lobe_flags(bsdf->lobes[branch->lobe].kind) & BSDF_ROUGH;
 }
 
-struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct vec3 glow) {
+struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow) {
     struct bsdf_guide guide = {.albedo = glow};
     for (int i = 0; i < bsdf->count; i++) {
         const struct lobe *lobe = &bsdf->lobes[i];
@@ -84,8 +84,8 @@ struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct vec3 glow) {
             continue;
         bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
         guide.scatters = guide.scatters || (!smooth && !is_black(lobe->weight));
-        guide.albedo = vec3_add(guide.albedo, lobe->weight);
-        *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += vec3_max_abs(lobe->weight);
+        guide.albedo = colour_add(guide.albedo, lobe->weight);
+        *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += colour_max_abs(lobe->weight);
     }
     return guide;
 }
@@ -93,22 +93,22 @@ struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct vec3 glow) {
 struct bsdf bsdf_matt_copy(const struct bsdf *bsdf) {
     struct bsdf matt = *bsdf;
     matt.count = 1;
-    matt.lobes[0] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = vec3_all(1), .share = 1};
-    matt.ambient = vec3_all(0);
+    matt.lobes[0] = (struct lobe){.kind = LOBE_DIFFUSE, .weight = colour_all(1), .share = 1};
+    matt.ambient = colour_all(0);
     return matt;
 }
 
-struct bsdf bsdf_shiny_copy(const struct bsdf *bsdf, struct vec3 *colour) {
+struct bsdf bsdf_shiny_copy(const struct bsdf *bsdf, struct colour *colour) {
     struct bsdf shiny = *bsdf;
     shiny.count = 0;
-    shiny.ambient = vec3_all(0);
-    *colour = vec3_all(0);
+    shiny.ambient = colour_all(0);
+    *colour = colour_all(0);
     for (int i = 0; i < bsdf->count; i++) {
         unsigned flags = lobe_flags(bsdf->lobes[i].kind);
         if (!(flags & BSDF_CLASSIC) || flags & BSDF_DIFFUSE)
             continue;
         shiny.lobes[shiny.count++] = bsdf->lobes[i];
-        *colour = vec3_add(*colour, bsdf->lobes[i].weight);
+        *colour = colour_add(*colour, bsdf->lobes[i].weight);
     }
     return shiny;
 }

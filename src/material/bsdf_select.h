@@ -21,7 +21,7 @@ uint32_t bsdf_select_of_many(const struct bsdf *bsdf, enum bsdf_purpose purpose)
 /* Most surfaces have one lobe, which paths use unless it is black. */
 static inline uint32_t bsdf_select(const struct bsdf *bsdf, enum bsdf_purpose purpose) {
     if (bsdf->count == 1 && purpose <= BSDF_FOR_UNSEEN_LIGHTS)
-        return purpose == BSDF_FOR_PATHS && vec3_max_abs(bsdf->lobes[0].weight) > 0;
+        return purpose == BSDF_FOR_PATHS && colour_max_abs(bsdf->lobes[0].weight) > 0;
     return bsdf_select_of_many(bsdf, purpose);
 }
 
@@ -33,7 +33,7 @@ static inline bool bsdf_is_smooth(const struct bsdf *bsdf, uint32_t lobes) {
 }
 
 /* The sum of the weights of a set of lobes, from which it removes black ones. *lambert: all others are Lambert's. */
-struct vec3 bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert);
+struct colour bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert);
 /* The largest component of the light that Lambert's lobe reflects. */
 double bsdf_lambert(const struct bsdf *bsdf);
 /* Whether a branch is a rough lobe of a layered material. */
@@ -41,15 +41,15 @@ bool bsdf_branch_is_layered(const struct bsdf *bsdf, const struct bsdf_branch *b
 
 /* A surface as guides of denoisers show it. */
 struct bsdf_guide {
-    struct vec3 albedo;          /* `glow`, and the weights without highlights */
+    struct colour albedo;        /* `glow`, and the weights without highlights */
     double reflected, refracted; /* the largest components of these parts of it, summed over lobes */
     bool scatters;               /* in more than single directions */
 };
-struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct vec3 glow);
+struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow);
 
 /* The same surface with a white Lambert lobe alone, without ambient light. */
 struct bsdf bsdf_matt_copy(const struct bsdf *bsdf);
 /* Its highlights alone; *colour: the sum of their weights. */
-struct bsdf bsdf_shiny_copy(const struct bsdf *bsdf, struct vec3 *colour);
+struct bsdf bsdf_shiny_copy(const struct bsdf *bsdf, struct colour *colour);
 
 #endif

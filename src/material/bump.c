@@ -97,7 +97,7 @@ static bool slopes_by_differences(const struct surface_bump *bump, const struct 
     for (int i = 0; i < 4; i++) {
         struct texture_reader reader;
         texture_reader_init(&reader, &at[i], textures, NULL);
-        height[i] = texture_read(bump->program, &reader).x;
+        height[i] = texture_read(bump->program, &reader).r;
     }
     slopes[0] = scale * (height[0] - height[1]);
     slopes[1] = scale * (height[2] - height[3]);
@@ -160,10 +160,10 @@ static void turn_to_texture(const struct surface_bump *bump, const struct textur
                             const struct hit *hit, struct vec3 *normal) {
     struct texture_reader reader;
     texture_reader_init(&reader, hit, textures, NULL);
-    struct vec3 colour = texture_read(bump->program, &reader);
-    double x = 2 * bump->height * (colour.x - 0.5), y = 2 * bump->height * (colour.y - 0.5);
+    struct colour colour = texture_read(bump->program, &reader);
+    double x = 2 * bump->height * (colour.r - 0.5), y = 2 * bump->height * (colour.g - 0.5);
     struct vec3 down = bump->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
-    turn_along(x, y, 2 * colour.z - 1, hit->dpdu, down, normal);
+    turn_along(x, y, 2 * colour.b - 1, hit->dpdu, down, normal);
 }
 
 static void turn(const struct surface_bump *bump, const struct texture_tables *textures, const struct hit *hit,

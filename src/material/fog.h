@@ -3,6 +3,7 @@
 #ifndef GRAY_MATERIAL_FOG_H
 #define GRAY_MATERIAL_FOG_H
 
+#include "math/colour.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
@@ -23,8 +24,8 @@ struct fog_field;
 /* Arrays belong to the script's arena. */
 struct fog {
     enum fog_kind kind;
-    struct vec3 colour; /* a bound, where the field has colours */
-    bool display;       /* `colour` is a display colour */
+    struct colour colour; /* a bound, where the field has colours */
+    bool display;         /* `colour` is a display colour */
     double density;
     double near, far;
     double base, scale;

@@ -228,7 +228,7 @@ struct fog_march {
     uint32_t count;
     double from[STEPS_AT_ONCE], length[STEPS_AT_ONCE];
     double depth;
-    struct vec3 light;
+    struct colour light;
 };
 
 /* Density and colour at the two points of each step. */
@@ -283,9 +283,9 @@ static void add_step(struct fog_march *march, const struct fog_values *values, u
             continue;
         if (march->field->colour) {
             double share = left_of(march->depth) * (depth < opaque ? -el_expm1(-depth) : 1);
-            struct vec3 c = {amount(values->colour[0][i]), amount(values->colour[last / 2][i]),
-                             amount(values->colour[last][i])};
-            march->light = vec3_finite(c) ? vec3_add_scaled(march->light, c, share) : march->light;
+            struct colour c = {amount(values->colour[0][i]), amount(values->colour[last / 2][i]),
+                               amount(values->colour[last][i])};
+            march->light = colour_finite(c) ? colour_add_scaled(march->light, c, share) : march->light;
         }
         march->depth += depth;
     }
@@ -334,7 +334,7 @@ static uint32_t steps_of(struct fog_march *march, const float bounds[2], double 
     return visible > STEPS ? (uint32_t)visible : STEPS;
 }
 
-double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct vec3 *source) {
+double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct colour *source) {
     struct fog_march march;
     struct fog_traversal traversal;
     uint64_t cell;
@@ -343,7 +343,7 @@ double fog_field_transmittance(const struct fog_field *field, const struct fog_l
     march.line = line;
     march.count = 0;
     march.depth = 0;
-    march.light = vec3_all(0);
+    march.light = colour_all(0);
     if (!fog_traversal_begin(&traversal, &field->cells, line->origin, line->direction, line->distance))
         return 1;
     while (march.depth < opaque && fog_traversal_next(&traversal, &cell, &from, &to)) {
@@ -364,6 +364,6 @@ double fog_field_transmittance(const struct fog_field *field, const struct fog_l
     double left = left_of(march.depth);
     /* The light is relative to what the fog hides. */
     if (field->colour)
-        *source = left < 1 ? vec3_scale(march.light, 1 / (1 - left)) : vec3_all(0);
+        *source = left < 1 ? colour_scale(march.light, 1 / (1 - left)) : colour_all(0);
     return left;
 }

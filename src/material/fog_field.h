@@ -36,6 +36,6 @@ struct fog_line {
 };
 /* The transmittance along the line, 0 to 1. source: the light that the fog adds is source * (1 - transmittance); set
  * only with a colour. */
-double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct vec3 *source);
+double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct colour *source);
 
 #endif

@@ -17,11 +17,11 @@ struct interaction {
 enum { INTERACTION_MEDIUM = 1 << 16 };
 
 /* f |cos wi| of some of the lobes that are not delta. */
-static inline struct vec3 interaction_eval(const struct interaction *at, uint32_t lobes, enum bsdf_mode mode,
-                                           struct vec3 wi) {
+static inline struct colour interaction_eval(const struct interaction *at, uint32_t lobes, enum bsdf_mode mode,
+                                             struct vec3 wi) {
     if (at->bsdf)
         return bsdf_eval(at->bsdf, lobes, mode, at->wo, wi);
-    return vec3_all(lobes ? phase_eval(at->phase, at->wo, wi) : 0);
+    return colour_all(lobes ? phase_eval(at->phase, at->wo, wi) : 0);
 }
 
 /* The density of interaction_sample's directions per solid angle, delta lobes aside. */
@@ -35,7 +35,7 @@ static inline bool interaction_sample(const struct interaction *at, enum bsdf_mo
     if (at->bsdf)
         return bsdf_sample(at->bsdf, at->lobes, mode, at->wo, u, out);
     out->direction = phase_sample(at->phase, at->wo, u);
-    out->weight = vec3_all(1);
+    out->weight = colour_all(1);
     out->pdf = phase_eval(at->phase, at->wo, out->direction);
     out->flags = INTERACTION_MEDIUM;
     return true;

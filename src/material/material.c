@@ -19,17 +19,17 @@ bool material_has_image(const struct material *material) {
     return material->bump != NULL;
 }
 
-static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
+static struct colour emission_of(const struct material *material, enum texture_estimate which) {
     const struct phong *numbers = &material_origin(material)->phong;
     const struct texture *texture = material->inputs[INPUT_EMISSION];
     return texture ? texture_estimate(texture, numbers, which) : numbers->emission;
 }
 
-struct vec3 material_emission(const struct material *material) {
+struct colour material_emission(const struct material *material) {
     return emission_of(material, TEXTURE_AVERAGE);
 }
 
-struct vec3 material_emission_bound(const struct material *material) {
+struct colour material_emission_bound(const struct material *material) {
     return emission_of(material, TEXTURE_LARGEST);
 }
 

@@ -74,8 +74,8 @@ const char *material_step_name(const struct material *link);
 /* Whether images, or bumps, are in it, which depend on the layout of shapes (material_mapping.h). */
 bool material_has_image(const struct material *material);
 /* Its average emission, and a bound (texture_estimate). */
-struct vec3 material_emission(const struct material *material);
-struct vec3 material_emission_bound(const struct material *material);
+struct colour material_emission(const struct material *material);
+struct colour material_emission_bound(const struct material *material);
 bool material_has_ior(const struct material *material);
 
 #endif

@@ -26,14 +26,14 @@ static void copy_numbers(const struct phong *numbers, struct surface_inputs *out
     out->glossy_samples = numbers->glossy_samples;
 }
 
-static void read_colour(uint32_t program, struct texture_reader *reader, struct vec3 *out) {
+static void read_colour(uint32_t program, struct texture_reader *reader, struct colour *out) {
     if (program != TEXTURE_NONE)
         *out = texture_read(program, reader);
 }
 
 static void read_number(uint32_t program, struct texture_reader *reader, double *out) {
     if (program != TEXTURE_NONE)
-        *out = texture_read(program, reader).x;
+        *out = texture_read(program, reader).r;
 }
 
 void material_inputs_at(const struct surface_tables *tables, const struct surface_material *material,
@@ -57,7 +57,7 @@ void material_inputs_at(const struct surface_tables *tables, const struct surfac
     bump_turn_normal(tables, material, hit, &out->normal);
 }
 
-static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight, double exponent) {
+static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct colour weight, double exponent) {
     struct lobe *lobe = &bsdf->lobes[bsdf->count++];
     lobe->kind = kind;
     lobe->weight = weight;
@@ -99,10 +99,10 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
         return;
     bsdf->passes = true;
     bsdf->behind = joint ? joint->behind : NULL;
-    bsdf->roughness = vec3_max_abs(inputs->kd) > 0 ? 2 : inputs->roughness;
+    bsdf->roughness = colour_max_abs(inputs->kd) > 0 ? 2 : inputs->roughness;
     bsdf->boundary.solid = hit->solid;
     bsdf->boundary.ior = inputs->has_ior ? inputs->ior : 1;
-    bsdf->boundary.tint = inputs->fresnel ? inputs->ks : vec3_scale(inputs->ks, inputs->refract);
+    bsdf->boundary.tint = inputs->fresnel ? inputs->ks : colour_scale(inputs->ks, inputs->refract);
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = context->thin;
     double eta;
@@ -125,8 +125,8 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
 /* Reflection and transmission by rough walls without thickness; the facets are those of set_pane. */
 static void add_rough_pane(const struct surface_inputs *inputs, double reflect, double refract, struct bsdf *bsdf) {
     if (reflect != 0)
-        add_lobe(bsdf, inputs->fresnel ? LOBE_GLOSS : LOBE_GGX_REFLECTION, vec3_scale(inputs->ks, reflect), 0);
-    add_lobe(bsdf, LOBE_PANE, vec3_scale(inputs->ks, refract), 0);
+        add_lobe(bsdf, inputs->fresnel ? LOBE_GLOSS : LOBE_GGX_REFLECTION, colour_scale(inputs->ks, reflect), 0);
+    add_lobe(bsdf, LOBE_PANE, colour_scale(inputs->ks, refract), 0);
     if (!inputs->fresnel)
         return;
     bsdf->lobes[bsdf->count - 2].share = fmax(bsdf->fresnel, 1.0 / 16);
@@ -142,12 +142,13 @@ static void set_lobes(const struct surface_inputs *inputs, const struct material
                                                        : inputs->highlight == HIGHLIGHT_BLINN;
     bool rough = bsdf->alpha > 0;
     if (inputs->unlit) {
-        bsdf->emission = vec3_add(bsdf->emission, inputs->kd);
-        bsdf->ambient = vec3_all(0);
+        bsdf->emission = colour_add(bsdf->emission, inputs->kd);
+        bsdf->ambient = colour_all(0);
     } else {
-        bsdf->ambient = context->ambient_plain ? vec3_all(1) : inputs->kd;
+        bsdf->ambient = context->ambient_plain ? colour_all(1) : inputs->kd;
         add_lobe(bsdf, LOBE_DIFFUSE, inputs->kd, 0);
-        add_lobe(bsdf, blinn ? LOBE_BLINN : LOBE_PHONG, vec3_scale(inputs->ks, 1 - inputs->refract), inputs->shininess);
+        add_lobe(bsdf, blinn ? LOBE_BLINN : LOBE_PHONG, colour_scale(inputs->ks, 1 - inputs->refract),
+                 inputs->shininess);
     }
     double reflect = bsdf->fresnel_of_facets ? 1 : inputs->reflect,
            refract = bsdf->fresnel_of_facets ? 1 : inputs->refract;
@@ -156,15 +157,15 @@ static void set_lobes(const struct surface_inputs *inputs, const struct material
         return;
     }
     if (reflect != 0)
-        add_lobe(bsdf, rough ? LOBE_GGX_REFLECTION : LOBE_MIRROR, vec3_scale(inputs->ks, reflect), 0);
+        add_lobe(bsdf, rough ? LOBE_GGX_REFLECTION : LOBE_MIRROR, colour_scale(inputs->ks, reflect), 0);
     if (refract != 0)
-        add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, vec3_scale(inputs->ks, refract), 0);
+        add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, colour_scale(inputs->ks, refract), 0);
 }
 
 /* Whether the surface has only a diffuse lobe, and every input is a number. */
 static bool is_matte(const struct surface_material *material, const struct phong *numbers) {
     return material->plain && !material->has_layers && !material->fresnel && !numbers->unlit && numbers->reflect == 0 &&
-           numbers->refract == 0 && vec3_max_abs(numbers->ks) == 0;
+           numbers->refract == 0 && colour_max_abs(numbers->ks) == 0;
 }
 
 /* The same as material_eval of such a material. */
@@ -177,7 +178,7 @@ static void eval_matte(const struct phong *numbers, const struct hit *hit, const
     out->count = 0;
     add_lobe(out, LOBE_DIFFUSE, numbers->kd, 0);
     out->albedo = numbers->kd;
-    out->ambient = context->ambient_plain ? vec3_all(1) : numbers->kd;
+    out->ambient = context->ambient_plain ? colour_all(1) : numbers->kd;
     out->emission = numbers->emission;
     out->opacity = out->eta = 1;
     out->alpha = numbers->roughness * numbers->roughness;
@@ -191,7 +192,7 @@ static void eval_matte(const struct phong *numbers, const struct hit *hit, const
 static void tint_passing(const struct bsdf_joint *joint, struct bsdf *bsdf) {
     for (int i = 0; joint && i < bsdf->count; i++)
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRANSMITS)
-            bsdf->lobes[i].weight = vec3_mul(bsdf->lobes[i].weight, joint->tint);
+            bsdf->lobes[i].weight = colour_mul(bsdf->lobes[i].weight, joint->tint);
 }
 
 void material_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,
@@ -215,7 +216,7 @@ void material_eval(const struct surface_tables *tables, const struct hit *hit, c
         return;
     if (material->has_layers) {
         openpbr_eval(tables, hit, media, context, &inputs, out);
-        out->ambient = context->ambient_plain ? vec3_all(1) : inputs.kd;
+        out->ambient = context->ambient_plain ? colour_all(1) : inputs.kd;
     } else {
         set_boundary(hit, media, context, &inputs, out);
         set_lobes(&inputs, context, out);

@@ -10,18 +10,18 @@
 
 /* The inputs at a hit; material_eval turns them into a BSDF. */
 struct surface_inputs {
-    struct vec3 kd, ks;
+    struct colour kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided;
     bool unlit;         /* kd is shown unchanged, without light */
     struct vec3 normal; /* unit, world, on the outward side: the hit's, or changed by bumps */
     double opacity;     /* of a surface with holes; objects behind it have the weight 1 - opacity */
     enum material_highlight highlight;
-    struct vec3 emission;   /* added to reflected light */
-    struct vec3 absorption; /* inside: the logarithm of light decreases by this per unit */
-    double roughness;       /* of reflection and refraction; 0: a mirror */
-    int glossy_samples;     /* N x N rays where it is rough; 0: the default */
-    bool fresnel;           /* material_eval, which has the media, replaces reflect and refract by F and 1 - F */
+    struct colour emission;   /* added to reflected light */
+    struct colour absorption; /* inside: the logarithm of light decreases by this per unit */
+    double roughness;         /* of reflection and refraction; 0: a mirror */
+    int glossy_samples;       /* N x N rays where it is rough; 0: the default */
+    bool fresnel;             /* material_eval, which has the media, replaces reflect and refract by F and 1 - F */
 };
 
 /* Settings of the picture for all surfaces. All zero: the defaults. */

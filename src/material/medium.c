@@ -10,8 +10,8 @@ struct medium medium_outside(const struct fog *fog) {
     return (struct medium){.ior = 1, .tint = {1, 1, 1}, .fog = fog, .affects = fog ? MEDIUM_RAY_SIGHT : 0};
 }
 
-static bool has_some(struct vec3 c) {
-    return c.x > 0 || c.y > 0 || c.z > 0;
+static bool has_some(struct colour c) {
+    return c.r > 0 || c.g > 0 || c.b > 0;
 }
 
 struct medium medium_scattering(const struct medium_input *in) {
@@ -19,12 +19,12 @@ struct medium medium_scattering(const struct medium_input *in) {
     struct medium medium = {.ior = 1, .tint = {1, 1, 1}, .phase = in->phase, .scatters = has_some(in->scattering)};
     medium.scattering = in->scattering;
     medium.emission = in->emission;
-    medium.extinction = vec3_add(in->absorption, in->scattering);
+    medium.extinction = colour_add(in->absorption, in->scattering);
     medium.affects = has_some(medium.extinction) || has_some(in->emission) ? all : 0;
     return medium;
 }
 
-struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption) {
+struct medium medium_inside(double ior, struct colour tint, struct colour absorption) {
     struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
     medium.ior = ior;
     medium.tint = tint;
@@ -32,9 +32,9 @@ struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption
 }
 
 /* The law of Beer, Lambert and Bouguer. */
-static struct vec3 uniform_transmittance(struct vec3 a, double distance) {
-    return (struct vec3){a.x > 0 ? el_exp(-a.x * distance) : 1, a.y > 0 ? el_exp(-a.y * distance) : 1,
-                         a.z > 0 ? el_exp(-a.z * distance) : 1};
+static struct colour uniform_transmittance(struct colour a, double distance) {
+    return (struct colour){a.r > 0 ? el_exp(-a.r * distance) : 1, a.g > 0 ? el_exp(-a.g * distance) : 1,
+                           a.b > 0 ? el_exp(-a.b * distance) : 1};
 }
 
 /* The integral of the transmittance over the distance. */
@@ -42,10 +42,10 @@ static double depth_seen(double extinction, double distance) {
     return extinction > 0 ? -el_expm1(-extinction * distance) / extinction : distance;
 }
 
-struct vec3 medium_emission(const struct medium *medium, double distance) {
-    struct vec3 e = medium->emission, s = medium->extinction;
-    return vec3_make(e.x > 0 ? e.x * depth_seen(s.x, distance) : 0, e.y > 0 ? e.y * depth_seen(s.y, distance) : 0,
-                     e.z > 0 ? e.z * depth_seen(s.z, distance) : 0);
+struct colour medium_emission(const struct medium *medium, double distance) {
+    struct colour e = medium->emission, s = medium->extinction;
+    return colour_make(e.r > 0 ? e.r * depth_seen(s.r, distance) : 0, e.g > 0 ? e.g * depth_seen(s.g, distance) : 0,
+                       e.b > 0 ? e.b * depth_seen(s.b, distance) : 0);
 }
 
 static bool fog_effect(const struct fog *fog, const struct ray *ray, double distance, struct medium_effect *out) {
@@ -55,29 +55,29 @@ static bool fog_effect(const struct fog *fog, const struct ray *ray, double dist
     out->source = fog->colour;
     if (fog->kind == FOG_FIELD) {
         const struct fog_line line = {ray->origin, direction, distance, ray->time};
-        out->transmittance = vec3_all(fog_field_transmittance(fog->field, &line, &out->source));
+        out->transmittance = colour_all(fog_field_transmittance(fog->field, &line, &out->source));
     } else {
-        out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
+        out->transmittance = colour_all(fog_transmittance(fog, ray->origin, direction, distance));
     }
-    out->added = vec3_mul(out->source, vec3_sub(vec3_all(1), out->transmittance));
+    out->added = colour_mul(out->source, colour_sub(colour_all(1), out->transmittance));
     return true;
 }
 
 /* Emission over extinction. where_clear: of the channels without extinction. */
-static struct vec3 source_of(const struct medium *medium, struct vec3 where_clear) {
-    struct vec3 e = medium->emission, s = medium->extinction;
-    return vec3_make(s.x > 0 ? e.x / s.x : where_clear.x, s.y > 0 ? e.y / s.y : where_clear.y,
-                     s.z > 0 ? e.z / s.z : where_clear.z);
+static struct colour source_of(const struct medium *medium, struct colour where_clear) {
+    struct colour e = medium->emission, s = medium->extinction;
+    return colour_make(s.r > 0 ? e.r / s.r : where_clear.r, s.g > 0 ? e.g / s.g : where_clear.g,
+                       s.b > 0 ? e.b / s.b : where_clear.b);
 }
 
 double medium_brightest(const struct medium *medium) {
-    struct vec3 source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
-    return fmax(source.x, fmax(source.y, source.z));
+    struct colour source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
+    return fmax(source.r, fmax(source.g, source.b));
 }
 
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
-    out->transmittance = vec3_all(1);
-    out->added = out->source = vec3_all(0);
+    out->transmittance = colour_all(1);
+    out->added = out->source = colour_all(0);
     if (!medium_affects(kind, ray))
         return false;
     const struct medium *medium = medium_stack_current(ray->media);
@@ -95,23 +95,23 @@ static double quotient(double part, double all) {
     return all > 0 ? part / all : 0;
 }
 
-struct vec3 medium_albedo(const struct medium *medium) {
-    struct vec3 s = medium->scattering, e = medium->extinction;
-    return vec3_make(quotient(s.x, e.x), quotient(s.y, e.y), quotient(s.z, e.z));
+struct colour medium_albedo(const struct medium *medium) {
+    struct colour s = medium->scattering, e = medium->extinction;
+    return colour_make(quotient(s.r, e.r), quotient(s.g, e.g), quotient(s.b, e.b));
 }
 
-struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u) {
-    double sum = throughput.x + throughput.y + throughput.z;
-    struct vec3 share = sum > 0 ? vec3_scale(throughput, 1 / sum) : vec3_all(1.0 / 3), s = medium->extinction;
-    double extinction = u.x < share.x ? s.x : u.x < share.x + share.y ? s.y : s.z;
+    double sum = throughput.r + throughput.g + throughput.b;
+    struct colour share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3), s = medium->extinction;
+    double extinction = u.x < share.r ? s.r : u.x < share.r + share.g ? s.g : s.b;
     double t = extinction > 0 ? -el_log(1 - u.y) / extinction : INFINITY;
     struct medium_sample sample = {.scatters = t < distance, .distance = fmin(t, distance)};
-    struct vec3 left = uniform_transmittance(s, sample.distance);
+    struct colour left = uniform_transmittance(s, sample.distance);
     /* Passing has a probability, scattering a density; each is the mean over the channels that may have been chosen. */
-    double chance = vec3_dot(share, sample.scatters ? vec3_mul(s, left) : left);
+    double chance = colour_dot(share, sample.scatters ? colour_mul(s, left) : left);
     sample.weight =
-        vec3_scale(sample.scatters ? vec3_mul(medium->scattering, left) : left, chance > 0 ? 1 / chance : 0);
+        colour_scale(sample.scatters ? colour_mul(medium->scattering, left) : left, chance > 0 ? 1 / chance : 0);
     return sample;
 }
 
@@ -121,8 +121,8 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
     memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
 }
 
-static bool vectors_equal(struct vec3 a, struct vec3 b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
+static bool vectors_equal(struct colour a, struct colour b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {

@@ -7,8 +7,8 @@
 
 #include "material/fog.h"
 #include "material/phase.h"
+#include "math/colour.h"
 #include "math/ray.h"
-#include "math/vec3.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,27 +22,27 @@ enum medium_ray {
 
 struct medium {
     double ior;
-    struct vec3 tint;       /* of light that passes the surface of the solid */
-    const struct fog *fog;  /* or NULL; then nothing of the following */
-    struct vec3 extinction; /* absorption and scattering: the logarithm of light decreases by this per unit */
-    struct vec3 scattering; /* at most the extinction */
-    struct vec3 emission;   /* radiance per unit */
-    struct phase phase;     /* of scattering */
-    bool scatters;          /* scattering is not black */
-    bool fills;             /* inside of solids whose surface is invisible */
-    unsigned affects;       /* the set of enum medium_ray that do not pass it as if nothing were there */
+    struct colour tint;       /* of light that passes the surface of the solid */
+    const struct fog *fog;    /* or NULL; then nothing of the following */
+    struct colour extinction; /* absorption and scattering: the logarithm of light decreases by this per unit */
+    struct colour scattering; /* at most the extinction */
+    struct colour emission;   /* radiance per unit */
+    struct phase phase;       /* of scattering */
+    bool scatters;            /* scattering is not black */
+    bool fills;               /* inside of solids whose surface is invisible */
+    unsigned affects;         /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 
 /* Around all solids. fog: or NULL. */
 struct medium medium_outside(const struct fog *fog);
 /* One that absorbs, scatters and emits. */
 struct medium_input {
-    struct vec3 absorption, scattering, emission;
+    struct colour absorption, scattering, emission;
     struct phase phase;
 };
 struct medium medium_scattering(const struct medium_input *in);
 /* Inside of a solid, without scattering and emission. */
-struct medium medium_inside(double ior, struct vec3 tint, struct vec3 absorption);
+struct medium medium_inside(double ior, struct colour tint, struct colour absorption);
 
 /* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
  * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
@@ -71,11 +71,11 @@ struct medium_stack {
 
 /* A surface between two media, at the hit of a ray. */
 struct medium_boundary {
-    uint32_t solid;   /* on the inner side of the surface */
-    double ior;       /* of its medium there */
-    struct vec3 tint; /* of light that passes it */
-    bool entering;    /* the ray comes from the outer side */
-    bool thin;        /* a wall with the same medium on both sides: nothing is entered or left */
+    uint32_t solid;     /* on the inner side of the surface */
+    double ior;         /* of its medium there */
+    struct colour tint; /* of light that passes it */
+    bool entering;      /* the ray comes from the outer side */
+    bool thin;          /* a wall with the same medium on both sides: nothing is entered or left */
 };
 
 /* The medium of entry i of the stack. */
@@ -114,9 +114,9 @@ static inline bool medium_affects(enum medium_ray kind, const struct ray *ray) {
 
 /* Light that was `x` is transmittance * x + added after it. */
 struct medium_effect {
-    struct vec3 transmittance; /* 0..1 */
-    struct vec3 added;         /* the light of the medium itself */
-    struct vec3 source;        /* the same over an infinite distance, where that is finite */
+    struct colour transmittance; /* 0..1 */
+    struct colour added;         /* the light of the medium itself */
+    struct colour source;        /* the same over an infinite distance, where that is finite */
 };
 
 /* From the ray's origin over a distance in world units (infinite: no hit). False: the ray is not affected, and
@@ -126,22 +126,22 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
 /* The largest radiance that it shows over a long distance. */
 double medium_brightest(const struct medium *medium);
 /* The radiance that a medium without fog adds over a distance, itself attenuated. */
-struct vec3 medium_emission(const struct medium *medium, double distance);
+struct colour medium_emission(const struct medium *medium, double distance);
 
 /* The share of scattering in the extinction. */
-struct vec3 medium_albedo(const struct medium *medium);
+struct colour medium_albedo(const struct medium *medium);
 
 /* Where a path is scattered in a medium without fog. */
 struct medium_sample {
     bool scatters; /* before the distance */
     double distance;
-    struct vec3 weight; /* transmittance over the probability of coming this far; or with the colour of scattering, over
-                           the density of the distance */
+    struct colour weight; /* transmittance over the probability of coming this far; or with the colour of scattering,
+                           over the density of the distance */
 };
 /* Samples over at most `distance` (may be infinite). The channel whose extinction decides is chosen in proportion to
  * the throughput of the path, and all channels use the sample with one-sample multiple importance sampling (Wilkie et
  * al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the throughput never grows. */
-struct medium_sample medium_sample(const struct medium *medium, double distance, struct vec3 throughput,
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u);
 
 #endif

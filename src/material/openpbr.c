@@ -68,27 +68,27 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
         return;
     material->has_layers = false;
     double coat = v->coat_weight * reflectance(v->coat_ior);
-    double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * vec3_max_abs(numbers.ks);
+    double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * colour_max_abs(numbers.ks);
     double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers.roughness;
     double width = fmax(roughness * roughness, 0.03), exponent = 2 / (width * width) - 2, share = fmin(gloss + coat, 1);
     double weight = fmin(share * (exponent + 8) / 8, largest);
-    struct vec3 colour = vec3_min(vec3_scale(numbers.kd, v->base_weight), vec3_all(1));
+    struct colour colour = colour_min(colour_scale(numbers.kd, v->base_weight), colour_all(1));
     out->shininess = exponent / 4;
     if (through > 0) {
         double reflected = v->thin_walled ? 2 * gloss / (1 + gloss) : gloss;
         material->fresnel = material->fresnel || (through >= 1 && !v->thin_walled);
-        out->kd = vec3_scale(colour, (1 - through) * (1 - gloss));
-        out->ks = v->deep ? vec3_all(1) : vec3_min(v->transmission_colour, vec3_all(1));
+        out->kd = colour_scale(colour, (1 - through) * (1 - gloss));
+        out->ks = v->deep ? colour_all(1) : colour_min(v->transmission_colour, colour_all(1));
         out->reflect = reflected;
         out->refract = through * (1 - reflected);
         return;
     }
     const double cover = 0.35 * v->fuzz_weight; /* of the fuzz, seen from all sides */
-    struct vec3 coated = vec3_add(vec3_scale(v->coat_colour, v->coat_weight), vec3_all(1 - v->coat_weight));
-    struct vec3 below = vec3_scale(vec3_mul(colour, vec3_min(coated, vec3_all(1))), 1 - cover);
-    struct vec3 fuzz = vec3_scale(vec3_min(v->fuzz_colour, vec3_all(1)), cover);
-    out->kd = vec3_scale(vec3_add(below, fuzz), (1 - metal) * (1 - share));
-    out->ks = vec3_add(vec3_scale(vec3_all(weight), 1 - metal), vec3_scale(colour, metal));
+    struct colour coated = colour_add(colour_scale(v->coat_colour, v->coat_weight), colour_all(1 - v->coat_weight));
+    struct colour below = colour_scale(colour_mul(colour, colour_min(coated, colour_all(1))), 1 - cover);
+    struct colour fuzz = colour_scale(colour_min(v->fuzz_colour, colour_all(1)), cover);
+    out->kd = colour_scale(colour_add(below, fuzz), (1 - metal) * (1 - share));
+    out->ks = colour_add(colour_scale(colour_all(weight), 1 - metal), colour_scale(colour, metal));
     out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? fmin(share / weight, 1) : 0);
     out->roughness = out->reflect > 0 && roughness > smooth ? roughness : 0;
     double rays = out->glossy_samples > 0 ? out->glossy_samples : 4; /* N of N x N; fewer show a small share as well */
@@ -137,9 +137,9 @@ static void read_textures(const struct surface_tables *tables, const struct surf
         if (program == TEXTURE_NONE)
             continue;
         if (rows[i].is_colour)
-            *(struct vec3 *)(void *)field = texture_read(program, &reader);
+            *(struct colour *)(void *)field = texture_read(program, &reader);
         else
-            *(double *)(void *)field = texture_read(program, &reader).x;
+            *(double *)(void *)field = texture_read(program, &reader).r;
     }
 }
 
@@ -150,10 +150,10 @@ struct layering {
     const struct openpbr *values;
     const struct surface_inputs *inputs;
     struct bsdf *bsdf;
-    struct vec3 left;   /* the fraction of light that arrives at the layer; its way back is included */
-    struct vec3 passes; /* the same without the way back, for light that passes the layers to or from the inside */
-    struct vec3 turned; /* from inside: the fraction of light leaving the base that the layers turn back */
-    struct vec3 mirror; /* of all smooth layers together */
+    struct colour left;   /* the fraction of light that arrives at the layer; its way back is included */
+    struct colour passes; /* the same without the way back, for light that passes the layers to or from the inside */
+    struct colour turned; /* from inside: the fraction of light leaving the base that the layers turn back */
+    struct colour mirror; /* of all smooth layers together */
     struct vec3 view, dpdu;
     double cosine;  /* of the view to the normal */
     double outside; /* refractive index of the surrounding medium */
@@ -164,11 +164,11 @@ struct layering {
     double coated, coat_sees, coat_inside;
 };
 
-static bool is_black(struct vec3 c) {
-    return c.x == 0 && c.y == 0 && c.z == 0;
+static bool is_black(struct colour c) {
+    return c.r == 0 && c.g == 0 && c.b == 0;
 }
 
-static void add(struct layering *l, enum lobe_kind kind, struct vec3 weight, double share) {
+static void add(struct layering *l, enum lobe_kind kind, struct colour weight, double share) {
     if (is_black(weight) || !(share > 0))
         return;
     struct lobe *lobe = &l->bsdf->lobes[l->bsdf->count++];
@@ -179,7 +179,7 @@ static void add(struct layering *l, enum lobe_kind kind, struct vec3 weight, dou
     lobe->share = share;
 }
 
-static void add_matt(struct layering *l, enum lobe_kind kind, struct vec3 weight, double roughness) {
+static void add_matt(struct layering *l, enum lobe_kind kind, struct colour weight, double roughness) {
     int count = l->bsdf->count;
     add(l, kind, weight, 1);
     if (l->bsdf->count > count)
@@ -188,7 +188,7 @@ static void add_matt(struct layering *l, enum lobe_kind kind, struct vec3 weight
 
 static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, double roughness, double anisotropy) {
     struct bsdf_facets *facets = &l->bsdf->facets[l->facets++];
-    bsdf_facets_shape(facets, l->bsdf->side, is_black(tangent) ? l->dpdu : tangent, roughness, anisotropy);
+    bsdf_facets_shape(facets, l->bsdf->side, vec3_max_abs(tangent) == 0 ? l->dpdu : tangent, roughness, anisotropy);
     return facets;
 }
 
@@ -197,18 +197,18 @@ static void add_fuzz(struct layering *l) {
     if (!(v->fuzz_weight > 0) || l->inside)
         return;
     double albedo = albedo_fuzz(l->cosine, v->fuzz_roughness);
-    add_matt(l, LOBE_FUZZ, vec3_scale(vec3_mul(l->left, v->fuzz_colour), v->fuzz_weight), v->fuzz_roughness);
-    l->left = l->passes = vec3_scale(l->left, 1 - v->fuzz_weight * albedo);
+    add_matt(l, LOBE_FUZZ, colour_scale(colour_mul(l->left, v->fuzz_colour), v->fuzz_weight), v->fuzz_roughness);
+    l->left = l->passes = colour_scale(l->left, 1 - v->fuzz_weight * albedo);
 }
 
-static struct vec3 root(struct vec3 c) {
-    return vec3_make(sqrt(fmax(c.x, 0)), sqrt(fmax(c.y, 0)), sqrt(fmax(c.z, 0)));
+static struct colour root(struct colour c) {
+    return colour_make(sqrt(fmax(c.r, 0)), sqrt(fmax(c.g, 0)), sqrt(fmax(c.b, 0)));
 }
 
 /* The share of light that passes a coat with this reflectance and colour. */
-static struct vec3 through_coat(const struct openpbr *v, struct vec3 colour, double reflected) {
-    struct vec3 transmits = vec3_scale(colour, 1 - reflected);
-    return vec3_add(vec3_scale(transmits, v->coat_weight), vec3_all(1 - v->coat_weight));
+static struct colour through_coat(const struct openpbr *v, struct colour colour, double reflected) {
+    struct colour transmits = colour_scale(colour, 1 - reflected);
+    return colour_add(colour_scale(transmits, v->coat_weight), colour_all(1 - v->coat_weight));
 }
 
 static void add_coat(struct layering *l) {
@@ -222,17 +222,17 @@ static void add_coat(struct layering *l) {
     l->coat_sees = reflected;
     l->coat_inside = dielectric_fresnel_average(1 / eta);
     if (v->coat_roughness < smooth_roughness) {
-        l->mirror = vec3_add_scaled(l->mirror, l->left, v->coat_weight * reflected);
+        l->mirror = colour_add_scaled(l->mirror, l->left, v->coat_weight * reflected);
     } else if (eta != 1) {
         struct bsdf_facets *facets = add_facets(l, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
         bsdf_facets_boundary(facets, eta);
         bsdf_facets_see(facets, l->view);
         reflected = facets->reflected;
-        add(l, LOBE_GLOSS, vec3_scale(l->left, v->coat_weight), reflected);
+        add(l, LOBE_GLOSS, colour_scale(l->left, v->coat_weight), reflected);
     }
     if (l->inputs->refract > 0)
-        l->passes = vec3_mul(l->left, through_coat(v, root(v->coat_colour), reflected));
-    l->left = vec3_mul(l->left, through_coat(v, v->coat_colour, reflected));
+        l->passes = colour_mul(l->left, through_coat(v, root(v->coat_colour), reflected));
+    l->left = colour_mul(l->left, through_coat(v, v->coat_colour, reflected));
 }
 
 /* The coat and the fuzz as light from inside meets them. Facets of the base spread it; those of the roughness 1 over
@@ -248,11 +248,11 @@ static void turn_back(struct layering *l, double eta, double roughness) {
                         : albedo_reflection(cosine, v->coat_roughness, coat_eta);
     if (v->fuzz_weight > 0)
         fuzz = v->fuzz_weight * albedo_fuzz(cosine, v->fuzz_roughness);
-    struct vec3 colour = root(v->coat_colour), passes = through_coat(v, colour, reflected);
-    struct vec3 back = vec3_mul(passes, through_coat(v, colour, 0));
-    l->passes = vec3_scale(passes, 1 - fuzz);
-    l->turned = vec3_scale(v->coat_colour, v->coat_weight * reflected);
-    l->turned = vec3_add(l->turned, vec3_scale(vec3_mul(back, v->fuzz_colour), fuzz));
+    struct colour colour = root(v->coat_colour), passes = through_coat(v, colour, reflected);
+    struct colour back = colour_mul(passes, through_coat(v, colour, 0));
+    l->passes = colour_scale(passes, 1 - fuzz);
+    l->turned = colour_scale(v->coat_colour, v->coat_weight * reflected);
+    l->turned = colour_add(l->turned, colour_scale(colour_mul(back, v->fuzz_colour), fuzz));
 }
 
 /* Light from a layer with this albedo that the coat reflects back to it; the coat covers the fraction k of the
@@ -261,10 +261,11 @@ static double darkened(const struct layering *l, double albedo, double k) {
     double factor = (1 - k) / (1 - (albedo < 1 ? albedo : 1) * k), amount = l->coated * l->values->coat_darkening;
     return 1 + amount * (factor - 1);
 }
-static struct vec3 darken(const struct layering *l, struct vec3 colour, struct vec3 albedo, double k) {
+static struct colour darken(const struct layering *l, struct colour colour, struct colour albedo, double k) {
     if (!(l->coated > 0))
         return colour;
-    return vec3_mul(colour, vec3_make(darkened(l, albedo.x, k), darkened(l, albedo.y, k), darkened(l, albedo.z, k)));
+    return colour_mul(colour,
+                      colour_make(darkened(l, albedo.r, k), darkened(l, albedo.g, k), darkened(l, albedo.b, k)));
 }
 
 /* A rough coat blurs the light from below. */
@@ -279,48 +280,48 @@ static double roughness_below(const struct layering *l) {
 }
 
 /* Facets that reflect as metal; light that hits several of them is included. */
-static void add_metal_facets(struct layering *l, struct bsdf_facets *facets, struct vec3 weight) {
-    struct vec3 mean = bsdf_metal_fresnel_average(facets);
+static void add_metal_facets(struct layering *l, struct bsdf_facets *facets, struct colour weight) {
+    struct colour mean = bsdf_metal_fresnel_average(facets);
     bsdf_facets_see(facets, l->view);
     double once = 1 - facets->lack_seen, average = 1 - facets->lack;
-    add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
-    struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
-                            mean.y * mean.y * average / (1 - mean.y * facets->lack),
-                            mean.z * mean.z * average / (1 - mean.z * facets->lack)};
-    add(l, LOBE_FACETS_MULTIPLE, vec3_mul(weight, multiple), 1 - once);
+    add(l, LOBE_METAL, weight, colour_max_abs(mean) * once);
+    struct colour multiple = {mean.r * mean.r * average / (1 - mean.r * facets->lack),
+                              mean.g * mean.g * average / (1 - mean.g * facets->lack),
+                              mean.b * mean.b * average / (1 - mean.b * facets->lack)};
+    add(l, LOBE_FACETS_MULTIPLE, colour_mul(weight, multiple), 1 - once);
 }
 
 static void add_metal(struct layering *l, double roughness) {
     const struct openpbr *v = l->values;
     if (!(v->base_metalness > 0))
         return;
-    struct vec3 weight = vec3_scale(l->left, v->base_metalness * (v->specular_weight < 1 ? v->specular_weight : 1));
+    struct colour weight = colour_scale(l->left, v->base_metalness * (v->specular_weight < 1 ? v->specular_weight : 1));
     struct bsdf_facets *facets = add_facets(l, v->tangent, fmax(roughness, smooth_roughness), v->specular_anisotropy);
-    bsdf_facets_metal(facets, vec3_scale(l->inputs->kd, v->base_weight), l->inputs->ks);
-    struct vec3 mean = bsdf_metal_fresnel_average(facets);
+    bsdf_facets_metal(facets, colour_scale(l->inputs->kd, v->base_weight), l->inputs->ks);
+    struct colour mean = bsdf_metal_fresnel_average(facets);
     weight = darken(l, weight, mean, l->coat_sees + roughness * (l->coat_inside - l->coat_sees));
     if (roughness < smooth_roughness) {
-        l->mirror = vec3_add(l->mirror, vec3_mul(weight, bsdf_metal_fresnel(facets, l->cosine)));
+        l->mirror = colour_add(l->mirror, colour_mul(weight, bsdf_metal_fresnel(facets, l->cosine)));
         return;
     }
     add_metal_facets(l, facets, weight);
 }
 
-static void add_diffuse(struct layering *l, struct vec3 left) {
+static void add_diffuse(struct layering *l, struct colour left) {
     const struct openpbr *v = l->values;
-    struct vec3 colour = vec3_scale(l->inputs->kd, v->base_weight);
+    struct colour colour = colour_scale(l->inputs->kd, v->base_weight);
     left = darken(l, left, colour, l->coat_inside);
     if (!(v->base_diffuse_roughness > 0)) {
-        add_matt(l, LOBE_DIFFUSE, vec3_mul(left, colour), 0);
+        add_matt(l, LOBE_DIFFUSE, colour_mul(left, colour), 0);
         return;
     }
-    struct vec3 multiple = bsdf_oren_nayar_multiple(colour, v->base_diffuse_roughness);
-    add_matt(l, LOBE_OREN_NAYAR, vec3_mul(left, colour), v->base_diffuse_roughness);
-    add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, vec3_mul(left, multiple), v->base_diffuse_roughness);
+    struct colour multiple = bsdf_oren_nayar_multiple(colour, v->base_diffuse_roughness);
+    add_matt(l, LOBE_OREN_NAYAR, colour_mul(left, colour), v->base_diffuse_roughness);
+    add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, colour_mul(left, multiple), v->base_diffuse_roughness);
 }
 
 /* A smooth surface transmits the light that it does not reflect. */
-static void add_smooth_passage(struct layering *l, const struct hit *hit, struct vec3 left) {
+static void add_smooth_passage(struct layering *l, const struct hit *hit, struct colour left) {
     struct bsdf *bsdf = l->bsdf;
     bsdf->transmits = l->values->thin_walled || bsdf_refract(bsdf, hit->view, &bsdf->through);
     if (l->values->thin_walled)
@@ -330,13 +331,13 @@ static void add_smooth_passage(struct layering *l, const struct hit *hit, struct
 }
 
 /* An infinitely thin wall: both of its sides together. */
-static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left, double eta, double roughness) {
-    struct vec3 tint = vec3_mul(left, l->values->transmission_colour);
-    struct vec3 reflects = vec3_mul(left, l->inputs->ks);
+static void add_pane(struct layering *l, const struct hit *hit, struct colour left, double eta, double roughness) {
+    struct colour tint = colour_mul(left, l->values->transmission_colour);
+    struct colour reflects = colour_mul(left, l->inputs->ks);
     double share = bsdf_pane_reflectance(dielectric_fresnel(l->cosine, eta));
     if (roughness < smooth_roughness || eta == 1) {
-        l->mirror = vec3_add_scaled(l->mirror, reflects, share);
-        add_smooth_passage(l, hit, vec3_scale(tint, 1 - share));
+        l->mirror = colour_add_scaled(l->mirror, reflects, share);
+        add_smooth_passage(l, hit, colour_scale(tint, 1 - share));
         return;
     }
     struct bsdf_facets *facets = add_facets(l, l->values->tangent, roughness, l->values->specular_anisotropy);
@@ -350,15 +351,15 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
 }
 
 /* The light that the part which transmits receives, for what it transmits. */
-static struct vec3 let_through(const struct layering *l) {
+static struct colour let_through(const struct layering *l) {
     const struct openpbr *v = l->values;
-    struct vec3 through = vec3_scale(vec3_scale(l->passes, 1 - v->base_metalness), l->inputs->refract);
-    return v->deep ? through : vec3_mul(through, v->transmission_colour);
+    struct colour through = colour_scale(colour_scale(l->passes, 1 - v->base_metalness), l->inputs->refract);
+    return v->deep ? through : colour_mul(through, v->transmission_colour);
 }
 
 /* Rough boundaries transmit light to the other side; `all` is the light for what they reflect. */
-static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, struct vec3 all) {
-    struct vec3 through = let_through(l);
+static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, struct colour all) {
+    struct colour through = let_through(l);
     /* What single facets lose leaves after several of them, to this side or the other. */
     double lack = facets->lack_seen, single = 1 - facets->reflected - lack;
     add(l, LOBE_GLASS, through, fmax(single, min_glass_share));
@@ -368,33 +369,33 @@ static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, st
         return;
     struct bsdf_facets *turning = &l->bsdf->facets[l->facets++];
     *turning = *facets;
-    bsdf_facets_metal(turning, vec3_all(1), vec3_all(1));
-    add_metal_facets(l, turning, vec3_scale(vec3_mul(all, l->turned), fmax(single, 0) + lack * facets->through));
+    bsdf_facets_metal(turning, colour_all(1), colour_all(1));
+    add_metal_facets(l, turning, colour_scale(colour_mul(all, l->turned), fmax(single, 0) + lack * facets->through));
 }
 
 /* The fraction of the surface that transmits light, and the rest, which is diffuse under a glossy layer. */
 static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
     const struct openpbr *v = l->values;
-    struct vec3 all = vec3_scale(l->left, 1 - v->base_metalness);
+    struct colour all = colour_scale(l->left, 1 - v->base_metalness);
     double clear = l->inputs->refract;
     if (is_black(all))
         return;
     /* A thin pane lets light through without a change of direction. */
     if (v->thin_walled && clear > 0) {
-        add_pane(l, hit, vec3_scale(all, clear), eta, roughness);
-        all = vec3_scale(all, 1 - clear);
+        add_pane(l, hit, colour_scale(all, clear), eta, roughness);
+        all = colour_scale(all, 1 - clear);
         clear = 0;
     }
     /* Light inside is in the opaque part already. */
     double opaque = 1 - clear, reflected;
-    struct vec3 boundary = l->inside ? vec3_scale(all, clear) : all;
+    struct colour boundary = l->inside ? colour_scale(all, clear) : all;
     if (roughness < smooth_roughness || eta == 1) {
         reflected = dielectric_fresnel(l->cosine, eta);
-        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(boundary, l->inputs->ks), reflected);
+        l->mirror = colour_add_scaled(l->mirror, colour_mul(boundary, l->inputs->ks), reflected);
         if (clear > 0)
-            add_smooth_passage(l, hit, vec3_scale(let_through(l), 1 - reflected));
+            add_smooth_passage(l, hit, colour_scale(let_through(l), 1 - reflected));
         if (l->inside)
-            l->mirror = vec3_add_scaled(l->mirror, vec3_mul(boundary, l->turned), 1 - reflected);
+            l->mirror = colour_add_scaled(l->mirror, colour_mul(boundary, l->turned), 1 - reflected);
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
         if (clear > 0)
@@ -403,13 +404,13 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
             bsdf_facets_boundary(facets, eta);
         bsdf_facets_see(facets, l->view);
         reflected = facets->reflected;
-        add(l, LOBE_GLOSS, vec3_mul(boundary, l->inputs->ks), reflected);
+        add(l, LOBE_GLOSS, colour_mul(boundary, l->inputs->ks), reflected);
         if (clear > 0)
-            add_rough_passage(l, facets, vec3_scale(all, clear));
+            add_rough_passage(l, facets, colour_scale(all, clear));
     }
     /* Under the reflection is the diffuse base. */
     if (opaque > 0)
-        add_diffuse(l, vec3_scale(all, l->inside ? opaque : opaque * (1 - reflected)));
+        add_diffuse(l, colour_scale(all, l->inside ? opaque : opaque * (1 - reflected)));
 }
 
 /* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would
@@ -432,8 +433,8 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
     bool is_solid = inputs->refract > 0 && !values.thin_walled;
     struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .view = hit->view, .dpdu = hit->dpdu};
-    l.left = l.passes = vec3_all(1);
-    l.mirror = l.turned = vec3_all(0);
+    l.left = l.passes = colour_all(1);
+    l.mirror = l.turned = colour_all(0);
     l.cosine = vec3_dot(bsdf->side, hit->view);
     l.cosine = l.cosine < 1 ? l.cosine : 1;
     l.inside = !values.thin_walled && !hit->front && (is_solid || medium_stack_has(media, hit->solid));
@@ -449,14 +450,14 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     double ior = openpbr_ior(values.specular_ior, values.specular_weight);
     bsdf->boundary.solid = hit->solid;
     bsdf->boundary.ior = ior;
-    bsdf->boundary.tint = values.deep ? vec3_all(1) : values.transmission_colour;
+    bsdf->boundary.tint = values.deep ? colour_all(1) : values.transmission_colour;
     bsdf->boundary.entering = hit->front;
     bsdf->boundary.thin = !is_solid;
     if (is_solid)
         bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
     add_coat(&l);
-    bsdf->emission = vec3_mul(inputs->emission, l.left);
+    bsdf->emission = colour_mul(inputs->emission, l.left);
     double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
     double roughness = roughness_below(&l);
     bsdf->passes = inputs->refract > 0 && values.base_metalness < 1;

@@ -13,11 +13,11 @@
 struct openpbr {
     double base_weight, base_diffuse_roughness, base_metalness;
     double specular_weight, specular_anisotropy, specular_ior;
-    struct vec3 transmission_colour;
+    struct colour transmission_colour;
     double coat_weight, coat_roughness, coat_anisotropy, coat_ior, coat_darkening;
-    struct vec3 coat_colour;
+    struct colour coat_colour;
     double fuzz_weight, fuzz_roughness;
-    struct vec3 fuzz_colour;
+    struct colour fuzz_colour;
     bool deep; /* transmission_depth is above 0: the colour is that of the inside */
     bool thin_walled;
     bool classic;                      /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */

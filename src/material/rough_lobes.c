@@ -116,31 +116,31 @@ void bsdf_facets_pane(struct bsdf_facets *facets, double eta) {
     facets->through = 1 - bsdf_pane_reflectance(dielectric_fresnel_average(eta));
 }
 
-void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint) {
+void bsdf_facets_metal(struct bsdf_facets *facets, struct colour f0, struct colour tint) {
     const double c = 1.0 / 7, rest = 6.0 / 7, fifth = rest * rest * rest * rest * rest;
     facets->kind = FACETS_METAL;
     facets->eta = 1;
     facets->f0 = f0;
-    struct vec3 schlick = vec3_add_scaled(f0, vec3_sub(vec3_all(1), f0), fifth);
-    facets->edge = vec3_scale(vec3_mul(schlick, vec3_sub(vec3_all(1), tint)), 1 / (c * fifth * rest));
+    struct colour schlick = colour_add_scaled(f0, colour_sub(colour_all(1), f0), fifth);
+    facets->edge = colour_scale(colour_mul(schlick, colour_sub(colour_all(1), tint)), 1 / (c * fifth * rest));
     facets->lack = facets->lack_behind = mean_lack(facets, albedo_mirror_average(facets->roughness), 1);
     facets->through = 0;
 }
 
-static struct vec3 not_negative(struct vec3 c) {
-    return vec3_make(c.x > 0 ? c.x : 0, c.y > 0 ? c.y : 0, c.z > 0 ? c.z : 0);
+static struct colour not_negative(struct colour c) {
+    return colour_make(c.r > 0 ? c.r : 0, c.g > 0 ? c.g : 0, c.b > 0 ? c.b : 0);
 }
 
-struct vec3 bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine) {
+struct colour bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine) {
     double rest = cosine < 1 ? 1 - cosine : 0, fifth = rest * rest * rest * rest * rest;
-    struct vec3 schlick = vec3_add_scaled(facets->f0, vec3_sub(vec3_all(1), facets->f0), fifth);
-    return not_negative(vec3_add_scaled(schlick, facets->edge, -cosine * fifth * rest));
+    struct colour schlick = colour_add_scaled(facets->f0, colour_sub(colour_all(1), facets->f0), fifth);
+    return not_negative(colour_add_scaled(schlick, facets->edge, -cosine * fifth * rest));
 }
 
 /* The mean of 2 c (1 - c)^5 is 1/21, that of 2 c^2 (1 - c)^6 is 1/126. */
-struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
-    struct vec3 schlick = vec3_add_scaled(facets->f0, vec3_sub(vec3_all(1), facets->f0), 1.0 / 21);
-    return not_negative(vec3_add_scaled(schlick, facets->edge, -1.0 / 126));
+struct colour bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
+    struct colour schlick = colour_add_scaled(facets->f0, colour_sub(colour_all(1), facets->f0), 1.0 / 21);
+    return not_negative(colour_add_scaled(schlick, facets->edge, -1.0 / 126));
 }
 
 /* --- directions of a hemisphere --- */
@@ -197,11 +197,11 @@ static double fujii_average(double roughness) {
     return fujii_a(roughness) * (1 + (2.0 / 3 - 28 / (15 * PI)) * roughness);
 }
 
-struct vec3 bsdf_oren_nayar_multiple(struct vec3 colour, double roughness) {
+struct colour bsdf_oren_nayar_multiple(struct colour colour, double roughness) {
     double once = fujii_average(roughness), lack = 1 - once;
-    return vec3_make(colour.x * colour.x * once / (1 - colour.x * lack),
-                     colour.y * colour.y * once / (1 - colour.y * lack),
-                     colour.z * colour.z * once / (1 - colour.z * lack));
+    return colour_make(colour.r * colour.r * once / (1 - colour.r * lack),
+                       colour.g * colour.g * once / (1 - colour.g * lack),
+                       colour.b * colour.b * once / (1 - colour.b * lack));
 }
 
 static double oren_nayar_multiple(double roughness, double n_o, double n_i) {
@@ -407,11 +407,11 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     return 0;
 }
 
-struct vec3 rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+struct colour rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
     if (!(lobe_flags(lobe->kind) & BSDF_TINTED))
         return lobe->weight;
     double towards = vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)));
-    return vec3_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
+    return colour_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
 }
 
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {

@@ -8,7 +8,7 @@
 /* f |cos wi| over the weight, as light; transmission by the rules of IMPORTANCE. */
 double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
 /* The weight, with the colour that facets of metal give to this pair of directions. */
-struct vec3 rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
+struct colour rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
 /* Of a lobe of facets: eval / pdf for its samples. */
 double rough_lobe_share(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi);
@@ -25,7 +25,7 @@ void bsdf_facets_boundary(struct bsdf_facets *facets, double eta);
 void bsdf_facets_glass(struct bsdf_facets *facets, double eta);
 void bsdf_facets_pane(struct bsdf_facets *facets, double eta);
 /* f0: reflectance head on; tint: the reflectance at the cosine 1/7 over that of Schlick's formula. */
-void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint);
+void bsdf_facets_metal(struct bsdf_facets *facets, struct colour f0, struct colour tint);
 
 /* Sets the shares of light from the view: what facets of a boundary reflect, and what neither leaves by the first facet
  * nor passes through it (not for boundaries of opaque surfaces). Before the lobes are evaluated. */
@@ -33,8 +33,8 @@ void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view);
 
 /* The reflectance of metal at a facet for this cosine to the view, and its mean over a hemisphere, weighted with the
  * cosine. */
-struct vec3 bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine);
-struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets);
+struct colour bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine);
+struct colour bsdf_metal_fresnel_average(const struct bsdf_facets *facets);
 /* Of both sides of a thin wall together, of one side's reflectance: 2 F / (1 + F). */
 static inline double bsdf_pane_reflectance(double fresnel) {
     return 2 * fresnel / (1 + fresnel);
@@ -42,6 +42,6 @@ static inline double bsdf_pane_reflectance(double fresnel) {
 
 /* Rough diffuse surfaces (LOBE_OREN_NAYAR): the colour of the light that is reflected more than once, for the weight of
  * LOBE_OREN_NAYAR_MULTIPLE, of the colour of the surface. */
-struct vec3 bsdf_oren_nayar_multiple(struct vec3 colour, double roughness);
+struct colour bsdf_oren_nayar_multiple(struct colour colour, double roughness);
 
 #endif

@@ -175,10 +175,10 @@ struct medium surface_medium(const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
     const struct openpbr *openpbr = surface->has_layers ? &surface->openpbr : NULL;
     double ior = numbers->has_ior ? numbers->ior : 1;
-    struct vec3 tint = surface->fresnel ? numbers->ks : vec3_scale(numbers->ks, numbers->refract);
+    struct colour tint = surface->fresnel ? numbers->ks : colour_scale(numbers->ks, numbers->refract);
     if (openpbr) {
         ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
-        tint = openpbr->deep ? vec3_all(1) : openpbr->transmission_colour;
+        tint = openpbr->deep ? colour_all(1) : openpbr->transmission_colour;
     }
     return medium_inside(ior, tint, numbers->absorption);
 }
@@ -186,22 +186,22 @@ struct medium surface_medium(const struct surface_material *surface) {
 bool surface_divides_media(const struct surface_material *surface) {
     struct medium medium = surface_medium(surface);
     bool thin = surface->has_layers && surface->openpbr.thin_walled;
-    bool differs = surface->has_layers || medium.ior != 1 || vec3_max_abs(medium.extinction) > 0;
+    bool differs = surface->has_layers || medium.ior != 1 || colour_max_abs(medium.extinction) > 0;
     return surface->filled || (!thin && differs && surface_passes(surface));
 }
 
-static struct vec3 estimate(const struct surface_tables *tables, const struct surface_material *surface,
-                            enum material_input input, struct vec3 number, enum texture_estimate which) {
+static struct colour estimate(const struct surface_tables *tables, const struct surface_material *surface,
+                              enum material_input input, struct colour number, enum texture_estimate which) {
     return surface_has_texture(surface, input)
                ? texture_program_estimate(&tables->textures, surface->inputs[input], &surface->phong, which)
                : number;
 }
 
-struct vec3 surface_emission(const struct surface_tables *tables, const struct surface_material *surface) {
+struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface) {
     return estimate(tables, surface, INPUT_EMISSION, surface->phong.emission, TEXTURE_AVERAGE);
 }
 
-struct vec3 surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface) {
+struct colour surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface) {
     return estimate(tables, surface, INPUT_EMISSION, surface->phong.emission, TEXTURE_LARGEST);
 }
 
@@ -224,7 +224,7 @@ static double layers_specular(const struct surface_material *surface) {
     if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT))
         base = fmax(base, 0.04);
     if (!surface_has_texture(surface, INPUT_KS))
-        base *= vec3_max_abs(surface->phong.ks);
+        base *= colour_max_abs(surface->phong.ks);
     if (surface_has_texture(surface, INPUT_COAT_IOR))
         coat = fmax(coat, 0.04);
     return fmax(base, surface_has_texture(surface, INPUT_COAT_WEIGHT) ? coat : v->coat_weight * coat);
@@ -235,19 +235,19 @@ double surface_specular(const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
     bool filtered = surface_has_texture(surface, INPUT_KS);
     double amount = surface->fresnel ? 1 : numbers->reflect + numbers->refract;
-    double specular = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
+    double specular = amount > 0 ? amount * (filtered ? 1 : colour_max_abs(numbers->ks)) : 0;
     return surface->has_layers ? fmax(specular, layers_specular(surface)) : specular;
 }
 
 /* Of metal, F82 with a tint above 1 (blue of brass) is at most Schlick's formula and -edge c (1 - c)^6; Schlick's
  * formula is at least 5 (1 - f0) c (1 - c)^6 below 1. */
-static double metal_albedo_bound(struct vec3 f0, struct vec3 tint) {
+static double metal_albedo_bound(struct colour f0, struct colour tint) {
     struct bsdf_facets facets = {.roughness = 1};
     bsdf_facets_metal(&facets, f0, tint);
-    double bound = vec3_max_abs(f0);
+    double bound = colour_max_abs(f0);
     for (int c = 0; c < 3; c++) {
-        if (-vec3_get(facets.edge, c) > 5 * (1 - vec3_get(f0, c)))
-            bound = fmax(bound, vec3_get(tint, c));
+        if (-colour_get(facets.edge, c) > 5 * (1 - colour_get(f0, c)))
+            bound = fmax(bound, colour_get(tint, c));
     }
     return bound;
 }
@@ -255,10 +255,10 @@ static double metal_albedo_bound(struct vec3 f0, struct vec3 tint) {
 /* The largest component of a layer's colour; 0: the layer is not there. */
 static double layer_bound(const struct surface_tables *tables, const struct surface_material *surface,
                           enum material_input weight_input, double weight, enum material_input colour_input,
-                          struct vec3 colour) {
+                          struct colour colour) {
     if (!(weight > 0) && !surface_has_texture(surface, weight_input))
         return 0;
-    return vec3_max_abs(estimate(tables, surface, colour_input, colour, TEXTURE_LARGEST_TEXEL));
+    return colour_max_abs(estimate(tables, surface, colour_input, colour, TEXTURE_LARGEST_TEXEL));
 }
 
 /* The coat filters what is below; fuzz and transmission have their own colours. In a deep medium the colour is that of
@@ -277,16 +277,16 @@ static double layers_albedo_bound(const struct surface_tables *tables, const str
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */
 double surface_albedo_bound(const struct surface_tables *tables, const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
-    struct vec3 colour = estimate(tables, surface, INPUT_KD, numbers->kd, TEXTURE_LARGEST_TEXEL);
-    double diffuse = vec3_max_abs(colour);
+    struct colour colour = estimate(tables, surface, INPUT_KD, numbers->kd, TEXTURE_LARGEST_TEXEL);
+    double diffuse = colour_max_abs(colour);
     double specular = surface_specular(surface), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
     if (numbers->unlit)
         return 0;
     const struct openpbr *openpbr = surface->has_layers ? &surface->openpbr : NULL;
     if (openpbr && openpbr->base_metalness >= 1 && !surface_has_texture(surface, INPUT_METALNESS))
         return layers_albedo_bound(tables, surface,
-                                   metal_albedo_bound(vec3_scale(colour, openpbr->base_weight), numbers->ks));
+                                   metal_albedo_bound(colour_scale(colour, openpbr->base_weight), numbers->ks));
     if (openpbr)
-        return layers_albedo_bound(tables, surface, fmax(diffuse, vec3_max_abs(numbers->ks)));
-    return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
+        return layers_albedo_bound(tables, surface, fmax(diffuse, colour_max_abs(numbers->ks)));
+    return diffuse + (specular > 0 ? specular : colour_max_abs(numbers->ks) * 2 / (exponent + 1));
 }

@@ -64,8 +64,8 @@ struct medium surface_medium(const struct surface_material *surface);
 /* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */
 bool surface_divides_media(const struct surface_material *surface);
 /* The average emission, and a bound (texture_estimate). */
-struct vec3 surface_emission(const struct surface_tables *tables, const struct surface_material *surface);
-struct vec3 surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface);
+struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface);
+struct colour surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface);
 /* Whether it may differ between hits. */
 bool surface_emission_varies(const struct surface_material *surface);
 /* The largest share of light that it mirrors and refracts together; 0: neither. */

@@ -10,19 +10,19 @@ static struct texture leaf(struct texture_operation operation) {
     return (struct texture){.operation = operation, .source = "", .depth = 1, .size = 1};
 }
 
-struct texture texture_constant(struct vec3 colour) {
+struct texture texture_constant(struct colour colour) {
     return leaf((struct texture_operation){.kind = TEXTURE_CONSTANT,
-                                           .constant = {colour, (colour.x + colour.y + colour.z) / 3, false}});
+                                           .constant = {colour, (colour.r + colour.g + colour.b) / 3, false}});
 }
 
-struct texture texture_display_colour(struct vec3 colour) {
+struct texture texture_display_colour(struct colour colour) {
     struct texture texture = texture_constant(colour);
     texture.operation.constant.display = true;
     return texture;
 }
 
 struct texture texture_number(double number) {
-    return leaf((struct texture_operation){.kind = TEXTURE_CONSTANT, .constant = {vec3_all(number), number, false}});
+    return leaf((struct texture_operation){.kind = TEXTURE_CONSTANT, .constant = {colour_all(number), number, false}});
 }
 
 struct texture texture_vertex_colour(void) {
@@ -72,8 +72,8 @@ struct texture texture_map(const struct texture *of, enum texture_function funct
     return over((struct texture_operation){.kind = TEXTURE_MAP, .map = {function, amount}}, of, NULL, NULL);
 }
 
-struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
-                                struct vec3 largest) {
+struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct colour average,
+                                struct colour largest) {
     struct texture out = leaf((struct texture_operation){.kind = TEXTURE_FUNCTION,
                                                          .recorded = {.program = program,
                                                                       .mapping = MAPPING_BY_SHAPE,
@@ -149,29 +149,29 @@ int texture_colour_parts(enum texture_kind kind) {
 
 /* --- operations --- */
 
-struct vec3 texture_parameter_colour(enum material_input input, const struct phong *numbers) {
+struct colour texture_parameter_colour(enum material_input input, const struct phong *numbers) {
     if (!numbers)
-        return vec3_all(1);
+        return colour_all(1);
     switch (input) {
     case INPUT_KD:
         return numbers->kd;
     case INPUT_KS:
         return numbers->ks;
     case INPUT_SHININESS:
-        return vec3_all(numbers->shininess);
+        return colour_all(numbers->shininess);
     case INPUT_REFLECT:
-        return vec3_all(numbers->reflect);
+        return colour_all(numbers->reflect);
     case INPUT_REFRACT:
-        return vec3_all(numbers->refract);
+        return colour_all(numbers->refract);
     case INPUT_ROUGHNESS:
-        return vec3_all(numbers->roughness);
+        return colour_all(numbers->roughness);
     case INPUT_EMISSION:
         return numbers->emission;
     case INPUT_OPACITY:
         OPENPBR_INPUTS(LIST_LABEL)
         break;
     }
-    return vec3_all(1);
+    return colour_all(1);
 }
 
 double texture_map_number(const struct texture_operation *map, double x) {
@@ -190,30 +190,31 @@ double texture_map_number(const struct texture_operation *map, double x) {
     return x;
 }
 
-bool texture_map_component(const struct texture_operation *map, struct vec3 colour, double *out) {
+bool texture_map_component(const struct texture_operation *map, struct colour colour, double *out) {
     enum texture_function function = map->map.function;
-    *out = function == FUNCTION_RED ? colour.x : function == FUNCTION_GREEN ? colour.y : colour.z;
+    *out = function == FUNCTION_RED ? colour.r : function == FUNCTION_GREEN ? colour.g : colour.b;
     return function == FUNCTION_RED || function == FUNCTION_GREEN || function == FUNCTION_BLUE;
 }
 
-struct vec3 texture_map_colour(const struct texture_operation *map, struct vec3 of) {
+struct colour texture_map_colour(const struct texture_operation *map, struct colour of) {
     double component;
     if (texture_map_component(map, of, &component))
-        return vec3_all(component);
-    return vec3_make(texture_map_number(map, of.x), texture_map_number(map, of.y), texture_map_number(map, of.z));
+        return colour_all(component);
+    return colour_make(texture_map_number(map, of.r), texture_map_number(map, of.g), texture_map_number(map, of.b));
 }
 
 /* --- without a hit --- */
 
-static struct vec3 larger(struct vec3 a, struct vec3 b) {
-    return vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
+static struct colour larger(struct colour a, struct colour b) {
+    return colour_make(fmax(a.r, b.r), fmax(a.g, b.g), fmax(a.b, b.b));
 }
 
-static struct vec3 estimate_image(const struct texture_image *image, struct vec3 under, enum texture_estimate which) {
-    struct vec3 tint = image->apart ? image->tint : vec3_all(1);
+static struct colour estimate_image(const struct texture_image *image, struct colour under,
+                                    enum texture_estimate which) {
+    struct colour tint = image->apart ? image->tint : colour_all(1);
     if (which == TEXTURE_LARGEST_TEXEL) {
         struct rgba texel = image_largest(image->image);
-        tint = vec3_mul(tint, vec3_make(texel.r, texel.g, texel.b));
+        tint = colour_mul(tint, colour_make(texel.r, texel.g, texel.b));
         if (texel.a >= 1)
             return tint;
     }
@@ -221,13 +222,13 @@ static struct vec3 estimate_image(const struct texture_image *image, struct vec3
         return larger(tint, under);
     struct rgba mean_texel = image_lookup(image->image, (struct image_point){0.5, 0.5, 1, 1},
                                           (struct image_sampling){IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP});
-    struct vec3 colour = vec3_mul(vec3_make(mean_texel.r, mean_texel.g, mean_texel.b), tint);
-    return vec3_add(colour, vec3_scale(under, image->alpha == ALPHA_COVERS ? 1 - mean_texel.a : 0));
+    struct colour colour = colour_mul(colour_make(mean_texel.r, mean_texel.g, mean_texel.b), tint);
+    return colour_add(colour, colour_scale(under, image->alpha == ALPHA_COVERS ? 1 - mean_texel.a : 0));
 }
 
-struct vec3 texture_operation_estimate(const struct texture_operation *operation,
-                                       const struct vec3 parts[TEXTURE_PARTS], const struct phong *numbers,
-                                       enum texture_estimate which) {
+struct colour texture_operation_estimate(const struct texture_operation *operation,
+                                         const struct colour parts[TEXTURE_PARTS], const struct phong *numbers,
+                                         enum texture_estimate which) {
     bool largest = which != TEXTURE_AVERAGE;
     switch (operation->kind) {
     case TEXTURE_CONSTANT:
@@ -235,32 +236,33 @@ struct vec3 texture_operation_estimate(const struct texture_operation *operation
     case TEXTURE_PARAMETER:
         return texture_parameter_colour(operation->parameter, numbers);
     case TEXTURE_VERTEX_COLOUR:
-        return vec3_all(1);
+        return colour_all(1);
     case TEXTURE_IMAGE:
         return estimate_image(&operation->image, parts[0], which);
     case TEXTURE_MARBLE:
     case TEXTURE_WOOD:
-        return vec3_all(largest ? 1 : 0.5);
+        return colour_all(largest ? 1 : 0.5);
     case TEXTURE_MIX: {
-        struct vec3 a = parts[PART_A], b = parts[PART_B], r = parts[PART_RATIO];
-        double ratio = (r.x + r.y + r.z) / 3;
-        return largest ? larger(a, b) : vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
+        struct colour a = parts[PART_A], b = parts[PART_B], r = parts[PART_RATIO];
+        double ratio = (r.r + r.g + r.b) / 3;
+        return largest ? larger(a, b) : colour_add(colour_scale(a, ratio), colour_scale(b, 1 - ratio));
     }
     case TEXTURE_MULTIPLY:
-        return vec3_mul(parts[PART_A], parts[PART_B]);
+        return colour_mul(parts[PART_A], parts[PART_B]);
     case TEXTURE_MAP: {
         double component;
         bool is_component = texture_map_component(operation, parts[0], &component);
-        return largest && !is_component ? vec3_all(1) : texture_map_colour(operation, parts[0]);
+        return largest && !is_component ? colour_all(1) : texture_map_colour(operation, parts[0]);
     }
     case TEXTURE_FUNCTION:
         return largest ? operation->recorded.largest : operation->recorded.average;
     }
-    return vec3_all(0);
+    return colour_all(0);
 }
 
-struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which) {
-    struct vec3 parts[TEXTURE_PARTS] = {{0, 0, 0}};
+struct colour texture_estimate(const struct texture *texture, const struct phong *numbers,
+                               enum texture_estimate which) {
+    struct colour parts[TEXTURE_PARTS] = {{0, 0, 0}};
     for (int k = 0; k < texture_part_count(texture->operation.kind); k++)
         if (texture->parts[k])
             parts[k] = texture_estimate(texture->parts[k], numbers, which);

@@ -15,7 +15,7 @@
 #include "expr/expr_program.h"
 #include "geometry/hit.h"
 #include "image/image.h"
-#include "math/vec3.h"
+#include "math/colour.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -83,7 +83,7 @@ struct texture_image {
     bool apart;
     double scale[2], cross[2], offset[2];
     bool second; /* the second coordinates of a mesh */
-    struct vec3 tint;
+    struct colour tint;
     enum texture_alpha alpha;
     enum texture_encoding encoding;
     double gamma; /* in place of `encoding`, where it is above 0: light is the number to this power */
@@ -107,11 +107,11 @@ enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
 
 /* The numbers of a material without textures, whose inputs textures replace or change. */
 struct phong {
-    struct vec3 kd, ks;
+    struct colour kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided, unlit;
     enum material_highlight highlight;
-    struct vec3 emission, absorption;
+    struct colour emission, absorption;
     double roughness;
     int glossy_samples;
 };
@@ -161,7 +161,7 @@ struct texture_operation {
     enum texture_kind kind;
     union {
         struct {
-            struct vec3 colour;
+            struct colour colour;
             double number;
             bool display; /* decoded from sRGB in linear colours */
         } constant;
@@ -185,7 +185,7 @@ struct texture_operation {
             enum texture_mapping mapping;       /* of u and v */
             bool has_coordinates;               /* it reads u or v */
             int points;                         /* of a footprint at most: a power of two up to FUNCTION_POINTS */
-            struct vec3 average, largest;       /* of some points: estimates */
+            struct colour average, largest;     /* of some points: estimates */
         } recorded;
     };
 };
@@ -204,9 +204,9 @@ struct texture {
     uint32_t size;      /* of the tree */
 };
 
-struct texture texture_constant(struct vec3 colour);
+struct texture texture_constant(struct colour colour);
 /* A colour as a screen shows it: decoded from sRGB where colours are linear. */
-struct texture texture_display_colour(struct vec3 colour);
+struct texture texture_display_colour(struct colour colour);
 struct texture texture_number(double number);
 struct texture texture_vertex_colour(void);
 /* The arguments of noise_marble and noise_wood (math/noise.h). */
@@ -218,8 +218,8 @@ struct texture texture_multiply(const struct texture *a, const struct texture *b
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
 /* A function of the inputs in EXPR_INPUTS, with one output or three. has_coordinates: it reads u or v. The estimates
  * are results of texture_estimate. */
-struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
-                                struct vec3 largest);
+struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct colour average,
+                                struct colour largest);
 /* The number of that input of the evaluated material. */
 const struct texture *texture_parameter(enum material_input input);
 /* The image if the texture is only an image; else NULL. */
@@ -237,12 +237,12 @@ int texture_part_count(enum texture_kind kind);
 int texture_colour_parts(enum texture_kind kind);
 
 /* The value of an input among the numbers of a material, which may be NULL. */
-struct vec3 texture_parameter_colour(enum material_input input, const struct phong *numbers);
+struct colour texture_parameter_colour(enum material_input input, const struct phong *numbers);
 /* One component. */
 double texture_map_number(const struct texture_operation *map, double x);
 /* Whether the function selects one component of a colour; which. */
-bool texture_map_component(const struct texture_operation *map, struct vec3 colour, double *out);
-struct vec3 texture_map_colour(const struct texture_operation *map, struct vec3 of);
+bool texture_map_component(const struct texture_operation *map, struct colour colour, double *out);
+struct colour texture_map_colour(const struct texture_operation *map, struct colour of);
 
 /* Estimates of a texture without a hit, for a material with these numbers. */
 enum texture_estimate {
@@ -250,10 +250,10 @@ enum texture_estimate {
     TEXTURE_LARGEST,      /* a bound of each component if none is negative and no texel above 1 */
     TEXTURE_LARGEST_TEXEL /* a closer bound, which reads all texels of images */
 };
-struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which);
+struct colour texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which);
 /* From the estimates of its parts. */
-struct vec3 texture_operation_estimate(const struct texture_operation *operation,
-                                       const struct vec3 parts[TEXTURE_PARTS], const struct phong *numbers,
-                                       enum texture_estimate which);
+struct colour texture_operation_estimate(const struct texture_operation *operation,
+                                         const struct colour parts[TEXTURE_PARTS], const struct phong *numbers,
+                                         enum texture_estimate which);
 
 #endif

@@ -247,7 +247,7 @@ static void sum_points(const struct texture_operation *texture, const struct reg
             sums[k] += not_nan(texture, region, values[k][i]);
 }
 
-struct vec3 texture_function_colour(const struct texture_operation *texture, const struct hit *hit) {
+struct colour texture_function_colour(const struct texture_operation *texture, const struct hit *hit) {
     const struct expr_program *program = texture->recorded.program;
     struct texcoord coordinates;
     const struct texcoord *at = coordinates_at(texture, hit, &coordinates);
@@ -270,8 +270,8 @@ struct vec3 texture_function_colour(const struct texture_operation *texture, con
             sums[k] = not_nan(texture, &region, outputs[k]);
     }
     if (program->output_count == 1)
-        return vec3_all(sums[0] / count);
-    return vec3_make(sums[0] / count, sums[1] / count, sums[2] / count);
+        return colour_all(sums[0] / count);
+    return colour_make(sums[0] / count, sums[1] / count, sums[2] / count);
 }
 
 /* --- slopes --- */

@@ -6,7 +6,7 @@
 
 /* The mean of a TEXTURE_FUNCTION over the footprint, from 1 to recorded.points points. A number counts for all three
  * components, NaN as 0. Without a footprint it is the value at the hit. */
-struct vec3 texture_function_colour(const struct texture_operation *texture, const struct hit *hit);
+struct colour texture_function_colour(const struct texture_operation *texture, const struct hit *hit);
 
 /* The slopes of the surface with heights `height` times the number of a TEXTURE_FUNCTION, averaged over the footprint:
  * the derivatives along the tangents of frame_tangents in pattern space (hit->along_a, along_b). False: the function

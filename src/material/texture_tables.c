@@ -124,7 +124,7 @@ static bool part_is_number(const struct texture *texture, int part, bool is_numb
     if (texture->operation.kind == TEXTURE_MIX && part == PART_RATIO)
         return true;
     return is_number && !(texture->operation.kind == TEXTURE_MAP &&
-                          texture_map_component(&texture->operation, vec3_all(0), &ignored));
+                          texture_map_component(&texture->operation, colour_all(0), &ignored));
 }
 
 /* Appends the instructions of a texture that has an index. */
@@ -225,18 +225,19 @@ void texture_builder_destroy(struct texture_builder *builder) {
 
 /* --- at a hit --- */
 
-static double mean(struct vec3 colour) {
-    return (colour.x + colour.y + colour.z) / 3;
+static double mean(struct colour colour) {
+    return (colour.r + colour.g + colour.b) / 3;
 }
 
 static double parameter_number(enum material_input input, const struct phong *numbers) {
-    struct vec3 colour = texture_parameter_colour(input, numbers);
+    struct colour colour = texture_parameter_colour(input, numbers);
     bool has_colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION;
-    return has_colour ? mean(colour) : colour.x;
+    return has_colour ? mean(colour) : colour.r;
 }
 
 /* The colour of an image alone. False: the surface has no coordinates for it. */
-static bool image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour, double *rest) {
+static bool image_colour(const struct texture_image *image, const struct hit *hit, struct colour *colour,
+                         double *rest) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
         return false;
@@ -257,30 +258,30 @@ static bool image_colour(const struct texture_image *image, const struct hit *hi
         share = texel.a > 0 ? 1 / texel.a : 0;
         break;
     case ALPHA_ONLY:
-        *colour = vec3_all(texel.a);
+        *colour = colour_all(texel.a);
         return true;
     }
-    *colour = vec3_scale(vec3_make(texel.r, texel.g, texel.b), share);
+    *colour = colour_scale(colour_make(texel.r, texel.g, texel.b), share);
     if (image->apart)
-        *colour = vec3_mul(*colour, image->tint);
+        *colour = colour_mul(*colour, image->tint);
     return true;
 }
 
 /* Where the picture is transparent, or ends, there is what lies below. */
-static struct vec3 image_over(const struct texture_image *image, struct vec3 under, const struct hit *hit) {
-    struct vec3 colour;
+static struct colour image_over(const struct texture_image *image, struct colour under, const struct hit *hit) {
+    struct colour colour;
     double rest;
     if (!image_colour(image, hit, &colour, &rest))
         return under;
-    return vec3_add(colour, vec3_scale(under, rest));
+    return colour_add(colour, colour_scale(under, rest));
 }
 
 static double image_number_over(const struct texture_image *image, double under, const struct hit *hit) {
-    struct vec3 colour;
+    struct colour colour;
     double rest;
     if (!image_colour(image, hit, &colour, &rest))
         return under;
-    return (image->alpha == ALPHA_ONLY ? colour.x : mean(colour)) + under * rest;
+    return (image->alpha == ALPHA_ONLY ? colour.r : mean(colour)) + under * rest;
 }
 
 static double marble_at(const struct texture_operation *operation, struct vec3 p) {
@@ -301,12 +302,12 @@ static unsigned taken_by(const struct texture_instruction *in) {
 }
 
 /* end: of the stack of values, where the parts are. */
-static struct vec3 part_of(const struct texture_instruction *in, int part, const struct vec3 *end) {
+static struct colour part_of(const struct texture_instruction *in, int part, const struct colour *end) {
     return end[-(ptrdiff_t)position_of(in, part)];
 }
 
-static struct vec3 apply(const struct texture_instruction *in, const struct vec3 *end,
-                         const struct texture_reader *reader) {
+static struct colour apply(const struct texture_instruction *in, const struct colour *end,
+                           const struct texture_reader *reader) {
     const struct texture_operation *operation = &reader->tables->operations[in->texture];
     const struct hit *hit = reader->hit;
     switch ((enum texture_kind)in->kind) {
@@ -315,29 +316,29 @@ static struct vec3 apply(const struct texture_instruction *in, const struct vec3
     case TEXTURE_PARAMETER:
         return texture_parameter_colour(operation->parameter, reader->numbers);
     case TEXTURE_VERTEX_COLOUR:
-        return hit->has_colour ? hit->colour : vec3_all(1);
+        return hit->has_colour ? hit->colour : colour_all(1);
     case TEXTURE_IMAGE:
-        return image_over(&operation->image, in->positions != 0 ? end[-1] : vec3_all(0), hit);
+        return image_over(&operation->image, in->positions != 0 ? end[-1] : colour_all(0), hit);
     case TEXTURE_MARBLE:
-        return vec3_all(marble_at(operation, hit->pattern_point));
+        return colour_all(marble_at(operation, hit->pattern_point));
     case TEXTURE_WOOD:
-        return vec3_all(wood_at(operation, hit->pattern_point));
+        return colour_all(wood_at(operation, hit->pattern_point));
     case TEXTURE_MIX: {
-        struct vec3 a = part_of(in, PART_A, end), b = part_of(in, PART_B, end);
-        double ratio = part_of(in, PART_RATIO, end).x;
-        return vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
+        struct colour a = part_of(in, PART_A, end), b = part_of(in, PART_B, end);
+        double ratio = part_of(in, PART_RATIO, end).r;
+        return colour_add(colour_scale(a, ratio), colour_scale(b, 1 - ratio));
     }
     case TEXTURE_MULTIPLY:
-        return vec3_mul(part_of(in, PART_A, end), part_of(in, PART_B, end));
+        return colour_mul(part_of(in, PART_A, end), part_of(in, PART_B, end));
     case TEXTURE_MAP:
         return texture_map_colour(operation, end[-1]);
     case TEXTURE_FUNCTION:
         return texture_function_colour(operation, hit);
     }
-    return vec3_all(0);
+    return colour_all(0);
 }
 
-static double apply_to_numbers(const struct texture_instruction *in, const struct vec3 *end,
+static double apply_to_numbers(const struct texture_instruction *in, const struct colour *end,
                                const struct texture_reader *reader) {
     const struct texture_operation *operation = &reader->tables->operations[in->texture];
     const struct hit *hit = reader->hit;
@@ -349,39 +350,39 @@ static double apply_to_numbers(const struct texture_instruction *in, const struc
     case TEXTURE_VERTEX_COLOUR:
         return hit->has_colour ? mean(hit->colour) : 1;
     case TEXTURE_IMAGE:
-        return image_number_over(&operation->image, in->positions != 0 ? end[-1].x : 0, hit);
+        return image_number_over(&operation->image, in->positions != 0 ? end[-1].r : 0, hit);
     case TEXTURE_MARBLE:
         return marble_at(operation, hit->pattern_point);
     case TEXTURE_WOOD:
         return wood_at(operation, hit->pattern_point);
     case TEXTURE_MIX: {
-        double ratio = part_of(in, PART_RATIO, end).x;
-        return part_of(in, PART_A, end).x * ratio + part_of(in, PART_B, end).x * (1 - ratio);
+        double ratio = part_of(in, PART_RATIO, end).r;
+        return part_of(in, PART_A, end).r * ratio + part_of(in, PART_B, end).r * (1 - ratio);
     }
     case TEXTURE_MULTIPLY:
-        return part_of(in, PART_A, end).x * part_of(in, PART_B, end).x;
+        return part_of(in, PART_A, end).r * part_of(in, PART_B, end).r;
     case TEXTURE_MAP: {
         double component;
         return texture_map_component(operation, end[-1], &component) ? component
-                                                                     : texture_map_number(operation, end[-1].x);
+                                                                     : texture_map_number(operation, end[-1].r);
     }
     case TEXTURE_FUNCTION: {
-        struct vec3 colour = texture_function_colour(operation, hit);
-        return operation->recorded.program->output_count == 1 ? colour.x : mean(colour);
+        struct colour colour = texture_function_colour(operation, hit);
+        return operation->recorded.program->output_count == 1 ? colour.r : mean(colour);
     }
     }
     return 0;
 }
 
 /* The known value of a shared texture, or NULL. */
-static const struct vec3 *recall(const struct texture_reader *reader, const struct texture_instruction *in) {
+static const struct colour *recall(const struct texture_reader *reader, const struct texture_instruction *in) {
     for (int i = 0; i < reader->count; i++)
         if (reader->known[i].texture == in->texture && reader->known[i].is_number == in->is_number)
             return &reader->known[i].value;
     return NULL;
 }
 
-static void keep(struct texture_reader *reader, const struct texture_instruction *in, struct vec3 value) {
+static void keep(struct texture_reader *reader, const struct texture_instruction *in, struct colour value) {
     if (reader->count == TEXTURE_SHARED)
         return;
     reader->known[reader->count].texture = in->texture;
@@ -389,14 +390,15 @@ static void keep(struct texture_reader *reader, const struct texture_instruction
     reader->known[reader->count++].value = value;
 }
 
-struct vec3 texture_read(uint32_t program, struct texture_reader *reader) {
+struct colour texture_read(uint32_t program, struct texture_reader *reader) {
     struct texture_program range = reader->tables->programs[program];
     const struct texture_instruction *in = &reader->tables->instructions[range.first], *last = in + range.count;
-    struct vec3 values[TEXTURE_DEPTH], *end = values;
+    struct colour values[TEXTURE_DEPTH], *end = values;
     for (; in < last; in++) {
-        const struct vec3 *known = in->action == ACTION_RECALL ? recall(reader, in) : NULL;
+        const struct colour *known = in->action == ACTION_RECALL ? recall(reader, in) : NULL;
         if (in->action == ACTION_APPLY) {
-            struct vec3 value = in->is_number ? vec3_all(apply_to_numbers(in, end, reader)) : apply(in, end, reader);
+            struct colour value =
+                in->is_number ? colour_all(apply_to_numbers(in, end, reader)) : apply(in, end, reader);
             end -= taken_by(in);
             *end++ = value;
         } else if (in->action == ACTION_KEEP) {
@@ -410,13 +412,13 @@ struct vec3 texture_read(uint32_t program, struct texture_reader *reader) {
     return values[0];
 }
 
-struct vec3 texture_program_estimate(const struct texture_tables *tables, uint32_t program, const struct phong *numbers,
-                                     enum texture_estimate which) {
+struct colour texture_program_estimate(const struct texture_tables *tables, uint32_t program,
+                                       const struct phong *numbers, enum texture_estimate which) {
     struct texture_program range = tables->programs[program];
     const struct texture_instruction *in = &tables->instructions[range.first], *last = in + range.count;
-    struct vec3 values[TEXTURE_DEPTH], *end = values;
+    struct colour values[TEXTURE_DEPTH], *end = values;
     for (; in < last; in++) {
-        struct vec3 parts[TEXTURE_PARTS] = {{0, 0, 0}};
+        struct colour parts[TEXTURE_PARTS] = {{0, 0, 0}};
         if (in->action != ACTION_APPLY)
             continue;
         for (int k = 0; k < TEXTURE_PARTS; k++)

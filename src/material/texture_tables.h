@@ -53,7 +53,7 @@ struct texture_reader {
     struct {
         uint32_t texture;
         bool is_number;
-        struct vec3 value;
+        struct colour value;
     } known[TEXTURE_SHARED];
 };
 
@@ -65,11 +65,11 @@ static inline void texture_reader_init(struct texture_reader *reader, const stru
     reader->count = 0;
 }
 /* The value of a program; of one that reads a number, x is it. */
-struct vec3 texture_read(uint32_t program, struct texture_reader *reader);
+struct colour texture_read(uint32_t program, struct texture_reader *reader);
 
 /* The estimate of a program that reads a colour. */
-struct vec3 texture_program_estimate(const struct texture_tables *tables, uint32_t program, const struct phong *numbers,
-                                     enum texture_estimate which);
+struct colour texture_program_estimate(const struct texture_tables *tables, uint32_t program,
+                                       const struct phong *numbers, enum texture_estimate which);
 
 /* Makes tables of authored textures. Zero-initialise; texture_builder_destroy frees its memory. */
 struct texture_builder {

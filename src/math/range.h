@@ -4,7 +4,7 @@
 #ifndef GRAY_MATH_RANGE_H
 #define GRAY_MATH_RANGE_H
 
-#include "math/vec3.h"
+#include "math/colour.h"
 
 #include <float.h>
 
@@ -17,15 +17,15 @@ static inline bool number_in_range(double x) {
     return fabs(x) <= NUMBER_LIMIT;
 }
 /* False for NaN. */
-static inline bool vec3_within(struct vec3 a, double limit) {
-    return fabs(a.x) <= limit && fabs(a.y) <= limit && fabs(a.z) <= limit;
+static inline bool colour_within(struct colour a, double limit) {
+    return fabs(a.r) <= limit && fabs(a.g) <= limit && fabs(a.b) <= limit;
 }
 /* NaN becomes 0. */
 static inline double number_clamped(double x, double limit) {
     return x > limit ? limit : x < -limit ? -limit : x == x ? x : 0;
 }
-static inline struct vec3 vec3_clamped(struct vec3 a, double limit) {
-    return (struct vec3){number_clamped(a.x, limit), number_clamped(a.y, limit), number_clamped(a.z, limit)};
+static inline struct colour colour_clamped(struct colour a, double limit) {
+    return (struct colour){number_clamped(a.r, limit), number_clamped(a.g, limit), number_clamped(a.b, limit)};
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* Three numbers: a point, a direction, a normal or a linear RGB colour. By value; evaluation order is as written, so
- * results are the same on every processor (build with -ffp-contract=off). */
+/* Three numbers: a point, a direction or a normal; colours are struct colour. By value; evaluation order is as written,
+ * so results are the same on every processor (build with -ffp-contract=off). */
 #ifndef GRAY_MATH_VEC3_H
 #define GRAY_MATH_VEC3_H
 

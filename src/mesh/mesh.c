@@ -421,9 +421,9 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
         const float *p = mesh->colours[whole ? triangle : corner[0]], *q = mesh->colours[whole ? triangle : corner[1]],
                     *r = mesh->colours[whole ? triangle : corner[2]];
         out->has_colour = true;
-        out->colour = vec3_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
-                                w * (double)p[1] + u * (double)q[1] + v * (double)r[1],
-                                w * (double)p[2] + u * (double)q[2] + v * (double)r[2]);
+        out->colour = colour_make(w * (double)p[0] + u * (double)q[0] + v * (double)r[0],
+                                  w * (double)p[1] + u * (double)q[1] + v * (double)r[1],
+                                  w * (double)p[2] + u * (double)q[2] + v * (double)r[2]);
     }
     if (mesh->materials)
         out->material_slot = mesh->materials[triangle];

@@ -89,7 +89,7 @@ static void measure_chunk(void *context, uint32_t chunk, int worker) {
         const struct photon *photon = &b->photons[i];
         if (photon->light == PHOTON_NOWHERE)
             continue;
-        double power = vec3_max_abs(photon->power);
+        double power = colour_max_abs(photon->power);
         max = power > max ? power : max;
         box = box_add_point(box, photon->position);
         landed++;
@@ -205,9 +205,9 @@ static void fill_chunk(void *context, uint32_t chunk, int worker) {
     uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
     for (uint32_t i = chunk * CHUNK; i < end && i < b->map->count; i++) {
         const struct photon *photon = &b->photons[b->entries[i].number];
-        struct vec3 power = vec3_scale(photon->power, 1 / b->map->power_unit);
+        struct colour power = colour_scale(photon->power, 1 / b->map->power_unit);
         b->map->lights[i] =
-            (struct photon_light){{(float)power.x, (float)power.y, (float)power.z}, photon->from, photon->light};
+            (struct photon_light){{(float)power.r, (float)power.g, (float)power.b}, photon->from, photon->light};
         b->map->spots[i].radius = b->radius;
     }
 }
@@ -496,7 +496,7 @@ struct density_query {
     struct vec3 side;
     bool plain; /* Lambertian lobes alone, and the geometric normal is the normal */
     float at[3], up[3];
-    struct vec3 sum;
+    struct colour sum;
 };
 
 /* Photons fall on the geometric surface, so each photon counts with its power divided by n.l of that surface; the lobes
@@ -512,15 +512,15 @@ static void add_photon(struct density_query *g, uint32_t i, double weight) {
     double cosine = vec3_dot(from, g->side);
     if (!(cosine > 0))
         return;
-    struct vec3 power = {(double)light->power[0] * weight, (double)light->power[1] * weight,
-                         (double)light->power[2] * weight};
+    struct colour power = {(double)light->power[0] * weight, (double)light->power[1] * weight,
+                           (double)light->power[2] * weight};
     if (!g->plain) {
         double scale = 1 / sqrt(vec3_dot(from, from));
         cosine *= scale;
-        struct vec3 reflected = bsdf_classic(g->bsdf, g->lobes, g->hit->view, vec3_scale(from, scale));
-        power = vec3_scale(vec3_mul(power, reflected), 1 / (cosine > 0.0625 ? cosine : 0.0625));
+        struct colour reflected = bsdf_classic(g->bsdf, g->lobes, g->hit->view, vec3_scale(from, scale));
+        power = colour_scale(colour_mul(power, reflected), 1 / (cosine > 0.0625 ? cosine : 0.0625));
     }
-    g->sum = vec3_add(g->sum, power);
+    g->sum = colour_add(g->sum, power);
 }
 
 /* Distances off the tangent plane count four times: surfaces around a corner get less light. */
@@ -562,28 +562,28 @@ static void gather(struct density_query *g) {
     }
 }
 
-struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct bsdf *bsdf, uint32_t lobes) {
+struct colour photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
+                               const struct bsdf *bsdf, uint32_t lobes) {
     struct density_query g = {.map = map, .world = world, .hit = hit, .bsdf = bsdf};
     struct vec3 normal = bsdf->lit;
     if (map->count == 0)
-        return vec3_all(0);
+        return colour_all(0);
     bool turned = vec3_dot(normal, hit->normal) < 0;
     g.side = turned ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     g.plain = normal.x == g.side.x && normal.y == g.side.y && normal.z == g.side.z;
     /* Only classic lobes; if all of them are Lambert's, one sum of power is enough. */
     bool lambert;
     g.lobes = lobes & bsdf_lobes_with(bsdf, BSDF_CLASSIC);
-    struct vec3 albedo = bsdf_weight_of(bsdf, &g.lobes, &lambert);
+    struct colour albedo = bsdf_weight_of(bsdf, &g.lobes, &lambert);
     g.plain = g.plain && lambert;
     if (g.lobes == 0)
-        return vec3_all(0);
+        return colour_all(0);
     /* In the units of the map, so that single precision suffices. */
     struct vec3 at = vec3_scale(vec3_sub(hit->point, map->origin), 1 / map->unit);
     g.at[0] = (float)at.x, g.at[1] = (float)at.y, g.at[2] = (float)at.z;
     g.up[0] = (float)g.side.x, g.up[1] = (float)g.side.y, g.up[2] = (float)g.side.z;
     gather(&g);
     if (g.plain)
-        g.sum = vec3_mul(g.sum, albedo);
-    return vec3_scale(g.sum, 2 * map->power_unit / (PI * map->unit * map->unit));
+        g.sum = colour_mul(g.sum, albedo);
+    return colour_scale(g.sum, 2 * map->power_unit / (PI * map->unit * map->unit));
 }

@@ -13,7 +13,8 @@
 /* A photon as it landed. Power: irradiance times area, in the unit in which a light's colour times its falloff is
  * irradiance (docs/design/light.md). */
 struct photon {
-    struct vec3 position, power;
+    struct vec3 position;
+    struct colour power;
     uint32_t from;  /* unit direction to where it came from, packed by photon_pack */
     uint32_t light; /* index into the world's lights; PHOTON_NOWHERE: it did not land */
 };
@@ -49,8 +50,8 @@ void photon_map_destroy(struct photon_map *map);
 
 /* The light that these lobes of the surface reflect towards hit->view from all photons around the hit that landed on
  * its lit side. */
-struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
-                             const struct bsdf *bsdf, uint32_t lobes);
+struct colour photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
+                               const struct bsdf *bsdf, uint32_t lobes);
 
 /* A unit vector in 32 bits: a point of the octahedron in 16 + 16 bits, wrong by at most 1e-4. */
 uint32_t photon_pack(struct vec3 direction);

@@ -369,14 +369,14 @@ static void fit_distant_target(struct photon_target *target, const struct specul
 
 static void estimate_flux(struct photon_target *target, const struct specular_objects *specular_objects) {
     const struct light_emitter *emitter = &target->emitter;
-    struct vec3 colour = light_emitter_colour(emitter);
+    struct colour colour = light_emitter_colour(emitter);
     double distance = vec3_length(vec3_sub(specular_objects->middle, emitter->centre));
     double attenuation =
         light_photon_attenuation(emitter->light, distance > emitter->radius ? distance : emitter->radius);
     if (!(attenuation > 0)) /* beyond its range at the middle, but maybe not everywhere */
         attenuation = distance * distance * 0x1p-6;
     double cell_area = is_distant(target) ? ldexp(target->size * target->size, -2 * (int)target->level) : 1;
-    double mean = (fabs(colour.x) + fabs(colour.y) + fabs(colour.z)) / 3;
+    double mean = (fabs(colour.r) + fabs(colour.g) + fabs(colour.b)) / 3;
     target->flux = mean * attenuation * light_emitter_unit(emitter) * target->total * cell_area;
     if (!isfinite(target->flux))
         target->flux = 0;
@@ -418,7 +418,7 @@ static struct light_photon start_from_environment(const struct photon_target *ta
         area *= width;
         photon.origin = vec3_add_scaled(photon.origin, axes[k], low + width * at[k]);
     }
-    photon.power = vec3_scale(photon.power, area);
+    photon.power = colour_scale(photon.power, area);
     return photon;
 }
 
@@ -438,8 +438,8 @@ static bool target_environment(struct photon_target *target, const struct specul
     target->cell_count = 1;
     for (int i = 0; i < PROBES * PROBES; i++) {
         struct sample2 turn = {(i % PROBES + 0.5) / PROBES, (i / PROBES + 0.5) / PROBES};
-        struct vec3 power = start_from_environment(target, turn, (struct sample2){0, 0}).power;
-        target->flux += (fabs(power.x) + fabs(power.y) + fabs(power.z)) / (3 * PROBES * PROBES) * target->total;
+        struct colour power = start_from_environment(target, turn, (struct sample2){0, 0}).power;
+        target->flux += (fabs(power.r) + fabs(power.g) + fabs(power.b)) / (3 * PROBES * PROBES) * target->total;
     }
     if (!isfinite(target->flux))
         target->flux = 0;
@@ -621,6 +621,6 @@ struct photon_start photon_target_start(const struct photon_target *target, uint
     }
     start.origin = photon.origin;
     start.direction = photon.direction;
-    start.power = vec3_scale(photon.power, weight);
+    start.power = colour_scale(photon.power, weight);
     return start;
 }

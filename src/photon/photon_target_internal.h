@@ -42,7 +42,7 @@ bool photon_targets_make(struct photon_targets *out, const struct world *world, 
 
 struct photon_start {
     struct vec3 origin, direction; /* direction: unit */
-    struct vec3 power;             /* before fading */
+    struct colour power;           /* before fading */
     double strength; /* reflectance of the strongest object of its cell: power is divided by it, and after such an
                         object all photons have equal power */
     bool from_afar;  /* an unbounded object may be behind its origin */

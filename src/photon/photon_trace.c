@@ -33,7 +33,7 @@ struct photon_job {
 struct photon_path {
     struct ray ray;
     struct medium_stack media;
-    struct vec3 left; /* of its power, per draw; the mean over all draws is what the surfaces leave */
+    struct colour left; /* of its power, per draw; the mean over all draws is what the surfaces leave */
     double length, strength;
     uint64_t key;
     uint32_t draws;
@@ -44,8 +44,8 @@ static double draw(struct photon_path *path) {
     return random_unit(random_combine(path->key, path->draws++));
 }
 
-static double mean(struct vec3 c) {
-    return (c.x + c.y + c.z) / 3;
+static double mean(struct colour c) {
+    return (c.r + c.g + c.b) / 3;
 }
 
 /* The interaction of a surface with a photon. */
@@ -66,7 +66,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
                            const struct branching *branching) {
     double to[BSDF_LOBES], all = 0;
     for (int i = 0; i < branching->count; i++) {
-        to[i] = fmax(mean(vec3_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
+        to[i] = fmax(mean(colour_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
     /* All photons should have equal power: that after the strongest object of the cell. */
@@ -86,7 +86,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
     struct bsdf_branch_direction sampled;
     if (!bsdf_branch_sample(bsdf, branch, hit->view, &position, &sampled))
         return false;
-    path->left = vec3_scale(vec3_mul(path->left, sampled.weight), all / (to[chosen] * survival));
+    path->left = colour_scale(colour_mul(path->left, sampled.weight), all / (to[chosen] * survival));
     if (sampled.transmits)
         bsdf_cross(bsdf, &path->media);
     path->ray = hit_ray(hit, &path->ray, sampled.direction, &path->media);
@@ -96,9 +96,9 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
 
 static void store_photon(const struct photon_start *start, const struct photon_target *target,
                          const struct photon_path *path, const struct hit *hit, struct photon *photon) {
-    struct vec3 power = vec3_mul(start->power, path->left);
-    power = vec3_scale(power, light_photon_attenuation(target->emitter.light, path->length));
-    if (!vec3_finite(power) || !vec3_finite(hit->point) || !(vec3_max_abs(power) > 0))
+    struct colour power = colour_mul(start->power, path->left);
+    power = colour_scale(power, light_photon_attenuation(target->emitter.light, path->length));
+    if (!colour_finite(power) || !vec3_finite(hit->point) || !(colour_max_abs(power) > 0))
         return;
     *photon = (struct photon){hit->point, power, photon_pack(hit->view), target->number};
 }
@@ -113,7 +113,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
     medium_stack_copy(&path.media, &target->media);
     path.ray.media = &path.media;
     path.ray.time = draw(&path);
-    if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
+    if (start.power.r == 0 && start.power.g == 0 && start.power.b == 0)
         return;
     if (start.from_afar) {
         /* It starts beyond the finite objects: an unbounded ground may block it. */
@@ -138,7 +138,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         path.length += hit.t;
         struct medium_effect effect;
         if (medium_transmittance(MEDIUM_RAY_PHOTON, &path.ray, hit.t, &effect))
-            path.left = vec3_mul(path.left, effect.transmittance);
+            path.left = colour_mul(path.left, effect.transmittance);
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,
@@ -160,11 +160,11 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
             on = fmax(on, 0);
             double share = branching.diffuse / (branching.diffuse + on);
             if (draw(&path) < share) {
-                path.left = vec3_scale(path.left, 1 / share);
+                path.left = colour_scale(path.left, 1 / share);
                 store_photon(&start, target, &path, &hit, photon);
                 return;
             }
-            path.left = vec3_scale(path.left, 1 / (1 - share));
+            path.left = colour_scale(path.left, 1 / (1 - share));
         }
         if (!scatter_photon(&path, &hit, &bsdf, &branching))
             return;

@@ -628,10 +628,11 @@ static bool reads_coordinates(const struct expr_program *program) {
 static struct texture texture_of(const struct work *work) {
     const struct comparison *comparison = &work->comparison;
     int last = work->program->output_count - 1;
-    struct vec3 sum = vec3_make(comparison->sum[0], comparison->sum[last / 2], comparison->sum[last]);
-    struct vec3 largest = vec3_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
+    struct colour sum = colour_make(comparison->sum[0], comparison->sum[last / 2], comparison->sum[last]);
+    struct colour largest =
+        colour_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
     struct texture out = texture_function(work->program, reads_coordinates(work->program),
-                                          vec3_scale(sum, 1.0 / RECORD_POINTS), largest);
+                                          colour_scale(sum, 1.0 / RECORD_POINTS), largest);
     out.source = work->source;
     return out;
 }

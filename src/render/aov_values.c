@@ -54,7 +54,7 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
     double depth = hit.t * vec3_length(ray->direction), node = primitive_node(world, hit.primitive)->serial + 1.0;
     set(out[AOV_DEPTH], depth, depth, depth);
     set(out[AOV_NORMAL], bsdf.normal.x, bsdf.normal.y, bsdf.normal.z);
-    set(out[AOV_ALBEDO], bsdf.albedo.x, bsdf.albedo.y, bsdf.albedo.z);
+    set(out[AOV_ALBEDO], bsdf.albedo.r, bsdf.albedo.g, bsdf.albedo.b);
     double u, v;
     if (world_native_uv(world, &hit, &u, &v))
         set(out[AOV_UV], u, v, 1);
@@ -102,12 +102,12 @@ static bool clamp_layers(float values[AOV_COUNT][3]) {
 /* What the film records of a path-traced pixel. */
 static void path_layers(const struct film *film, size_t at, float values[AOV_COUNT][3]) {
     struct path_pixel pixel = path_film_load(film, at);
-    struct vec3 raw = path_pixel_mean(&pixel), variance = path_pixel_variance_of_samples(&pixel);
-    set(values[AOV_RAW], raw.x, raw.y, raw.z);
-    set(values[AOV_VARIANCE], variance.x, variance.y, variance.z);
+    struct colour raw = path_pixel_mean(&pixel), variance = path_pixel_variance_of_samples(&pixel);
+    set(values[AOV_RAW], raw.r, raw.g, raw.b);
+    set(values[AOV_VARIANCE], variance.r, variance.g, variance.b);
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
-        struct vec3 light = path_pixel_light(&pixel, (enum path_light_group)i);
-        set(values[AOV_EMISSION + i], light.x, light.y, light.z);
+        struct colour light = path_pixel_light(&pixel, (enum path_light_group)i);
+        set(values[AOV_EMISSION + i], light.r, light.g, light.b);
     }
 }
 

@@ -141,23 +141,24 @@ static uint32_t without_highlight(const struct bsdf *bsdf) {
 
 /* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot carry light are
  * not traced. */
-static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
-                                    const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+static struct colour light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
+                                      const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     struct vec3 from = off_surface(hit);
     struct light_context context;
     if (!light_context_make(light, hit->point, from, &context))
         return sum;
     struct sample_set positions = samples_on_light(state, light, &context, number, key);
     uint32_t all = positions.side * positions.side, have = 0;
-    struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
+    struct vec3 targets[AREA_BATCH];
+    struct colour carried[AREA_BATCH];
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
         struct light_sample sample = light_sample(light, &context, sample_set_point(&positions, cell));
-        struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
+        struct colour arriving = colour_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
         /* A sample whose light the surface does not reflect needs no shadow ray. */
-        if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
+        if (arriving.r != 0 || arriving.g != 0 || arriving.b != 0) {
             targets[have] = sample.target.at;
             carried[have++] = arriving;
         }
@@ -165,40 +166,41 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
             continue;
         ask_targets(state, &context, hit, &(struct shadow_targets){targets, have, sample.target.distant}, visible);
         for (uint32_t i = 0; i < have; i++)
-            sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
+            sum = visible[i] ? colour_add(sum, carried[i]) : sum;
         have = 0;
         if (integrator_cancelled(state))
-            return vec3_all(0);
+            return colour_all(0);
     }
-    return vec3_scale(sum, 1 / (double)all);
+    return colour_scale(sum, 1 / (double)all);
 }
 
 /* A delta light: shaded once. */
-static struct vec3 light_of_delta(struct integrator_state *state, const struct light *light, uint32_t number,
-                                  const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+static struct colour light_of_delta(struct integrator_state *state, const struct light *light, uint32_t number,
+                                    const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
-        return vec3_all(0);
+        return colour_all(0);
     uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
-    struct vec3 reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
+    struct colour reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
     OBSERVE(state->observer, OBSERVED_LIGHT_SAMPLE,
             .position = {arrival.distance, arrival.strength, arrival.direction, reflected});
-    if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
-        return vec3_all(0);
+    if (arrival.strength == 0 || (reflected.r == 0 && reflected.g == 0 && reflected.b == 0))
+        return colour_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);
-    return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(arrival.colour, share * arrival.strength), reflected);
+    return share == 0 ? colour_all(0) : colour_mul(colour_scale(arrival.colour, share * arrival.strength), reflected);
 }
 
-static struct vec3 one_light(struct integrator_state *state, const struct light *light, uint32_t number,
-                             const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+static struct colour one_light(struct integrator_state *state, const struct light *light, uint32_t number,
+                               const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     if (light_is_delta(light))
         return light_of_delta(state, light, number, hit, bsdf, key);
     return light_of_samples(state, light, number, hit, bsdf, key);
 }
 
-struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+struct colour direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
+                           uint64_t key) {
     const struct world *world = state->job->world;
-    struct vec3 sum = vec3_mul(state->job->ambient, bsdf->ambient);
+    struct colour sum = colour_mul(state->job->ambient, bsdf->ambient);
     uint64_t reached = 0;
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
@@ -209,9 +211,9 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         }
         state->scratch->light = i % WORLD_SHADOW_CACHE;
         OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
-        struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
-        sum = vec3_add(sum, own);
-        reached |= (uint64_t)(own.x != 0 || own.y != 0 || own.z != 0) << i % 64;
+        struct colour own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
+        sum = colour_add(sum, own);
+        reached |= (uint64_t)(own.r != 0 || own.g != 0 || own.b != 0) << i % 64;
         OBSERVE(state->observer, OBSERVED_LIGHT_END, .light = {i, light, OBSERVER_NO_BLOCKER, own});
     }
     /* Anti-aliasing compares which lights reach the first hits of neighbouring pixels. */
@@ -219,13 +221,13 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         state->camera_hit->lights = reached;
         state->camera_hit = NULL;
     }
-    struct vec3 photons = {0, 0, 0};
+    struct colour photons = {0, 0, 0};
     bool asked = state->caustics && !bsdf->dark;
     if (asked) {
         photons = photon_map_light(state->caustics, world, hit, bsdf, BSDF_ALL);
-        sum = vec3_add(sum, photons);
+        sum = colour_add(sum, photons);
     }
     OBSERVE(state->observer, OBSERVED_DIRECT,
-            .direct = {state->job->ambient, vec3_mul(state->job->ambient, bsdf->ambient), photons, sum, asked});
+            .direct = {state->job->ambient, colour_mul(state->job->ambient, bsdf->ambient), photons, sum, asked});
     return sum;
 }

@@ -7,6 +7,7 @@
 
 /* The light that the surface reflects towards hit->view, with the ambient light. key: the random key of the path so
  * far. */
-struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
+struct colour direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
+                           uint64_t key);
 
 #endif

@@ -25,20 +25,21 @@ struct headlight {
     bool plain;
 };
 
-static struct vec3 shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
-    struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction)), colour = bsdf->albedo;
+static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
+    struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
+    struct colour colour = bsdf->albedo;
     for (int i = 0; i < bsdf->count; i++) {
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
-            colour = vec3_add_scaled(colour, bsdf->lobes[i].weight, glossy);
+            colour = colour_add_scaled(colour, bsdf->lobes[i].weight, glossy);
     }
-    double largest = vec3_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
+    double largest = colour_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
     double light = headlight->brightness * (ambient + (1 - ambient) * facing) / fmax(1, largest);
-    return vec3_add(vec3_scale(colour, light), bsdf->emission);
+    return colour_add(colour_scale(colour, light), bsdf->emission);
 }
 
 /* The colour along a ray. met: its hit, or NULL. */
-static struct vec3 colour_of(const struct headlight *headlight, struct world_scratch *scratch, struct ray ray,
-                             const struct packet_answer *met) {
+static struct colour colour_of(const struct headlight *headlight, struct world_scratch *scratch, struct ray ray,
+                               const struct packet_answer *met) {
     const struct world *world = headlight->job->world;
     struct hit hit;
     struct bsdf bsdf;
@@ -55,8 +56,8 @@ static struct vec3 colour_of(const struct headlight *headlight, struct world_scr
     return sky_colour(&world->sky, vec3_normalize(ray.direction), ray.footprint.spread);
 }
 
-static void store(struct film_pixel *pixel, struct vec3 colour) {
-    const double parts[3] = {colour.x, colour.y, colour.z};
+static void store(struct film_pixel *pixel, struct colour colour) {
+    const double parts[3] = {colour.r, colour.g, colour.b};
     for (int c = 0; c < 3; c++)
         pixel->rgb[c] = isfinite(parts[c]) ? (float)fmin(fmax(parts[c], 0), 1e30) : 0;
 }
@@ -66,7 +67,7 @@ static void render_single(const struct headlight *headlight, struct world_scratc
                           struct film_pixel *pixel) {
     struct ray ray;
     struct packet_answer met;
-    struct vec3 colour = {0, 0, 0};
+    struct colour colour = {0, 0, 0};
     if (camera_ray_through(&headlight->camera, x + 0.5, y + 0.5, (struct sample2){0.5, 0.5}, 0, &ray)) {
         bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
         colour = colour_of(headlight, scratch, ray, found ? &met : NULL);

@@ -78,7 +78,8 @@ bool integrator_render(struct renderer *renderer, struct worker *worker, const s
     UNREACHABLE(no_kind);
 }
 
-struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key) {
+struct colour integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray,
+                                  uint64_t key) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_trace(&renderer->integrator->whitted, &worker->state, ray, key);
@@ -88,8 +89,8 @@ struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker
     UNREACHABLE(no_kind);
 }
 
-struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
-                                    const struct packet_answer *met, uint64_t key) {
+struct colour integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
+                                      const struct packet_answer *met, uint64_t key) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
         return whitted_trace_met(&renderer->integrator->whitted, &worker->state, ray, met, key);

@@ -25,10 +25,11 @@ void integrator_destroy(struct integrator *integrator); /* NULL is fine */
 bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part);
 /* The radiance along a camera ray, clamped to the range of float. worker->state has the sampler of the sample and
  * the media around the eye. key: the random key of the ray. */
-struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key);
+struct colour integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray,
+                                  uint64_t key);
 /* The same for a ray of a packet. met: its hit, or NULL. */
-struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
-                                    const struct packet_answer *met, uint64_t key);
+struct colour integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
+                                      const struct packet_answer *met, uint64_t key);
 /* Traces the samples of a finished pixel once more, one by one, for layers that measure their cost. */
 void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
 /* Adds the numbers that only this integrator counts. */

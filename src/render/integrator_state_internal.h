@@ -46,11 +46,11 @@ static inline bool integrator_cancelled(const struct integrator_state *state) {
 }
 
 /* The colour with channels up to the limit, and a note if that changes it. */
-static inline struct vec3 integrator_clamp_light(struct integrator_state *state, struct vec3 colour, double limit) {
-    if (vec3_within(colour, limit))
+static inline struct colour integrator_clamp_light(struct integrator_state *state, struct colour colour, double limit) {
+    if (colour_within(colour, limit))
         return colour;
     state->clamped = true;
-    return vec3_clamped(colour, limit);
+    return colour_clamped(colour, limit);
 }
 
 #endif

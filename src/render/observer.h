@@ -55,13 +55,13 @@ struct observation {
     union {
         struct {
             const struct pixel_sample *position;
-            struct vec3 colour;
+            struct colour colour;
         } sample;
         double part;
         struct {
             enum ray_kind kind;
-            struct vec3 weight; /* the factor of its radiance in the surface where it starts */
-            enum ray_cut cut;   /* other than RAY_FOLLOWED: it does not begin */
+            struct colour weight; /* the factor of its radiance in the surface where it starts */
+            enum ray_cut cut;     /* other than RAY_FOLLOWED: it does not begin */
         } sent;
         struct observed_begin {
             const struct ray *ray;
@@ -78,20 +78,20 @@ struct observation {
         struct {
             uint32_t number; /* in the world; of paths: of world_lights */
             const struct light *light;
-            uint32_t primitive; /* the emissive primitive that the light stands for, or OBSERVER_NO_BLOCKER */
-            struct vec3 colour; /* of the light in what the surface shows */
+            uint32_t primitive;   /* the emissive primitive that the light stands for, or OBSERVER_NO_BLOCKER */
+            struct colour colour; /* of the light in what the surface shows */
         } light;
         struct observed_light_sample {
             double distance, strength; /* attenuation times the cone of a spot */
             struct vec3 to_light;      /* unit */
-            struct vec3 reflected;     /* of unit light */
+            struct colour reflected;   /* of unit light */
         } position;
         struct observed_shadow {
             uint32_t asked, arrived;
             uint32_t blocker; /* the primitive that stopped a single ray, where known */
         } shadow;
         struct observed_direct {
-            struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
+            struct colour ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
             bool has_photons;
         } direct;
         struct observed_vertex {
@@ -100,12 +100,12 @@ struct observation {
             bool in_medium;  /* scattered by the medium of the ray, before its hit */
             /* Of the emission of the hit or the sky and of lights, weighted by multiple importance sampling; direct:
              * photons and the light of the sampled light together. */
-            struct vec3 emission, photons, direct;
+            struct colour emission, photons, direct;
             bool has_photons;
         } vertex;
         struct observed_end {
-            bool evaluated;                               /* its hit was evaluated; else it was too weak */
-            struct vec3 seen, left, in_scattered, brings; /* brings, its radiance: left * seen + in_scattered */
+            bool evaluated;                                 /* its hit was evaluated; else it was too weak */
+            struct colour seen, left, in_scattered, brings; /* brings, its radiance: left * seen + in_scattered */
         } end;
         struct observed_mark {
             enum mark_reason reason;
@@ -113,7 +113,7 @@ struct observation {
             double distance, tolerance; /* squared, of colours; MARK_THIN: 0 */
         } mark;
         struct observed_pixel {
-            struct vec3 colour;
+            struct colour colour;
             int samples;       /* N of N x N samples that the pixel has got; 0: the first one only */
             bool full;         /* every pixel gets them */
             bool first_counts; /* the first sample is part of the mean */

@@ -23,7 +23,7 @@ struct stroke {
 
 struct overlay_box {
     struct box box;
-    struct vec3 colour;
+    struct colour colour;
 };
 
 /* Boxes are drawn in chunks: first each one's strokes are found, box by box, then they are drawn, band of rows by band.
@@ -42,7 +42,7 @@ struct overlay_drawing {
     bool planar;  /* lines are straight in the picture */
     bool inverse; /* 1 / depth is linear along them, not depth */
     bool pair;    /* two pictures side by side */
-    struct vec3 colour;
+    struct colour colour;
     uint32_t drawn;
     struct overlay_box *boxes; /* of the chunk */
     uint32_t count, band;
@@ -164,13 +164,13 @@ static void find_strokes(void *context, uint32_t number, int worker) {
 /* Drawing them. */
 
 static void dot(struct overlay_drawing *drawing, struct world_scratch *scratch, uint32_t x, uint32_t y, double depth,
-                const struct vec3 *colour) {
+                const struct colour *colour) {
     float *ink = drawing->lines[(size_t)y * drawing->job->film->width + x];
     /* A box often lies in the faces of its shape: those lines are in front. */
     bool seen = depth <= surface_depth(drawing, scratch, x, y) * 1.002;
     double share = seen ? 0.8 : 0.2;
     for (int c = 0; c < 3; c++)
-        ink[c] = (float)((1 - share) * (double)ink[c] + share * vec3_get(*colour, c));
+        ink[c] = (float)((1 - share) * (double)ink[c] + share * colour_get(*colour, c));
     ink[3] = (float)((1 - share) * (double)ink[3]);
 }
 
@@ -179,7 +179,7 @@ static void dot(struct overlay_drawing *drawing, struct world_scratch *scratch, 
 static void draw_stroke(struct overlay_drawing *drawing, struct world_scratch *scratch, const struct stroke *stroke,
                         double top, double bottom) {
     double t0 = 0, t1 = 1, width = drawing->job->film->width;
-    const struct vec3 *colour = &drawing->boxes[stroke->box].colour;
+    const struct colour *colour = &drawing->boxes[stroke->box].colour;
     if (!cut(stroke->from.y, stroke->delta.y, top, bottom, &t0, &t1))
         return;
     double last = fmin(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
@@ -231,9 +231,9 @@ static uint32_t step_for(const struct overlay_drawing *drawing, uint64_t count) 
 }
 
 static void number_colour(struct overlay_drawing *drawing, uint64_t number) {
-    drawing->colour = vec3_make(0.25 + 0.75 * random_unit(random_combine(number, 0)),
-                                0.25 + 0.75 * random_unit(random_combine(number, 1)),
-                                0.25 + 0.75 * random_unit(random_combine(number, 2)));
+    drawing->colour = colour_make(0.25 + 0.75 * random_unit(random_combine(number, 0)),
+                                  0.25 + 0.75 * random_unit(random_combine(number, 1)),
+                                  0.25 + 0.75 * random_unit(random_combine(number, 2)));
 }
 
 /* Boxes of one node have one colour, that of --aov node. */
@@ -249,13 +249,13 @@ static void draw_boxes(struct overlay_drawing *drawing) {
 /* From blue for few over green to red for many. */
 static void share_colour(struct overlay_drawing *drawing, double share) {
     share = share > 1 ? 1 : share;
-    drawing->colour = vec3_make(share, 1 - fabs(2 * share - 1), 1 - share);
+    drawing->colour = colour_make(share, 1 - fabs(2 * share - 1), 1 - share);
 }
 
 static bool draw_cell(void *context, const struct box *cell, bool whole, double share) {
     struct overlay_drawing *drawing = context;
     if (whole)
-        drawing->colour = vec3_all(1);
+        drawing->colour = colour_all(1);
     else
         share_colour(drawing, share);
     draw_box(drawing, cell);

@@ -347,8 +347,8 @@ static const char *user_of(const struct world *world, uint32_t material) {
 static bool has_emission(const struct world *world, uint32_t material, uint32_t slots) {
     bool any = false;
     for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
-        any = any || vec3_max_abs(surface_emission(&world->surfaces, &world->surfaces.materials[i])) > 0 ||
-              vec3_max_abs(surface_emission_bound(&world->surfaces, &world->surfaces.materials[i])) > 0;
+        any = any || colour_max_abs(surface_emission(&world->surfaces, &world->surfaces.materials[i])) > 0 ||
+              colour_max_abs(surface_emission_bound(&world->surfaces, &world->surfaces.materials[i])) > 0;
     return any;
 }
 
@@ -381,7 +381,7 @@ void path_tracer_warn(const struct render_job *job, world_warning *warn, void *c
     const struct world *world = job->world;
     char text[256];
     warn_of_infinite_emitter(world, warn, context);
-    if (vec3_max_abs(job->ambient) > 0)
+    if (colour_max_abs(job->ambient) > 0)
         warn(context, "--integrator path ignores ambient: it computes indirect light instead");
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct surface_material *material = &world->surfaces.materials[i];

@@ -20,27 +20,27 @@ static double weight_of(const struct path_tracer *tracer, enum path_strategy str
     return pdf * pdf / (pdf * pdf + other * other);
 }
 
-static bool is_black(struct vec3 c) {
-    return c.x == 0 && c.y == 0 && c.z == 0;
+static bool is_black(struct colour c) {
+    return c.r == 0 && c.g == 0 && c.b == 0;
 }
 
 /* The part of a light's radiance that the path adds. If photons come from this light, the fraction `photons` of the
  * path's weight belongs to the photon map. */
-static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t light, struct vec3 thrown,
-                                  struct vec3 radiance) {
+static struct colour without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
+                                    struct colour radiance) {
     if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
         return radiance;
-    return vec3_mul(radiance, vec3_sub(vec3_all(1), thrown));
+    return colour_mul(radiance, colour_sub(colour_all(1), thrown));
 }
 
 /* --- sampling a light --- */
 
 /* f |cos| of a set of lobes. Classic lobes do not reflect light from behind the geometric surface. */
-static inline struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+static inline struct colour scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
     const struct bsdf *bsdf = vertex->at.bsdf;
     if (bsdf && !(vec3_dot(wi, bsdf->geometric_side) > 0))
         lobes &= bsdf_lobes_with(bsdf, BSDF_TRANSMITS);
-    return lobes ? interaction_eval(&vertex->at, lobes, BSDF_RADIANCE, wi) : vec3_all(0);
+    return lobes ? interaction_eval(&vertex->at, lobes, BSDF_RADIANCE, wi) : colour_all(0);
 }
 
 /* Starts a ray to a sample on the side of the surface on which the light is, in the media on that side. */
@@ -82,11 +82,11 @@ static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow
 }
 
 /* What the media on a shadow ray leave over t up to `end`, through the invisible surfaces of media. */
-static struct vec3 left_of_light(const struct world *world, const struct ray *shadow, double end,
-                                 struct world_scratch *scratch) {
+static struct colour left_of_light(const struct world *world, const struct ray *shadow, double end,
+                                   struct world_scratch *scratch) {
     struct medium_stack media;
     struct ray rest = *shadow;
-    struct vec3 left = vec3_all(1);
+    struct colour left = colour_all(1);
     double length = vec3_length(shadow->direction);
     bool met = true;
     medium_stack_copy(&media, shadow->media);
@@ -102,7 +102,7 @@ static struct vec3 left_of_light(const struct world *world, const struct ray *sh
         if (joint.joined == JOINED_AWAY)
             continue;
         if (medium_transmittance(MEDIUM_RAY_SHADOW, &rest, (met ? hit.t : end) * length, &effect))
-            left = vec3_mul(left, effect.transmittance);
+            left = colour_mul(left, effect.transmittance);
         if (!met)
             break;
         rest = joint_ray_through_hole(&joint, &hit, &rest, &media);
@@ -113,27 +113,27 @@ static struct vec3 left_of_light(const struct world *world, const struct ray *sh
     return left;
 }
 
-struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                                const struct light_receiver *receiver, struct path_shadow *shadow) {
+struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
+                                  const struct light_receiver *receiver, struct path_shadow *shadow) {
     const struct world_lights *lights = &tracer->lights;
     const struct world_light_sample *sample = &shadow->sample;
     double end = shadow->ray.t_max;
-    struct vec3 radiance = sample->radiance;
+    struct colour radiance = sample->radiance;
     state->scratch->light = sample->light % WORLD_SHADOW_CACHE;
     state->shadow_rays++;
     if (sample->decided) {
         shadow->ray.t_max = INFINITY;
         radiance = world_lights_seen_by(lights, receiver, sample, &shadow->ray, state->scratch, &end);
     } else {
-        radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
+        radiance = colour_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
     if (tracer->has_fillings && !is_black(radiance))
-        return vec3_mul(radiance, left_of_light(lights->world, &shadow->ray, end, state->scratch));
+        return colour_mul(radiance, left_of_light(lights->world, &shadow->ray, end, state->scratch));
     if (is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
     struct medium_effect effect;
     (void)medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect);
-    return vec3_mul(radiance, effect.transmittance);
+    return colour_mul(radiance, effect.transmittance);
 }
 
 /* --- kinds of scattering --- */
@@ -146,16 +146,17 @@ static enum scattering scattering_of(unsigned lobe_flags) {
                                        : SCATTERING_SPECULAR;
 }
 
-void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]) {
+void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]) {
     for (int i = 0; i < PATH_SCATTERINGS; i++)
-        out[i] = vec3_all((int)scattering_of(flags) == i ? 1 : 0);
+        out[i] = colour_all((int)scattering_of(flags) == i ? 1 : 0);
 }
 
 static double share_of(double part, double all) {
     return all != 0 ? part / all : 0;
 }
 
-void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]) {
+void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi,
+                 struct colour out[PATH_SCATTERINGS]) {
     const struct bsdf *bsdf = vertex->at.bsdf;
     if (!bsdf) {
         path_share_all(BSDF_DIFFUSE, out);
@@ -165,29 +166,29 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
                                                 [SCATTERING_SPECULAR] = lobes & bsdf_select(bsdf, BSDF_FOR_SPECULAR),
                                                 [SCATTERING_TRANSMISSION] =
                                                     lobes & bsdf_select(bsdf, BSDF_FOR_TRANSMISSION)};
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     for (int i = 0; i < PATH_SCATTERINGS; i++) {
-        out[i] = of_kind[i] ? scattered(vertex, of_kind[i], wi) : vec3_all(0);
-        sum = vec3_add(sum, out[i]);
+        out[i] = of_kind[i] ? scattered(vertex, of_kind[i], wi) : colour_all(0);
+        sum = colour_add(sum, out[i]);
     }
     for (int i = 0; i < PATH_SCATTERINGS; i++)
-        out[i] = vec3_make(share_of(out[i].x, sum.x), share_of(out[i].y, sum.y), share_of(out[i].z, sum.z));
+        out[i] = colour_make(share_of(out[i].r, sum.r), share_of(out[i].g, sum.g), share_of(out[i].b, sum.b));
     /* A channel that no lobe scatters: its light is 0 for any fraction. */
-    out[0] = vec3_sub(vec3_all(1), vec3_add(out[1], out[2]));
+    out[0] = colour_sub(colour_all(1), colour_add(out[1], out[2]));
 }
 
 /* --- one light --- */
 
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
-                        struct vec3 shares[PATH_SCATTERINGS]) {
-    struct vec3 f = choice->lobes, highlight = choice->highlight, sum = vec3_add(f, highlight);
+                        struct colour shares[PATH_SCATTERINGS]) {
+    struct colour f = choice->lobes, highlight = choice->highlight, sum = colour_add(f, highlight);
     path_shares(vertex, vertex->at.lobes, wi, shares);
     if (is_black(highlight))
         return;
-    struct vec3 all = vec3_make(share_of(f.x, sum.x), share_of(f.y, sum.y), share_of(f.z, sum.z));
+    struct colour all = colour_make(share_of(f.r, sum.r), share_of(f.g, sum.g), share_of(f.b, sum.b));
     for (int i = 0; i < PATH_SCATTERINGS; i++)
-        shares[i] = vec3_mul(shares[i], all);
-    shares[SCATTERING_SPECULAR] = vec3_add(shares[SCATTERING_SPECULAR], vec3_sub(vec3_all(1), all));
+        shares[i] = colour_mul(shares[i], all);
+    shares[SCATTERING_SPECULAR] = colour_add(shares[SCATTERING_SPECULAR], colour_sub(colour_all(1), all));
 }
 
 /* The part of a light to sample. Most lights with a position have one part, which needs no call. */
@@ -214,32 +215,32 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
         xi = sampler_point(draw->sampler, draw->dimension);
     if (!world_lights_sample(lights, vertex->receiver, part, xi, sample))
         return false;
-    struct vec3 f = scattered(vertex, vertex->at.lobes, sample->direction);
+    struct colour f = scattered(vertex, vertex->at.lobes, sample->direction);
     if (!vertex->substitute && is_black(f))
         return false;
     uint32_t traced =
         tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !is_black(vertex->thrown)) {
-        struct vec3 by_traced = scattered(vertex, traced, sample->direction);
-        f = vec3_sub(f, vec3_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
+        struct colour by_traced = scattered(vertex, traced, sample->direction);
+        f = colour_sub(f, colour_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
     double pdf = pmf * sample->pdf;
     if (sample->is_delta) {
-        f = vec3_scale(f, 1 / pdf);
+        f = colour_scale(f, 1 / pdf);
     } else {
         double other = interaction_pdf(&vertex->at, sample->direction);
-        f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
+        f = colour_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
     choice->lobes = f;
-    choice->highlight = vec3_all(0);
+    choice->highlight = colour_all(0);
     /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that
      * the mirror throws replace the highlight. */
     if (vertex->substitute && part.light < lights->world->light_count &&
         (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample->is_delta))
         choice->highlight =
             without_thrown(tracer, part.light, vertex->thrown,
-                           vec3_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
-    out->scattered = vec3_add(f, choice->highlight);
+                           colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
+    out->scattered = colour_add(f, choice->highlight);
     if (is_black(out->scattered))
         return false;
     send_shadow_ray(vertex, out);
@@ -253,22 +254,22 @@ static double met_weight(const struct path_tracer *tracer, const struct path_seg
     return segment->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->pdf, pdf);
 }
 
-struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
-                          struct vec3 emission) {
+struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
+                            struct colour emission) {
     const struct world_lights *lights = &tracer->lights;
     if (lights->of_primitive[hit->primitive] == LIGHT_NONE && is_black(emission))
         return emission;
-    struct vec3 radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
+    struct colour radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
     radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->thrown, radiance);
     if (is_black(radiance) || segment->pdf == 0)
         return radiance;
     double pdf = world_lights_pdf_of_hit(lights, segment->receiver, vec3_negate(hit->view), hit);
-    return vec3_scale(radiance, met_weight(tracer, segment, pdf));
+    return colour_scale(radiance, met_weight(tracer, segment, pdf));
 }
 
-struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max) {
+struct colour path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max) {
     const struct world_lights *lights = &tracer->lights;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     struct world_lights_traversal traversal;
     struct light_hit hit;
     uint32_t number;
@@ -283,36 +284,37 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         bool counted = segment->passed > 0 && !(hit.t > 0); /* before the hole */
         if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
-        struct vec3 radiance = light_emitted(&lights->lights[number], &ray, &hit);
+        struct colour radiance = light_emitted(&lights->lights[number], &ray, &hit);
         if (path_is_affected(tracer, MEDIUM_RAY_SCATTERED, &ray) &&
             medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect))
-            radiance = vec3_mul(radiance, effect.transmittance);
+            radiance = colour_mul(radiance, effect.transmittance);
         radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
-        sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
+        sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;
 }
 
-struct vec3 path_environment(const struct path_tracer *tracer, const struct path_segment *segment) {
+struct colour path_environment(const struct path_tracer *tracer, const struct path_segment *segment) {
     const struct world_lights *lights = &tracer->lights;
     const struct light_hit hit = {.t = INFINITY};
-    struct vec3 sum = {0, 0, 0}, direction = vec3_normalize(segment->ray->direction);
+    struct colour sum = {0, 0, 0};
+    struct vec3 direction = vec3_normalize(segment->ray->direction);
     for (uint32_t i = 0; i < lights->sampler.infinite_count; i++) {
         uint32_t number = lights->sampler.infinite[i];
         const struct light *light = &lights->lights[number];
         if (light_is_delta(light) || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
         double pdf = world_lights_pdf(lights, segment->receiver, number, direction, &hit);
-        struct vec3 radiance =
+        struct colour radiance =
             without_thrown(tracer, number, segment->thrown, light_emitted(light, segment->ray, &hit));
-        sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
+        sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;
 }
 
 bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
-                          struct vec3 *radiance) {
+                          struct colour *radiance) {
     const struct world_lights *lights = &tracer->lights;
     struct light_hit hit;
     uint32_t number;

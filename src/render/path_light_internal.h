@@ -11,9 +11,9 @@ struct path_vertex {
     const struct hit *hit; /* of a surface */
     struct interaction at;
     const struct light_receiver *receiver;
-    uint32_t substitute; /* highlights that represent the mirror image of those lights that no mirror shows */
-    bool sight;          /* of a line of sight, on which mirrors show only visible lights */
-    struct vec3 thrown;  /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
+    uint32_t substitute;  /* highlights that represent the mirror image of those lights that no mirror shows */
+    bool sight;           /* of a line of sight, on which mirrors show only visible lights */
+    struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */
@@ -25,9 +25,9 @@ static inline bool path_is_affected(const struct path_tracer *tracer, enum mediu
 struct path_segment {
     const struct ray *ray;
     const struct light_receiver *receiver;
-    double pdf;         /* density of its direction by solid angle; 0: the only possible direction */
-    struct vec3 thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
-    double passed;      /* after holes: the line began at t = -passed */
+    double pdf;           /* density of its direction by solid angle; 0: the only possible direction */
+    struct colour thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
+    double passed;        /* after holes: the line began at t = -passed */
 };
 
 /* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension selects a
@@ -39,31 +39,31 @@ struct path_light_draw {
 };
 /* What a vertex scatters of a light of radiance 1: by its lobes, and in the place of mirror images. */
 struct path_choice {
-    struct vec3 lobes, highlight;
+    struct colour lobes, highlight;
 };
 /* Chooses a light, a point on it and the ray to it. False: nothing is to be sent, but out->part is set. */
 bool path_choose_light(const struct path_tracer *tracer, const struct path_vertex *vertex,
                        const struct path_light_draw *draw, struct path_shadow *out, struct path_choice *choice);
 /* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. receiver: the
  * one that was chosen for. */
-struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                                const struct light_receiver *receiver, struct path_shadow *shadow);
+struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
+                                  const struct light_receiver *receiver, struct path_shadow *shadow);
 /* What path_shares returns, for a light in the direction wi, highlights included. */
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
-                        struct vec3 shares[PATH_SCATTERINGS]);
+                        struct colour shares[PATH_SCATTERINGS]);
 /* For each kind of scattering and each channel: its fraction of the light that these lobes of the vertex scatter
  * from wi. The fractions add up to 1. */
-void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);
+void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct colour out[PATH_SCATTERINGS]);
 /* The fractions of a lobe with these flags: all of its light belongs to one kind. */
-void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]);
+void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]);
 /* The light along scattered rays, weighted against path_direct: that of an emissive surface (`emission` at the hit);
  * that of the area lights that the ray crosses before t_max; that of skies if it hits nothing. */
-struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
-                          struct vec3 emission);
-struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);
-struct vec3 path_environment(const struct path_tracer *tracer, const struct path_segment *segment);
+struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
+                            struct colour emission);
+struct colour path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);
+struct colour path_environment(const struct path_tracer *tracer, const struct path_segment *segment);
 /* The nearest visible area light on a line of sight before t_max, and its distance. */
 bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
-                          struct vec3 *radiance);
+                          struct colour *radiance);
 
 #endif

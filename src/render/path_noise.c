@@ -33,11 +33,11 @@ static struct channel channel_of(double mean, double halves, double samples) {
 
 static void load_pixel(const struct film *film, size_t at, struct channel out[3]) {
     struct path_pixel pixel = path_film_load(film, at);
-    struct vec3 mean = path_pixel_mean(&pixel), halves = path_pixel_variance_of_halves(&pixel),
-                samples = path_pixel_variance_of_samples(&pixel);
-    out[0] = channel_of(mean.x, halves.x, samples.x);
-    out[1] = channel_of(mean.y, halves.y, samples.y);
-    out[2] = channel_of(mean.z, halves.z, samples.z);
+    struct colour mean = path_pixel_mean(&pixel), halves = path_pixel_variance_of_halves(&pixel),
+                  samples = path_pixel_variance_of_samples(&pixel);
+    out[0] = channel_of(mean.r, halves.r, samples.r);
+    out[1] = channel_of(mean.g, halves.g, samples.g);
+    out[2] = channel_of(mean.b, halves.b, samples.b);
 }
 
 static void order(double *a, double *b) {

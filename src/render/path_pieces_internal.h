@@ -37,24 +37,24 @@ static struct path_parts *parts_of(const struct integrator_state *state) {
 }
 
 /* Adds light that was scattered `depth` times, divided by the kinds of its first scattering. */
-static void add_to_groups(struct path_parts *parts, int depth, const struct vec3 shares[PATH_SCATTERINGS],
-                          struct vec3 light) {
+static void add_to_groups(struct path_parts *parts, int depth, const struct colour shares[PATH_SCATTERINGS],
+                          struct colour light) {
     if (depth == 0) {
-        parts->light[PATH_LIGHT_EMISSION] = vec3_add(parts->light[PATH_LIGHT_EMISSION], light);
+        parts->light[PATH_LIGHT_EMISSION] = colour_add(parts->light[PATH_LIGHT_EMISSION], light);
         return;
     }
     for (int i = 0; i < PATH_SCATTERINGS; i++) {
-        struct vec3 *group = &parts->light[PATH_LIGHT_DIFFUSE_DIRECT + 2 * i + (depth > 1)];
-        *group = vec3_add(*group, vec3_mul(shares[i], light));
+        struct colour *group = &parts->light[PATH_LIGHT_DIFFUSE_DIRECT + 2 * i + (depth > 1)];
+        *group = colour_add(*group, colour_mul(shares[i], light));
     }
 }
 
 /* The hit of the path's ray. */
-static void add_light(const struct integrator_state *state, struct path *path, struct vec3 radiance) {
-    if (radiance.x == 0 && radiance.y == 0 && radiance.z == 0)
+static void add_light(const struct integrator_state *state, struct path *path, struct colour radiance) {
+    if (radiance.r == 0 && radiance.g == 0 && radiance.b == 0)
         return;
-    struct vec3 light = vec3_mul(path->weight, radiance);
-    path->light = vec3_add(path->light, light);
+    struct colour light = colour_mul(path->weight, radiance);
+    path->light = colour_add(path->light, light);
     struct path_parts *parts = parts_of(state);
     if (parts)
         add_to_groups(parts, path->depth, parts->shares, light);
@@ -65,8 +65,8 @@ static double compressed(double x) {
 }
 
 /* The groups of light that a line of sight shows. */
-static struct vec3 light_albedo(struct vec3 radiance) {
-    return vec3_make(compressed(radiance.x), compressed(radiance.y), compressed(radiance.z));
+static struct colour light_albedo(struct colour radiance) {
+    return colour_make(compressed(radiance.r), compressed(radiance.g), compressed(radiance.b));
 }
 
 static float in_unit(double x) {
@@ -74,17 +74,18 @@ static float in_unit(double x) {
 }
 
 /* The end of a line of sight. distance: along the last ray of the path. */
-static void set_features(const struct integrator_state *state, const struct path *path, struct vec3 albedo,
+static void set_features(const struct integrator_state *state, const struct path *path, struct colour albedo,
                          struct vec3 normal, double distance) {
     struct path_parts *parts = parts_of(state);
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct vec3 behind = vec3_mul(path->weight, albedo);
-    const struct vec3 a = parts->reflected > 0 ? vec3_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
-    const float features[PATH_GLOW] = {in_unit(a.x),
-                                       in_unit(a.y),
-                                       in_unit(a.z),
+    const struct colour behind = colour_mul(path->weight, albedo);
+    const struct colour a =
+        parts->reflected > 0 ? colour_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
+    const float features[PATH_GLOW] = {in_unit(a.r),
+                                       in_unit(a.g),
+                                       in_unit(a.b),
                                        (float)normal.x,
                                        (float)normal.y,
                                        (float)normal.z,
@@ -100,11 +101,11 @@ static void meet_features(const struct integrator_state *state, const struct pat
         return;
     const struct bsdf_guide guide = bsdf_guide(bsdf, light_albedo(bsdf->emission));
     parts->travelled += hit->t * vec3_length(path->ray.direction);
-    if (guide.scatters || vec3_max_abs(bsdf->emission) > 0) {
+    if (guide.scatters || colour_max_abs(bsdf->emission) > 0) {
         set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
     } else if (guide.refracted > 0 && parts->reflected == 0) {
         parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
-        parts->seen = vec3_scale(path->weight, parts->reflected);
+        parts->seen = colour_scale(path->weight, parts->reflected);
     }
 }
 
@@ -134,13 +135,13 @@ static bool pass_medium(const struct integrator_state *state, struct path *path,
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
         add_light(state, path, medium_emission(medium, *distance));
         struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
-        path->weight = vec3_mul(path->weight, sample.weight);
+        path->weight = colour_mul(path->weight, sample.weight);
         *distance = sample.distance;
         return sample.scatters;
     }
     if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
         add_light(state, path, effect.added);
-        path->weight = vec3_mul(path->weight, effect.transmittance);
+        path->weight = colour_mul(path->weight, effect.transmittance);
     }
     return false;
 }
@@ -150,7 +151,7 @@ static bool pass_medium(const struct integrator_state *state, struct path *path,
 static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                              const struct hit *hit, struct path_watch *watch, double *distance) {
     double end = hit ? hit->t : path->ray.t_max;
-    struct vec3 radiance;
+    struct colour radiance;
     bool seen = false;
     if (path->sight) {
         seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
@@ -178,10 +179,10 @@ static enum travelled travel(const struct path_tracer *tracer, const struct inte
 static void leave_scene(const struct path_tracer *tracer, struct integrator_state *state, struct path *path) {
     const struct world *world = state->job->world;
     if (state->job->settings.transparent && path->sight && path->depth == 0) {
-        state->seen_through += (path->weight.x + path->weight.y + path->weight.z) / 3;
-        set_features(state, path, vec3_all(0), vec3_all(0), 0);
+        state->seen_through += (path->weight.r + path->weight.g + path->weight.b) / 3;
+        set_features(state, path, colour_all(0), vec3_all(0), 0);
     } else if (path->sight) {
-        struct vec3 sky = sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread);
+        struct colour sky = sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread);
         set_features(state, path, light_albedo(sky), vec3_all(0), 0);
         add_light(state, path, sky);
     } else {
@@ -196,12 +197,12 @@ static void leave_scene(const struct path_tracer *tracer, struct integrator_stat
  * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
  * noise than their rays cost. Media scatter so often that even .95 would leave few, heavy paths. */
 static bool survives(struct path *path, bool on_surface, double u) {
-    double chance = sqrt(vec3_max_abs(path->weight) / path->radiance_scale);
+    double chance = sqrt(colour_max_abs(path->weight) / path->radiance_scale);
     double limit = on_surface ? survival : 1;
     chance = chance < limit ? chance : limit;
     if (!(u < chance))
         return false;
-    path->weight = vec3_scale(path->weight, 1 / chance);
+    path->weight = colour_scale(path->weight, 1 / chance);
     return true;
 }
 
@@ -213,11 +214,11 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     uint32_t lobes = vertex->at.lobes & bsdf_select(vertex->at.bsdf, BSDF_FOR_PHOTONS);
     if (lobes == 0 || path->depth + 2 > tracer->max_depth)
         return;
-    struct vec3 found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->at.bsdf, lobes);
-    struct vec3 light = vec3_mul(path->weight, found);
-    path->light = vec3_add(path->light, light);
+    struct colour found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->at.bsdf, lobes);
+    struct colour light = colour_mul(path->weight, found);
+    path->light = colour_add(path->light, light);
     /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
-    struct vec3 diffuse[PATH_SCATTERINGS];
+    struct colour diffuse[PATH_SCATTERINGS];
     path_share_all(BSDF_DIFFUSE, diffuse);
     struct path_parts *parts = parts_of(state);
     if (parts)
@@ -229,13 +230,13 @@ static double share_of(double part, double all) {
 }
 
 /* The fraction of light from wi that these lobes of the vertex scatter. */
-static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+static struct colour share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
     const struct interaction *at = &vertex->at;
     if (lobes == 0 || lobes == at->lobes)
-        return vec3_all(lobes ? 1 : 0);
-    struct vec3 part = interaction_eval(at, lobes, BSDF_RADIANCE, wi),
-                all = interaction_eval(at, at->lobes, BSDF_RADIANCE, wi);
-    return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
+        return colour_all(lobes ? 1 : 0);
+    struct colour part = interaction_eval(at, lobes, BSDF_RADIANCE, wi),
+                  all = interaction_eval(at, at->lobes, BSDF_RADIANCE, wi);
+    return colour_make(share_of(part.r, all.r), share_of(part.g, all.g), share_of(part.b, all.b));
 }
 
 /* Photons carry light from a light source through traced lobes to a lobe that receives them. A path that continues
@@ -245,9 +246,9 @@ static void count_shares(struct path *path, const struct path_vertex *vertex, co
     uint32_t traced = bsdf ? vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED) : 0;
     uint32_t receiving = bsdf ? vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS) : 0;
     bool delta = (sample->flags & BSDF_DELTA) != 0;
-    struct vec3 by_traced = delta ? vec3_all(1) : share_of_lobes(vertex, traced, sample->direction);
-    path->thrown = vec3_mul(vec3_add(path->received, path->thrown), by_traced);
-    path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
+    struct colour by_traced = delta ? colour_all(1) : share_of_lobes(vertex, traced, sample->direction);
+    path->thrown = colour_mul(colour_add(path->received, path->thrown), by_traced);
+    path->received = delta ? colour_all(0) : share_of_lobes(vertex, receiving, sample->direction);
 }
 
 /* The ray that continues from a vertex in a medium. */
@@ -285,13 +286,13 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
         else
             path_shares(vertex, vertex->at.lobes, sample.direction, parts->shares);
     }
-    path->weight = vec3_mul(path->weight, sample.weight);
+    path->weight = colour_mul(path->weight, sample.weight);
     path->depth++;
     if (transmits)
         path->radiance_scale *= bsdf->eta * bsdf->eta;
     /* Roulette, or a weight of 0, ends paths that bring nothing. */
     bool plays = path->depth > tracer->roulette_depth;
-    if (plays ? !survives(path, bsdf, u_roulette) : vec3_max_abs(path->weight) == 0)
+    if (plays ? !survives(path, bsdf, u_roulette) : colour_max_abs(path->weight) == 0)
         return watch_end(watch, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
@@ -370,7 +371,7 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
 
 /* The surface's own light. */
 static void add_emission(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
-                         const struct hit *hit, struct vec3 emission) {
+                         const struct hit *hit, struct colour emission) {
     if (path->sight) {
         add_light(state, path, emission);
     } else if (tracer->lights.met) {
@@ -421,7 +422,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     vertex.substitute = bsdf_select(&bsdf, BSDF_FOR_UNSEEN_LIGHTS);
     if (tracer->photon_lights) {
         add_photons(tracer, state, path, &vertex);
-        vertex.thrown = vec3_add(path->received, path->thrown);
+        vertex.thrown = colour_add(path->received, path->thrown);
         watch_stage(watch, path, STAGE_PHOTONS);
     }
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
@@ -432,11 +433,11 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
 /* The camera ray. */
 static void begin(struct path *path, const struct integrator_state *state, const struct ray *ray, uint64_t key) {
     path->ray = *ray;
-    path->weight = vec3_all(1);
-    path->light = vec3_all(0);
+    path->weight = colour_all(1);
+    path->light = colour_all(0);
     path->radiance_scale = 1;
     path->pdf = 0;
-    path->received = path->thrown = vec3_all(0);
+    path->received = path->thrown = colour_all(0);
     path->sight = true;
     path->kind = RAY_CAMERA;
     path->depth = path->holes = 0;
@@ -499,47 +500,47 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
 /* Whether the light that was asked for arrives. */
 static void shadow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                    struct path_shadow *shadow) {
-    struct vec3 arriving = vec3_all(0), seen = vec3_all(0);
+    struct colour arriving = colour_all(0), seen = colour_all(0);
     if (shadow->sent) {
         arriving = path_light_arriving(tracer, state, &path->scatter, shadow);
-        seen = vec3_mul(shadow->scattered, arriving);
-        struct vec3 light = vec3_mul(shadow->weight, seen);
-        path->light = vec3_add(path->light, light);
+        seen = colour_mul(shadow->scattered, arriving);
+        struct colour light = colour_mul(shadow->weight, seen);
+        path->light = colour_add(path->light, light);
         struct path_parts *parts = parts_of(state);
-        if (parts && vec3_max_abs(light) > 0)
+        if (parts && colour_max_abs(light) > 0)
             add_to_groups(parts, shadow->depth + 1, shadow->depth == 0 ? shadow->shares : parts->shares, light);
     }
 #if OBSERVED
-    watch_light(state->observer, &tracer->lights, shadow, vec3_max_abs(arriving) > 0, seen);
+    watch_light(state->observer, &tracer->lights, shadow, colour_max_abs(arriving) > 0, seen);
 #endif
 }
 
 /* If the radiance was limited, each group of light is scaled by the same factor. */
 static void finish_parts(struct integrator_state *state, struct path_parts *parts, double found, double left) {
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
-        struct vec3 light = integrator_clamp_light(state, parts->light[i], (double)FLT_MAX);
-        parts->light[i] = left < found ? vec3_scale(light, left / found) : light;
+        struct colour light = integrator_clamp_light(state, parts->light[i], (double)FLT_MAX);
+        parts->light[i] = left < found ? colour_scale(light, left / found) : light;
     }
-    const struct vec3 *glow = &parts->light[PATH_LIGHT_EMISSION];
-    parts->features[PATH_GLOW] = (float)glow->x;
-    parts->features[PATH_GLOW + 1] = (float)glow->y;
-    parts->features[PATH_GLOW + 2] = (float)glow->z;
+    const struct colour *glow = &parts->light[PATH_LIGHT_EMISSION];
+    parts->features[PATH_GLOW] = (float)glow->r;
+    parts->features[PATH_GLOW + 1] = (float)glow->g;
+    parts->features[PATH_GLOW + 2] = (float)glow->b;
 }
 
 /* The light of the path, which is to be added to its pixel. Limits come last: what is cut off is a property of the
  * whole sample. --clamp keeps the colour; pictures become darker where samples differ much. */
-static struct vec3 finish(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path) {
-    struct vec3 light = integrator_clamp_light(state, path->light, (double)FLT_MAX);
-    double found = vec3_max_abs(light), limit = tracer->clamp > 0 && found > tracer->clamp ? tracer->clamp : found;
+static struct colour finish(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path) {
+    struct colour light = integrator_clamp_light(state, path->light, (double)FLT_MAX);
+    double found = colour_max_abs(light), limit = tracer->clamp > 0 && found > tracer->clamp ? tracer->clamp : found;
     if (limit < found)
-        light = vec3_scale(light, limit / found);
+        light = colour_scale(light, limit / found);
     if (parts_of(state))
-        finish_parts(state, parts_of(state), found, vec3_max_abs(light));
+        finish_parts(state, parts_of(state), found, colour_max_abs(light));
     return light;
 }
 
-struct vec3 PATH(trace)(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                        const struct packet_answer *met, bool ask, uint64_t key) {
+struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                          const struct packet_answer *met, bool ask, uint64_t key) {
     struct path path;
     struct path_shadow to_light;
     struct path_watch *watch = NULL;
@@ -567,7 +568,7 @@ struct vec3 PATH(trace)(const struct path_tracer *tracer, struct integrator_stat
         extend(state, &path);
     }
 #if OBSERVED
-    struct vec3 light = finish(tracer, state, &path);
+    struct colour light = finish(tracer, state, &path);
     watch_path(watch, state->observer, &path);
     return light;
 #else

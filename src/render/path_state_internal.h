@@ -13,13 +13,13 @@
 struct path {
     struct ray ray;
     struct packet_answer met; /* what the ray hits first; primitive WORLD_NOTHING: nothing */
-    struct vec3 weight, light;
+    struct colour weight, light;
     double radiance_scale; /* the factor of all refractions in the weight so far: a product of eta^2, which roulette
                               ignores */
     double pdf;            /* density of the ray's direction by solid angle; 0: the only possible direction */
     /* With photons, fractions of the weight: for paths whose last scattering was by a lobe that receives photons,
      * and for those that were scattered only by traced lobes since then. */
-    struct vec3 received, thrown;
+    struct colour received, thrown;
     struct light_receiver scatter; /* the surface that scattered the current ray */
     struct sampler sampler;
     struct medium_stack media;
@@ -38,9 +38,9 @@ struct path_shadow {
     struct ray ray;         /* in `media` */
     struct medium_stack media;
     struct world_light_sample sample;
-    struct vec3 weight, scattered;        /* of the path; and by the vertex, of unit radiance */
-    int depth;                            /* of the vertex */
-    struct vec3 shares[PATH_SCATTERINGS]; /* with layers: of the light of a vertex of depth 0, as in path_parts */
+    struct colour weight, scattered;        /* of the path; and by the vertex, of unit radiance */
+    int depth;                              /* of the vertex */
+    struct colour shares[PATH_SCATTERINGS]; /* with layers: of the light of a vertex of depth 0, as in path_parts */
 };
 
 #endif

@@ -4,8 +4,8 @@
 #define OBSERVED 0
 #include "render/path_pieces_internal.h"
 
-struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                       const struct packet_answer *met, bool ask, uint64_t key) {
+struct colour path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                         const struct packet_answer *met, bool ask, uint64_t key) {
     if (state->observer)
         return path_trace_observed(tracer, state, ray, met, ask, key);
     if (state->parts)

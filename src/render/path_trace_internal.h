@@ -7,15 +7,15 @@
 
 /* The radiance along a camera ray, clamped to the range of float. ask: what it hits is not known yet; else that is
  * `met`, or nothing for NULL. key: the random key of the ray. */
-struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                       const struct packet_answer *met, bool ask, uint64_t key);
+struct colour path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                         const struct packet_answer *met, bool ask, uint64_t key);
 /* The same for paths that record nothing; light layers and features; and those with an observer
  * (path_pieces_internal.h). */
-struct vec3 path_trace_plain(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                             const struct packet_answer *met, bool ask, uint64_t key);
-struct vec3 path_trace_layers(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
-                              const struct packet_answer *met, bool ask, uint64_t key);
-struct vec3 path_trace_observed(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+struct colour path_trace_plain(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                               const struct packet_answer *met, bool ask, uint64_t key);
+struct colour path_trace_layers(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                                 const struct packet_answer *met, bool ask, uint64_t key);
+struct colour path_trace_observed(const struct path_tracer *tracer, struct integrator_state *state,
+                                  const struct ray *ray, const struct packet_answer *met, bool ask, uint64_t key);
 
 #endif

@@ -11,10 +11,10 @@ enum stage { STAGE_BEFORE_HIT, STAGE_EMISSION, STAGE_PHOTONS, STAGE_DIRECT, STAG
 /* Of a longer path only the first rays. */
 struct path_watch {
     struct watched_ray {
-        struct vec3 weight, light;  /* of the path at the start of the ray */
-        struct vec3 arriving;       /* the weight of the path at the hit */
-        struct vec3 lights[STAGES]; /* the radiance of the path after each stage */
-        double distance;            /* at which a visible light ends the path, or the medium scatters it */
+        struct colour weight, light;  /* of the path at the start of the ray */
+        struct colour arriving;       /* the weight of the path at the hit */
+        struct colour lights[STAGES]; /* the radiance of the path after each stage */
+        double distance;              /* at which a visible light ends the path, or the medium scatters it */
         bool in_medium;
     } rays[64];
     int count;
@@ -62,8 +62,8 @@ static double quotient_of(double part, double all) {
     return all != 0 ? part / all : 0;
 }
 
-static struct vec3 quotient(struct vec3 a, struct vec3 b) {
-    return vec3_make(quotient_of(a.x, b.x), quotient_of(a.y, b.y), quotient_of(a.z, b.z));
+static struct colour quotient(struct colour a, struct colour b) {
+    return colour_make(quotient_of(a.r, b.r), quotient_of(a.g, b.g), quotient_of(a.b, b.b));
 }
 
 /* The ray of the path is its next one. hit: or NULL. */
@@ -82,7 +82,7 @@ static void watch_ray(struct path_watch *watch, const struct observer *observer,
     watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
     watch_arrival(watch, path, 0);
     OBSERVE(observer, OBSERVED_RAY_BEGIN,
-            .begin = {&path->ray, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1)});
+            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1)});
 }
 
 /* The end of the current ray: what its hit adds to the path. */
@@ -90,16 +90,16 @@ static void watch_vertex(struct path_watch *watch, const struct observer *observ
     const struct watched_ray *ray = watched_ray(watch);
     if (!ray)
         return;
-    struct vec3 gains[STAGES];
+    struct colour gains[STAGES];
     for (int i = STAGE_EMISSION; i < STAGES; i++)
-        gains[i] = quotient(vec3_sub(ray->lights[i], ray->lights[i - 1]), ray->arriving);
+        gains[i] = quotient(colour_sub(ray->lights[i], ray->lights[i - 1]), ray->arriving);
     OBSERVE(observer, OBSERVED_VERTEX,
             .vertex = {.end = watch->end,
                        .distance = ray->distance,
                        .in_medium = ray->in_medium,
                        .emission = gains[STAGE_EMISSION],
                        .photons = gains[STAGE_PHOTONS],
-                       .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
+                       .direct = colour_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
                        .has_photons = has_photons});
 }
 
@@ -107,19 +107,19 @@ static void watch_vertex(struct path_watch *watch, const struct observer *observ
 static void watch_path(const struct path_watch *watch, const struct observer *observer, const struct path *path) {
     for (int i = watch->count - 1; i >= 0; i--) {
         const struct watched_ray *ray = &watch->rays[i];
-        struct vec3 before = ray->lights[STAGE_BEFORE_HIT];
+        struct colour before = ray->lights[STAGE_BEFORE_HIT];
         OBSERVE(observer, OBSERVED_RAY_END,
                 .end = {.evaluated = true,
-                        .seen = quotient(vec3_sub(path->light, before), ray->arriving),
+                        .seen = quotient(colour_sub(path->light, before), ray->arriving),
                         .left = quotient(ray->arriving, ray->weight),
-                        .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
-                        .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
+                        .in_scattered = quotient(colour_sub(before, ray->light), ray->weight),
+                        .brings = quotient(colour_sub(path->light, ray->light), ray->weight)});
     }
 }
 
 /* The light that was chosen, and what arrived of it. */
 static void watch_light(const struct observer *observer, const struct world_lights *lights,
-                        const struct path_shadow *shadow, bool arrived, struct vec3 light) {
+                        const struct path_shadow *shadow, bool arrived, struct colour light) {
     if (shadow->part.light == LIGHT_NONE)
         return;
     uint32_t number = shadow->part.light, primitive = lights->emitters[number].primitive;

@@ -41,10 +41,10 @@ static void begin_sample(struct pixel_trace *pixel_trace, const struct pixel_sam
     pixel_trace->light = NULL;
     pixel_trace->mute = 0;
     pixel_trace->kind = RAY_CAMERA;
-    pixel_trace->weight = vec3_all(1);
+    pixel_trace->weight = colour_all(1);
 }
 
-static void end_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *position, struct vec3 colour) {
+static void end_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *position, struct colour colour) {
     int64_t dx = position->x - (int64_t)pixel_trace->x, dy = position->y - (int64_t)pixel_trace->y;
     if (pixel_trace->on)
         pixel_trace->last_sample->colour = colour;
@@ -86,10 +86,10 @@ static void split_rays(struct pixel_trace *pixel_trace, double part) {
         ray->part = part;
 }
 
-static void send_ray(struct pixel_trace *pixel_trace, enum ray_kind kind, struct vec3 weight, enum ray_cut cut) {
+static void send_ray(struct pixel_trace *pixel_trace, enum ray_kind kind, struct colour weight, enum ray_cut cut) {
     struct pixel_trace_ray *from = ray_of(pixel_trace);
     pixel_trace->kind = kind;
-    pixel_trace->weight = vec3_scale(weight, from ? from->part : 1);
+    pixel_trace->weight = colour_scale(weight, from ? from->part : 1);
     struct pixel_trace_ray *ray = from && cut != RAY_FOLLOWED ? add_ray(pixel_trace) : NULL;
     if (ray)
         ray->cut = cut;
@@ -199,7 +199,7 @@ static void count_shadow_rays(struct pixel_trace *pixel_trace, const struct obse
     light->blocker = shadow->blocker;
 }
 
-static void end_light(struct pixel_trace *pixel_trace, struct vec3 colour) {
+static void end_light(struct pixel_trace *pixel_trace, struct colour colour) {
     struct pixel_trace_light *light = light_of(pixel_trace);
     if (light) {
         light->colour = colour;
@@ -245,9 +245,9 @@ static void record_pixel(struct pixel_trace *pixel_trace, const struct observed_
     pixel_trace->samples = pixel->samples;
     for (struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
         sample->counts = sample->number > 0 || pixel->first_counts;
-    pixel_trace->rgb[0] = (float)pixel->colour.x;
-    pixel_trace->rgb[1] = (float)pixel->colour.y;
-    pixel_trace->rgb[2] = (float)pixel->colour.z;
+    pixel_trace->rgb[0] = (float)pixel->colour.r;
+    pixel_trace->rgb[1] = (float)pixel->colour.g;
+    pixel_trace->rgb[2] = (float)pixel->colour.b;
 }
 
 static void notice(void *context, const struct observation *what) {

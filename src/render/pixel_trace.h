@@ -36,11 +36,11 @@ struct pixel_trace_light {
     bool area_light;
     double distance, strength; /* fading times the cone of a spot */
     struct vec3 to_light;      /* unit */
-    struct vec3 reflected;     /* by the lobes, of unit light */
+    struct colour reflected;   /* by the lobes, of unit light */
     uint32_t asked, arrived;   /* shadow rays */
     bool has_blocker;          /* a single shadow ray was stopped */
     uint32_t blocker;          /* by this primitive */
-    struct vec3 colour;        /* of all this in what the surface shows */
+    struct colour colour;      /* of all this in what the surface shows */
     struct pixel_trace_light *next;
 };
 
@@ -51,8 +51,8 @@ struct pixel_trace_ray {
     uint32_t number; /* in the order in which they were begun, from 1 */
     struct vec3 origin, direction;
     double time;
-    double share;       /* upper bound of the fraction of its radiance that arrives in the pixel */
-    struct vec3 weight; /* the factor of its radiance in the surface where it started */
+    double share;         /* upper bound of the fraction of its radiance that arrives in the pixel */
+    struct colour weight; /* the factor of its radiance in the surface where it started */
     uint32_t media_count;
     double media_ior; /* of where it starts */
     /* What it hit: a surface, else a visible light, else the sky. */
@@ -65,7 +65,7 @@ struct pixel_trace_ray {
     double opacity;
     bool shaded; /* bsdf is set */
     struct bsdf bsdf;
-    struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
+    struct colour ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
     bool has_photons;
     bool is_vertex; /* of a path: `vertex` is set, and takes the place of ambient, photons and direct above */
     struct observed_vertex vertex;
@@ -73,7 +73,7 @@ struct pixel_trace_ray {
     struct pixel_trace_ray *first, *last; /* those that it sent on */
     double part;                          /* of their weight, where several share one */
     /* Its radiance: brings = left * seen + in_scattered. */
-    struct vec3 seen, left, in_scattered, brings;
+    struct colour seen, left, in_scattered, brings;
     struct pixel_trace_ray *parent, *next;
 };
 
@@ -81,7 +81,7 @@ struct pixel_trace_sample {
     double x, y;     /* in the picture, pixels */
     uint64_t number; /* 0: the first one */
     bool counts;     /* it is part of the mean */
-    struct vec3 colour;
+    struct colour colour;
     struct pixel_trace_ray *first, *last;
     struct pixel_trace_sample *next;
 };
@@ -92,7 +92,7 @@ struct pixel_trace {
     uint32_t x, y; /* the pixel of the whole picture */
     /* What render_pixel found out. first[1 + dy][1 + dx]: first samples of the pixel and its neighbours, where
      * known. */
-    struct vec3 first[3][3];
+    struct colour first[3][3];
     bool known[3][3];
     bool full;                 /* every pixel is sampled again */
     bool marked;               /* this one was */
@@ -106,9 +106,9 @@ struct pixel_trace {
     bool on; /* a sample of the pixel itself is being traced */
     struct pixel_trace_ray *ray;
     struct pixel_trace_light *light;
-    uint32_t mute;      /* number of rays in progress that are not printed */
-    enum ray_kind kind; /* of the next ray */
-    struct vec3 weight; /* of the next ray */
+    uint32_t mute;        /* number of rays in progress that are not printed */
+    enum ray_kind kind;   /* of the next ray */
+    struct colour weight; /* of the next ray */
 };
 
 /* The trace stays where it is until it is destroyed: its observer points to it. */

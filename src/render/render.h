@@ -19,7 +19,7 @@ struct render_job {
     struct camera camera;
     struct settings settings;
     uint32_t width, height; /* of the whole picture */
-    struct vec3 ambient;
+    struct colour ambient;
     bool background_lights;          /* the script chose the sky of the world: paths take its light */
     struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */

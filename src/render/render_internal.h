@@ -16,7 +16,7 @@
 /* Samples that are traced together, in the order in which they are wanted. */
 struct batch {
     struct pixel_sample positions[PACKET_RAYS];
-    struct vec3 colours[PACKET_RAYS];
+    struct colour colours[PACKET_RAYS];
     double seen_through[PACKET_RAYS]; /* of integrator_state */
     struct path_parts *parts;         /* or NULL; PACKET_RAYS of them */
     struct camera_hit *camera_hits;   /* the same */

@@ -22,15 +22,15 @@ bool renderer_middle_ray(const struct renderer *renderer, double x, double y, st
     return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
 }
 
-static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
-                                  uint64_t key) {
+static struct colour trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
+                                    uint64_t key) {
     ray->footprint.spread *= share;
     ray->footprint.width *= share;
     worker->camera_rays++;
     if (renderer->medium_stack_by_ray) {
         world_medium_stack(renderer->job->world,
-                        &(struct inside_query){ray->origin, ray->time, renderer->closed, renderer->closed_count},
-                        &worker->scratch, &worker->ray_medium_stack);
+                           &(struct inside_query){ray->origin, ray->time, renderer->closed, renderer->closed_count},
+                           &worker->scratch, &worker->ray_medium_stack);
         worker->state.eye_medium_stack = &worker->ray_medium_stack;
     }
     return integrator_radiance(renderer, worker, ray, key);
@@ -44,21 +44,21 @@ static struct path_parts parts_of_eyes(const struct path_parts *left, const stru
         both.features[PATH_GLOW + channel] = right->features[PATH_GLOW + channel];
     }
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
-        both.light[i] = vec3_make(left->light[i].x, right->light[i].y, right->light[i].z);
+        both.light[i] = colour_make(left->light[i].r, right->light[i].g, right->light[i].b);
     return both;
 }
 
 /* Through a lens, in another projection, for two eyes. */
-static struct vec3 sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
-                                  struct sample2 at, double time, double share) {
+static struct colour sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
+                                    struct sample2 at, double time, double share) {
     const struct sampler sampler = worker->state.sampler;
     struct sample2 position = sampler_lens(&sampler);
     struct ray ray, right_ray;
     bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
     if (!camera_ray_through(camera, at.x, at.y, position, anaglyph ? -1 : 0, &ray))
-        return vec3_all(0);
+        return colour_all(0);
     ray.time = time;
-    struct vec3 colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
+    struct colour colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
     if (!anaglyph)
         return colour;
     (void)camera_ray_through(camera, at.x, at.y, position, 1, &right_ray);
@@ -68,11 +68,11 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
         left_parts = *parts;
         *parts = (struct path_parts){0};
     }
-    struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
+    struct colour right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
     if (parts)
         *parts = parts_of_eyes(&left_parts, parts);
     worker->state.seen_through /= 2;
-    return vec3_make(colour.x, right.y, right.z);
+    return colour_make(colour.r, right.g, right.b);
 }
 
 /* The strata of sample i of a batch, and the hit of its camera ray. */
@@ -112,8 +112,8 @@ static double sample_share(const struct renderer *renderer, uint64_t number) {
     return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
 }
 
-static struct vec3 sample_single(struct renderer *renderer, struct worker *worker,
-                                 const struct pixel_sample *position) {
+static struct colour sample_single(struct renderer *renderer, struct worker *worker,
+                                   const struct pixel_sample *position) {
     begin_sample(renderer, worker, position);
     double x = (double)position->x + position->dx, y = (double)position->y + position->dy,
            share = sample_share(renderer, position->number);
@@ -124,7 +124,7 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
         struct error error;
         camera = &worker->camera;
         if (!renderer_prepare_at(renderer->job, time, &worker->camera, warning, &error))
-            return vec3_all(0); /* the one moment in which a view turns through zero */
+            return colour_all(0); /* the one moment in which a view turns through zero */
     }
     if (!camera_is_plain(camera))
         return sample_through(renderer, worker, camera, (struct sample2){x, y}, time, share);
@@ -133,9 +133,9 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
     return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);
 }
 
-struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
+struct colour renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
     OBSERVE(worker->state.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = position);
-    struct vec3 colour = sample_single(renderer, worker, position);
+    struct colour colour = sample_single(renderer, worker, position);
     OBSERVE(worker->state.observer, OBSERVED_SAMPLE_END, .sample = {position, colour});
     return colour;
 }

@@ -11,7 +11,7 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
 bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
-struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
+struct colour renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
 /* The samples of a batch, equal to those of renderer_sample. The hits of the camera rays are found together. */
 void renderer_sample_batch(struct renderer *renderer, struct worker *worker);
 

@@ -124,11 +124,11 @@ static bool shows_without_light(const struct check *check) {
     bool paths = job->settings.integrator == INTEGRATOR_PATH;
     bool sky = !sky_is_black(&world->sky) && (!paths || job->background_lights);
     if (job->settings.style == STYLE_INK || medium_brightest(world_outside(world)) > 0 || world_outside(world)->fog ||
-        world->emission_bound > 0 || (paths && sky) || (!paths && vec3_max_abs(job->ambient) > 0))
+        world->emission_bound > 0 || (paths && sky) || (!paths && colour_max_abs(job->ambient) > 0))
         return true;
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct surface_material *material = &world->surfaces.materials[i];
-        if (material->phong.unlit || vec3_max_abs(surface_emission_bound(&world->surfaces, material)) > 0 ||
+        if (material->phong.unlit || colour_max_abs(surface_emission_bound(&world->surfaces, material)) > 0 ||
             (sky && surface_specular(material) > 0))
             return true;
     }
@@ -164,7 +164,7 @@ static const char *lone_input(const struct surface_material *material, const cha
     *needs = "refract";
     if (numbers->has_ior && numbers->ior != 1 && !mirrors && !refracts)
         return "ior";
-    if (vec3_max_abs(numbers->absorption) > 0 && !refracts)
+    if (colour_max_abs(numbers->absorption) > 0 && !refracts)
         return "absorption";
     *needs = "reflect or refract";
     return numbers->roughness > 0 && !mirrors && !refracts ? "roughness" : NULL;
@@ -242,7 +242,7 @@ static bool is_room(const struct world *world, uint32_t solid) {
         return false;
     const struct surface_material *material = &world->surfaces.materials[prototype->material];
     return material->phong.two_sided || material->phong.unlit ||
-           vec3_max_abs(surface_emission_bound(&world->surfaces, material)) > 0;
+           colour_max_abs(surface_emission_bound(&world->surfaces, material)) > 0;
 }
 
 static void check_insides(struct check *check) {

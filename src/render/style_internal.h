@@ -14,6 +14,6 @@
  * 0.2 kd, warm = (0.4, 0.4, 0) + 0.6 kd. No shadows. Of several lights t is the mean, weighted by their light at the
  * point; without lights l is the direction to the viewer.
  * INK: white. */
-struct vec3 style_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
+struct colour style_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
 
 #endif

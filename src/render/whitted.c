@@ -14,9 +14,9 @@
 
 /* --- the cut-off of rays --- */
 
-static double largest(struct vec3 c) {
-    double max = c.x > c.y ? c.x : c.y;
-    return c.z > max ? c.z : max;
+static double largest(struct colour c) {
+    double max = c.r > c.g ? c.r : c.g;
+    return c.b > max ? c.b : max;
 }
 
 /* The squared distance of two colours is never larger: with these tolerances no pixel is marked. */
@@ -129,19 +129,19 @@ static double clamp01(double c) {
 }
 
 /* The difference in the picture file counts. */
-static struct vec3 toned(const struct tone *tone, struct vec3 c) {
+static struct colour toned(const struct tone *tone, struct colour c) {
     if (tone_is_plain(tone))
         return c;
-    return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
+    return colour_make(tone_apply(tone, c.r), tone_apply(tone, c.g), tone_apply(tone, c.b));
 }
 
-static struct vec3 clamped(struct vec3 c) {
-    return vec3_make(clamp01(c.x), clamp01(c.y), clamp01(c.z));
+static struct colour clamped(struct colour c) {
+    return colour_make(clamp01(c.r), clamp01(c.g), clamp01(c.b));
 }
 
-static double squared_distance(struct vec3 a, struct vec3 b) {
-    struct vec3 d = vec3_sub(clamped(a), clamped(b));
-    return vec3_dot(d, d);
+static double squared_distance(struct colour a, struct colour b) {
+    struct colour d = colour_sub(clamped(a), clamped(b));
+    return colour_dot(d, d);
 }
 
 /* The fraction of the tolerances for colours on different surfaces, and for a colour compared with the mean of two
@@ -165,7 +165,7 @@ static size_t index_of(const struct part *part, int64_t x, int64_t y) {
     return (size_t)(y - part->area.y0) * (FILM_TILE + 2) + (size_t)(x - part->area.x0);
 }
 
-static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
+static struct colour *first_at(const struct part *part, int64_t x, int64_t y) {
     return &part->own->first[index_of(part, x, y)];
 }
 
@@ -210,7 +210,7 @@ static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y
     const struct tone *tone = &part->renderer->job->settings.tone;
     const struct film_rectangle *area = &part->area;
     const struct camera_hit *hits = part->own->hits;
-    struct vec3 own = toned(tone, *first_at(part, x, y));
+    struct colour own = toned(tone, *first_at(part, x, y));
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
             int64_t nx = x + dx, ny = y + dy;
@@ -238,16 +238,16 @@ static bool has_detail(const struct part *part, int64_t x, int64_t y, struct obs
     static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
     const struct tone *tone = &part->renderer->job->settings.tone;
     const struct film_rectangle *area = &part->area;
-    struct vec3 own = toned(tone, *first_at(part, x, y));
+    struct colour own = toned(tone, *first_at(part, x, y));
     for (int i = 0; i < 4; i++) {
         int dx = steps[i][0], dy = steps[i][1];
         double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
         if (!is_fine(part, tolerance) || (dx != 0 && (x == area->x0 || x == area->x1 - 1)) ||
             (dy != 0 && (y == area->y0 || y == area->y1 - 1)))
             continue;
-        struct vec3 a = clamped(toned(tone, *first_at(part, x - dx, y - dy))),
-                    b = clamped(toned(tone, *first_at(part, x + dx, y + dy)));
-        double distance = squared_distance(own, vec3_scale(vec3_add(a, b), 0.5));
+        struct colour a = clamped(toned(tone, *first_at(part, x - dx, y - dy))),
+                      b = clamped(toned(tone, *first_at(part, x + dx, y + dy)));
+        double distance = squared_distance(own, colour_scale(colour_add(a, b), 0.5));
         *mark = (struct observed_mark){MARK_DETAIL, dx, dy, distance, fine};
         if (distance > fine)
             return true;
@@ -328,14 +328,14 @@ static struct pixel_sample sample_of_pattern(const struct pixel_pattern *pattern
 
 /* Mean of the N x N samples, weighted by the filter; where one of them is the first sample again it is not traced
  * twice. *seen_through: of the first sample, then their mean. */
-static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first,
-                               double *seen_through) {
+static struct colour all_samples(const struct part *part, int64_t x, int64_t y, const struct colour *first,
+                                 double *seen_through) {
     struct renderer *renderer = part->renderer;
     int n = renderer->job->settings.samples;
     struct pixel_pattern pattern = pattern_of(part->whitted, renderer, x, y);
     bool reuse = pattern.first_counts;
     struct batch *batch = &part->worker->batch;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     double weights = 0, through = 0;
     int centre = reuse ? n / 2 * n + n / 2 : -1;
     for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
@@ -355,12 +355,12 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
             bool is_first = k == centre && first;
             double weight = is_first ? 1 : batch->positions[next].weight;
             through += weight * (is_first ? *seen_through : batch->seen_through[next]);
-            sum = vec3_add(sum, vec3_scale(is_first ? *first : batch->colours[next++], weight));
+            sum = colour_add(sum, colour_scale(is_first ? *first : batch->colours[next++], weight));
             weights += weight;
         }
     }
     *seen_through = clamp01(through / weights);
-    return vec3_scale(sum, 1 / weights);
+    return colour_scale(sum, 1 / weights);
 }
 
 void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
@@ -383,10 +383,10 @@ void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, st
 
 /* --- the two passes --- */
 
-static void store(float out[3], struct vec3 colour) {
-    out[0] = (float)colour.x;
-    out[1] = (float)colour.y;
-    out[2] = (float)colour.z;
+static void store(float out[3], struct colour colour) {
+    out[0] = (float)colour.r;
+    out[1] = (float)colour.g;
+    out[2] = (float)colour.b;
 }
 
 static void store_alpha(const struct part *part, size_t at, double alpha) {
@@ -398,15 +398,15 @@ static void store_alpha(const struct part *part, size_t at, double alpha) {
 static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     struct film *film = part->renderer->job->film;
     size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
-    const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
+    const struct colour *first = part->has_first ? first_at(part, x, y) : NULL;
     bool full = part->whitted->full, marked = full || is_marked(part, x, y);
     double through = first ? part->own->seen_through[index_of(part, x, y)] : 0;
-    struct vec3 colour = marked ? all_samples(part, x, y, first, &through) : *first;
+    struct colour colour = marked ? all_samples(part, x, y, first, &through) : *first;
     double line = contour_coverage(&part->own->contour, x, y);
-    struct vec3 first_colour = first ? *first : colour;
+    struct colour first_colour = first ? *first : colour;
     if (line > 0) {
-        colour = vec3_scale(colour, 1 - line);
-        first_colour = vec3_scale(first_colour, 1 - line);
+        colour = colour_scale(colour, 1 - line);
+        first_colour = colour_scale(first_colour, 1 - line);
     }
     store(film->pixels[at].rgb, colour);
     store(&film->floats[at * film->record.floats], first_colour);
@@ -467,7 +467,7 @@ static void finish_late(struct part *part, const struct film_rectangle *rows, bo
             for (int64_t i = 0; i < (x1 - x0) * (y1 - y0); i++) {
                 int64_t x = x0 + i % (x1 - x0), y = y0 + i / (x1 - x0);
                 size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
-                struct vec3 colour = has_first ? *first_at(part, x, y) : batch->colours[0];
+                struct colour colour = has_first ? *first_at(part, x, y) : batch->colours[0];
                 store(film->pixels[at].rgb, colour);
                 store(&film->floats[at * film->record.floats], colour);
                 store_alpha(part, at,

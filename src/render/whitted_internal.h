@@ -15,7 +15,7 @@
 struct whitted_worker {
     uint64_t marked, late; /* pixels; late: after the time limit, with fewer samples */
     /* The first samples of a tile and its rim. */
-    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+    struct colour first[(FILM_TILE + 2) * (FILM_TILE + 2)];
     double seen_through[(FILM_TILE + 2) * (FILM_TILE + 2)];
     struct camera_hit hits[(FILM_TILE + 2) * (FILM_TILE + 2)]; /* AA_ROTATED */
     struct camera_hit patch[PACKET_RAYS];

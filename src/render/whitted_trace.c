@@ -21,7 +21,7 @@ struct path {
     int holes;                    /* went through so far */
 };
 
-static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
+static struct colour trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
 
 /* The nearest visible light before t_max, or NULL. */
 static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
@@ -55,7 +55,7 @@ static struct path path_on(const struct path *path, double share) {
 }
 
 /* Whether the result of a ray is negligible. */
-static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
+static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct colour filter,
                         const struct path *path) {
     enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
     OBSERVE(state->observer, OBSERVED_RAY_SENT, .sent = {kind, filter, cut});
@@ -70,15 +70,15 @@ struct surface_point {
 };
 
 /* The radiance from a direction, times its weight. What cannot change the pixel by the cut-off is not followed. */
-static struct vec3 follow(struct integrator_state *state, const struct surface_point *at,
-                          const struct bsdf_branch_direction *towards, const struct path *from) {
+static struct colour follow(struct integrator_state *state, const struct surface_point *at,
+                            const struct bsdf_branch_direction *towards, const struct path *from) {
     const struct settings *settings = &state->job->settings;
-    struct vec3 filter = towards->weight;
+    struct colour filter = towards->weight;
     bool transmits = towards->transmits;
-    struct path path = path_on(from, vec3_max_abs(filter));
+    struct path path = path_on(from, colour_max_abs(filter));
     bool limit = transmits ? path.refractions >= settings->refract_limit : path.reflections >= settings->reflect_limit;
     if (is_given_up(state, transmits ? RAY_REFRACTED : RAY_REFLECTED, limit, filter, &path))
-        return vec3_all(0);
+        return colour_all(0);
     /* Behind the surface the ray is in other media; each branch has random numbers of its own. */
     struct ray onward = hit_ray(at->hit, at->ray, towards->direction, at->ray->media);
     struct medium_stack behind;
@@ -94,26 +94,26 @@ static struct vec3 follow(struct integrator_state *state, const struct surface_p
         path.key = sampler_branch(path.key, SAMPLER_REFLECTED);
         path.reflections++;
     }
-    return vec3_mul(filter, trace(state, &onward, &path));
+    return colour_mul(filter, trace(state, &onward, &path));
 }
 
-static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
-                                 const struct path *from) {
+static struct colour follow_branch(struct integrator_state *state, const struct surface_point *at,
+                                   const struct bsdf_branch *branch, const struct bsdf_draw *position,
+                                   const struct path *from) {
     struct bsdf_branch_direction sampled;
     if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
-        return vec3_all(0);
+        return colour_all(0);
     return follow(state, at, &sampled, from);
 }
 
 /* The light through the holes of a surface (an opacity texture of leaves): the ray continues
  * unchanged. Bounded, since every hole is a deeper call. */
-static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct joint *joint,
-                               const struct ray *ray, double share, const struct path *from) {
+static struct colour follow_hole(struct integrator_state *state, const struct hit *hit, const struct joint *joint,
+                                 const struct ray *ray, double share, const struct path *from) {
     enum { HOLE_LIMIT = 200 };
     struct path path = path_on(from, share);
-    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
-        return vec3_all(0);
+    if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, colour_all(share), &path))
+        return colour_all(0);
     struct ray onward = joint_ray_through_hole(joint, hit, ray, ray->media);
     struct medium_stack behind;
     if (hit->solid != SOLID_NONE) {
@@ -124,19 +124,19 @@ static struct vec3 follow_hole(struct integrator_state *state, const struct hit 
     state->refracted_rays++;
     path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;
-    return vec3_scale(trace(state, &onward, &path), share);
+    return colour_scale(trace(state, &onward, &path), share);
 }
 
 enum { GLOSSY_SAMPLES = 4 };
 
 /* A rough surface: the mean over facets of what each reflects and refracts. */
-static struct vec3 follow_rough(struct integrator_state *state, const struct surface_point *at,
-                                const struct bsdf_branch *branches, int count, const struct path *path) {
+static struct colour follow_rough(struct integrator_state *state, const struct surface_point *at,
+                                  const struct bsdf_branch *branches, int count, const struct path *path) {
     bool coarse = path->rough || state->job->settings.coarse;
     uint32_t n = coarse ? 1 : at->bsdf->glossy_samples ? (uint32_t)at->bsdf->glossy_samples : GLOSSY_SAMPLES;
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
     struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
         struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
@@ -145,10 +145,10 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
         branch.rough = true;
         for (int i = 0; i < count; i++) {
             if (branches[i].rough)
-                sum = vec3_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
+                sum = colour_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
         }
     }
-    return vec3_scale(sum, 1 / ((double)n * (double)n));
+    return colour_scale(sum, 1 / ((double)n * (double)n));
 }
 
 /* --- layered materials --- */
@@ -184,7 +184,7 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
             if (!branches[i].rough ||
                 !bsdf_branch_sample(at->bsdf, &branches[i], at->hit->view, &position, &found->towards))
                 continue;
-            found->weight = vec3_max_abs(found->towards.weight);
+            found->weight = colour_max_abs(found->towards.weight);
             found->branch = i;
             found->key = sampler_facet(facets->key, cell);
             sums[i] += found->weight;
@@ -195,10 +195,10 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
     for (int i = 0; i < out->count; i++) {
         struct candidate *found = &out->all[i];
         const struct bsdf_branch *branch = &branches[found->branch];
-        double all = bsdf_branch_is_known(at->bsdf, branch) ? branch->expected * vec3_max_abs(branch->weight) * cells
+        double all = bsdf_branch_is_known(at->bsdf, branch) ? branch->expected * colour_max_abs(branch->weight) * cells
                                                             : sums[found->branch];
         double scale = part * all / sums[found->branch];
-        found->towards.weight = vec3_scale(found->towards.weight, scale);
+        found->towards.weight = colour_scale(found->towards.weight, scale);
         found->weight *= scale;
         out->weight += found->weight;
     }
@@ -207,30 +207,30 @@ static void find_candidates(const struct surface_point *at, const struct bsdf_br
 /* Of `rays` places at equal distances in the sum of all weights, the candidates that are there, by their weight over
  * their chance. The mean over all first places is the sum of all candidates (J. Talbot, D. Cline and P. Egbert,
  * "Importance Resampling for Global Illumination", EGSR 2005). */
-static struct vec3 follow_candidates(struct integrator_state *state, const struct surface_point *at,
-                                     const struct candidates *from, uint32_t rays, const struct path *path) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour follow_candidates(struct integrator_state *state, const struct surface_point *at,
+                                       const struct candidates *from, uint32_t rays, const struct path *path) {
+    struct colour sum = {0, 0, 0};
     uint32_t sent = 0; /* the step may underflow */
     double step = from->weight / rays, next = step * random_unit(random_mix(path->key)), passed = 0;
     for (int i = 0; i < from->count; i++) {
         struct bsdf_branch_direction towards = from->all[i].towards;
-        towards.weight = vec3_scale(towards.weight, from->weight / from->all[i].weight);
+        towards.weight = colour_scale(towards.weight, from->weight / from->all[i].weight);
         passed += from->all[i].weight;
         for (uint64_t k = 0; next < passed && sent < rays; next += step, k++, sent++) {
             struct path branch = path_on(path, 1);
             branch.key = random_combine(from->all[i].key, k);
             branch.rough = true;
-            sum = vec3_add(sum, follow(state, at, &towards, &branch));
+            sum = colour_add(sum, follow(state, at, &towards, &branch));
         }
     }
-    return vec3_scale(sum, 1.0 / rays);
+    return colour_scale(sum, 1.0 / rays);
 }
 
 /* The share of light in the rough branches. */
 static double rough_share(const struct bsdf_branch *branches, int count) {
     double share = 0;
     for (int i = 0; i < count; i++)
-        share += branches[i].rough ? branches[i].expected * vec3_max_abs(branches[i].weight) : 0;
+        share += branches[i].rough ? branches[i].expected * colour_max_abs(branches[i].weight) : 0;
     return share;
 }
 
@@ -242,8 +242,8 @@ static bool is_divided(const struct bsdf *bsdf, const struct bsdf_branch *rough,
 /* All rough branches of a layered material: as many rays as their share of light justifies, which the samples of a
  * pixel divide among them. After a rough surface there is one ray, with a chance (Russian roulette: J. Arvo and D.
  * Kirk, "Particle Transport and Image Synthesis", SIGGRAPH 1990). */
-static struct vec3 follow_layers(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branches, int count, const struct path *path) {
+static struct colour follow_layers(struct integrator_state *state, const struct surface_point *at,
+                                   const struct bsdf_branch *branches, int count, const struct path *path) {
     const double side = at->bsdf->glossy_samples ? at->bsdf->glossy_samples : GLOSSY_SAMPLES, all = side * side;
     const double share = rough_share(branches, count);
     const bool is_coarse = path->rough || state->job->settings.coarse;
@@ -252,7 +252,7 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
     const uint32_t n = (uint32_t)fmax(2, ceil(sqrt(rays))), cells = n * n;
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
     struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
         return sum;
     /* In batches of cells, each with its share of the rays. Deep paths have few cells, so their stack stays small. */
@@ -265,17 +265,17 @@ static struct vec3 follow_layers(struct integrator_state *state, const struct su
         candidates.end = cells - candidates.begin < batch ? cells : candidates.begin + batch;
         find_candidates(at, branches, count, &facets, &candidates);
         double here = fmax(1, floor(rays * (candidates.end - candidates.begin) / cells));
-        sum = vec3_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
+        sum = colour_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
     }
-    return vec3_scale(sum, 1 / chance);
+    return colour_scale(sum, 1 / chance);
 }
 
 /* --- one hit --- */
 
-static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
+static struct colour shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
     OBSERVE(state->observer, OBSERVED_SURFACE, .surface = at->bsdf);
-    struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
-    colour = vec3_add(colour, at->bsdf->emission);
+    struct colour colour = style_light(state, at->hit, at->bsdf, path->key);
+    colour = colour_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
     const struct bsdf_draw smooth = {.facet = at->bsdf->side};
     int count = bsdf_branches(at->bsdf, branches);
@@ -284,16 +284,16 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
         if (branches[i].rough)
             rough = &branches[i];
         else
-            colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
+            colour = colour_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
     }
     if (!rough)
         return colour;
-    return vec3_add(
+    return colour_add(
         colour, (is_divided(at->bsdf, rough, path) ? follow_layers : follow_rough)(state, at, branches, count, path));
 }
 
-static struct vec3 shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                             const struct joint *joint, const struct path *path) {
+static struct colour shade_hit(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                               const struct joint *joint, const struct path *path) {
     const struct settings *settings = &state->job->settings;
     const struct world *world = state->job->world;
     const struct material_context context = {.specular = settings->specular,
@@ -310,16 +310,16 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     double hole = 1 - bsdf.opacity;
     if (!(hole > 0))
         return shade(state, &at, path);
-    struct vec3 behind = follow_hole(state, hit, joint, ray, hole, path);
+    struct colour behind = follow_hole(state, hit, joint, ray, hole, path);
     if (hole >= 1)
         return behind;
     struct path covered = path_on(path, bsdf.opacity);
-    return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
+    return colour_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
 }
 
 /* The radiance of a ray with its hit, or NULL. */
-static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
-                                     const struct joint *joint, const struct path *path) {
+static struct colour incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
+                                       const struct joint *joint, const struct path *path) {
     const struct world *world = state->job->world;
     bool met = hit != NULL;
     struct light_hit area_light_hit;
@@ -331,17 +331,17 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     struct medium_effect air;
     struct path dimmed;
     bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
-    struct vec3 left = air.transmittance;
+    struct colour left = air.transmittance;
     OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
     if (affected) {
-        dimmed = path_on(path, vec3_max_abs(left));
+        dimmed = path_on(path, colour_max_abs(left));
         path = &dimmed;
     }
 
-    struct vec3 colour = {0, 0, 0}, seen, in_scattered = air.added;
+    struct colour colour = {0, 0, 0}, seen, in_scattered = air.added;
     bool looked = !(path->weight < path->cutoff);
     if (!looked) {
-        left = vec3_all(0);
+        left = colour_all(0);
         in_scattered = air.source;
     } else if (area_light)
         colour = light_emitted(area_light, ray, &area_light_hit);
@@ -353,7 +353,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
     if (affected)
-        colour = vec3_add(vec3_mul(colour, left), in_scattered);
+        colour = colour_add(colour_mul(colour, left), in_scattered);
     colour = integrator_clamp_light(state, colour, light_limit);
     OBSERVE(state->observer, OBSERVED_RAY_END, .end = {looked, seen, left, in_scattered, colour});
     return colour;
@@ -368,9 +368,9 @@ static void record_hit(const struct world *world, const struct hit *hit, struct 
 }
 
 /* The same for a ray that hits a primitive which touches others. */
-static __attribute__((noinline)) struct vec3 joined_radiance(struct integrator_state *state, const struct ray *ray,
-                                                             struct hit *hit, const struct path *path,
-                                                             struct camera_hit *record) {
+static __attribute__((noinline)) struct colour joined_radiance(struct integrator_state *state, const struct ray *ray,
+                                                               struct hit *hit, const struct path *path,
+                                                               struct camera_hit *record) {
     struct joint joint;
     bool met = world_join(state->job->world, ray, state->scratch, hit, &joint);
     if (met && record)
@@ -379,8 +379,8 @@ static __attribute__((noinline)) struct vec3 joined_radiance(struct integrator_s
 }
 
 /* The radiance of a ray that has met a surface, or NULL. record: where a hit is noted, or NULL. */
-static inline struct vec3 radiance_of(struct integrator_state *state, const struct ray *ray, struct hit *hit,
-                                      const struct path *path, struct camera_hit *record) {
+static inline struct colour radiance_of(struct integrator_state *state, const struct ray *ray, struct hit *hit,
+                                        const struct path *path, struct camera_hit *record) {
     static const struct joint single = {.joined = JOINED_NOT};
     if (hit && world_touches(state->job->world, hit))
         return joined_radiance(state, ray, hit, path, record);
@@ -389,18 +389,18 @@ static inline struct vec3 radiance_of(struct integrator_state *state, const stru
     return incident_radiance(state, ray, hit, &single, path);
 }
 
-static inline __attribute__((always_inline)) struct vec3 trace(struct integrator_state *state, const struct ray *ray,
-                                                               const struct path *path) {
+static inline __attribute__((always_inline)) struct colour trace(struct integrator_state *state, const struct ray *ray,
+                                                                 const struct path *path) {
     struct hit hit;
     if (integrator_cancelled(state))
-        return vec3_all(0); /* deep paths through glass grow exponentially */
+        return colour_all(0); /* deep paths through glass grow exponentially */
     bool met = world_nearest_surface(state->job->world, ray, state->scratch, &hit);
     return radiance_of(state, ray, met ? &hit : NULL, path, NULL);
 }
 
 /* The light of a camera ray that starts in the media of the eye. met: its hit, or NULL. ask: it is not known yet. */
-static struct vec3 camera_light(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                                const struct packet_answer *met, bool ask, uint64_t key) {
+static struct colour camera_light(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                                  const struct packet_answer *met, bool ask, uint64_t key) {
     const struct world *world = state->job->world;
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     struct ray from_eye = *ray;
@@ -408,23 +408,23 @@ static struct vec3 camera_light(const struct whitted *whitted, struct integrator
     bool found = met;
     from_eye.media = state->eye_medium_stack;
     if (state->job->settings.style == STYLE_INK) /* a drawing of lines alone */
-        return vec3_all(1);
+        return colour_all(1);
     if (integrator_cancelled(state))
-        return vec3_all(0);
+        return colour_all(0);
     if (ask)
         found = world_nearest_surface(world, &from_eye, state->scratch, &hit);
     else if (met)
         world_describe(world, &from_eye, met->primitive, &met->crossing, &hit);
-    struct vec3 light = radiance_of(state, &from_eye, found ? &hit : NULL, &path, state->camera_hit);
+    struct colour light = radiance_of(state, &from_eye, found ? &hit : NULL, &path, state->camera_hit);
     return integrator_clamp_light(state, light, (double)FLT_MAX);
 }
 
-struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                          uint64_t key) {
+struct colour whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                            uint64_t key) {
     return camera_light(whitted, state, ray, NULL, true, key);
 }
 
-struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
-                              const struct packet_answer *met, uint64_t key) {
+struct colour whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                                const struct packet_answer *met, uint64_t key) {
     return camera_light(whitted, state, ray, met, false, key);
 }

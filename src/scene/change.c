@@ -15,9 +15,9 @@ const char *added_kind_name(enum added_kind kind) {
     return names[kind];
 }
 
-struct material added_material(struct vec3 colour) {
+struct material added_material(struct colour colour) {
     return (struct material){
-        .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = colour, .ks = vec3_all(0.3), .shininess = 30, .ior = 1}};
+        .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = colour, .ks = colour_all(0.3), .shininess = 30, .ior = 1}};
 }
 
 /* The key that distinguishes changes of one kind. */
@@ -224,6 +224,10 @@ static struct vec3 three(const double *numbers) {
     return vec3_make(numbers[0], numbers[1], numbers[2]);
 }
 
+static struct colour colour_of(const double *numbers) {
+    return colour_make(numbers[0], numbers[1], numbers[2]);
+}
+
 static struct shape shape_of(enum added_kind kind) {
     switch (kind) {
     case ADDED_CUBE:
@@ -261,7 +265,7 @@ static bool make_node(struct change_application *l, struct node *source, struct 
     made->material = material;
     if (source)
         return node_add_child(l->scene, node, source, l->error);
-    material->phong = added_material(three(change->numbers)).phong;
+    material->phong = added_material(colour_of(change->numbers)).phong;
     material->serial = UINT32_MAX - change->number;
     node->material = material;
     node->shape = shape_of(change->added);
@@ -287,7 +291,7 @@ static struct node *new_node(struct change_application *l, struct node *source) 
         l->scene->added = made;
     }
     if (made->material)
-        made->material->phong.kd = three(change->numbers);
+        made->material->phong.kd = colour_of(change->numbers);
     return made->node;
 }
 
@@ -407,7 +411,7 @@ static void change_light(struct change_application *l) {
     struct scene_light *changed = &l->out->lights[l->change->serial - 1];
     struct light *light = &changed->light;
     if (l->change->kind == CHANGE_DARK) {
-        light->colour = vec3_all(0);
+        light->colour = colour_all(0);
         light->visible = false;
         return;
     }
@@ -417,13 +421,14 @@ static void change_light(struct change_application *l) {
         light_turn_sky(light, numbers + TURN_AT, &changed->sky_turn);
     }
     if (l->change->colours)
-        light->colour = three(numbers + COLOUR_AT);
-    light->colour = vec3_mul(light->colour, three(numbers + 3));
+        light->colour = colour_of(numbers + COLOUR_AT);
+    light->colour = colour_mul(light->colour, colour_of(numbers + 3));
 }
 
 /* A copy of a light that no longer exists is black, so that those after it keep their numbers. */
 static void add_light(struct change_application *l) {
-    struct vec3 first = three(l->change->numbers), second = three(l->change->numbers + 3);
+    struct vec3 first = three(l->change->numbers);
+    struct colour second = colour_of(l->change->numbers + 3);
     uint32_t number = l->out->light_count++, like = l->change->source;
     struct light *light = &l->out->lights[number].light;
     *light = (struct light){.kind = LIGHT_POINT, .falloff = {1, 0, 0}};
@@ -433,7 +438,7 @@ static void add_light(struct change_application *l) {
     } else if (like <= number) {
         l->out->lights[number] = l->out->lights[like - 1];
         light_move(light, first);
-        light->colour = vec3_mul(light->colour, second);
+        light->colour = colour_mul(light->colour, second);
     } else {
         report_missing(l, "a copy of the light", like);
     }

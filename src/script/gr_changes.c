@@ -50,6 +50,12 @@ static struct change *note(struct script_context *context, enum change_kind kind
     return change;
 }
 
+static void put_colour(double *numbers, struct colour c) {
+    numbers[0] = c.r;
+    numbers[1] = c.g;
+    numbers[2] = c.b;
+}
+
 static void put(double *numbers, struct vec3 v) {
     numbers[0] = v.x;
     numbers[1] = v.y;
@@ -115,7 +121,7 @@ static bool gr_change_add(struct script_context *context, const struct script_va
     change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice;
     change->number = script_of(context)->changes.added++;
     change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
-    put(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].vector : vec3_all(0.7));
+    put_colour(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].colour : colour_all(0.7));
     return true;
 }
 
@@ -131,7 +137,7 @@ static bool gr_change_material(struct script_context *context, const struct scri
     (void)result;
     struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGEMATERIAL_SERIAL].number, error);
     if (change)
-        put(change->numbers, args[CHANGEMATERIAL_COLOUR].vector);
+        put_colour(change->numbers, args[CHANGEMATERIAL_COLOUR].colour);
     return change != NULL;
 }
 
@@ -211,13 +217,13 @@ static bool gr_change_light(struct script_context *context, const struct script_
     if (!change)
         return false;
     put(change->numbers, args[CHANGELIGHT_MOVE].vector);
-    put(change->numbers + 3, args[CHANGELIGHT_FACTOR].given ? args[CHANGELIGHT_FACTOR].vector : vec3_all(1));
+    put_colour(change->numbers + 3, args[CHANGELIGHT_FACTOR].given ? args[CHANGELIGHT_FACTOR].colour : colour_all(1));
     change->turns = turn->given;
     change->colours = colour->given;
     if (turn->given)
         memcpy(change->numbers + TURN_AT, turn->numbers, TURN_NUMBERS * sizeof *turn->numbers);
     if (colour->given)
-        put(change->numbers + COLOUR_AT, colour->vector);
+        put_colour(change->numbers + COLOUR_AT, colour->colour);
     return true;
 }
 
@@ -246,7 +252,7 @@ static bool gr_change_add_light(struct script_context *context, const struct scr
     if (!change)
         return false;
     put(change->numbers, args[CHANGENEWLIGHT_POSITION].vector);
-    put(change->numbers + 3, args[CHANGENEWLIGHT_COLOUR].vector);
+    put_colour(change->numbers + 3, args[CHANGENEWLIGHT_COLOUR].colour);
     return true;
 }
 
@@ -268,7 +274,7 @@ static bool gr_change_copy_light(struct script_context *context, const struct sc
         return false;
     change->source = (uint32_t)args[CHANGECOPYLIGHT_NUMBER].number;
     put(change->numbers, args[CHANGECOPYLIGHT_MOVE].vector);
-    put(change->numbers + 3, factor->given ? factor->vector : vec3_all(1));
+    put_colour(change->numbers + 3, factor->given ? factor->colour : colour_all(1));
     return true;
 }
 

@@ -190,7 +190,7 @@ static bool gr_clear_sky(struct script_context *context, const struct script_val
     if (!find_sun(context, &args[CLEAR_SUN], &sun, error))
         return false;
     sky_make_clear(sun, args[CLEAR_TURBIDITY].given ? args[CLEAR_TURBIDITY].number : 2.5,
-                   args[CLEAR_GROUND].given ? args[CLEAR_GROUND].vector : vec3_all(0.15), &sky);
+                   args[CLEAR_GROUND].given ? args[CLEAR_GROUND].colour : colour_all(0.15), &sky);
     sky.display = args[CLEAR_GROUND].display;
     return give_sky(context, &sky, args, result, error);
 }
@@ -262,20 +262,20 @@ static bool gr_medium(struct script_context *context, const struct script_value 
         return error_set(error, ERROR_SCENE, "give absorption and scattering, or albedo and distance, not both");
     if (args[MEDIUM_PHASE].given && args[MEDIUM_G].given)
         return error_set(error, ERROR_SCENE, "phase = 'rayleigh' has no g; give one of them");
-    struct medium_input in = {.absorption = args[MEDIUM_ABSORPTION].vector,
-                              .scattering = args[MEDIUM_SCATTERING].vector,
-                              .emission = args[MEDIUM_EMISSION].vector,
+    struct medium_input in = {.absorption = args[MEDIUM_ABSORPTION].colour,
+                              .scattering = args[MEDIUM_SCATTERING].colour,
+                              .emission = args[MEDIUM_EMISSION].colour,
                               .phase = {PHASE_HENYEY_GREENSTEIN, args[MEDIUM_G].number}};
     if (args[MEDIUM_PHASE].given)
         in.phase = (struct phase){PHASE_RAYLEIGH, 0};
     if (by_distance) {
         double events = args[MEDIUM_DISTANCE].given ? 1 / args[MEDIUM_DISTANCE].number : 1;
-        in.scattering = vec3_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].vector : vec3_all(1), events);
-        in.absorption = vec3_sub(vec3_all(events), in.scattering);
+        in.scattering = colour_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].colour : colour_all(1), events);
+        in.absorption = colour_sub(colour_all(events), in.scattering);
     }
     struct medium medium = medium_scattering(&in);
     medium.fills = true;
-    if (!vec3_finite(medium.extinction))
+    if (!colour_finite(medium.extinction))
         return error_set(error, ERROR_SCENE, "absorption and scattering are too large together");
     result->pointer = keep_medium(context, &medium, error);
     return result->pointer;
@@ -288,7 +288,7 @@ static bool give_fog(struct script_context *context, struct fog *fog, const stru
     struct fog *kept = arena_alloc(&context->scene.arena, sizeof *kept);
     if (!kept)
         return error_no_memory(error, "a fog");
-    fog->colour = args[FOG_COLOUR].given ? args[FOG_COLOUR].vector : vec3_all(0.5);
+    fog->colour = args[FOG_COLOUR].given ? args[FOG_COLOUR].colour : colour_all(0.5);
     fog->display = args[FOG_COLOUR].display;
     fog->clear_sky = args[FOG_CLEAR_SKY].boolean;
     *kept = *fog;
@@ -436,7 +436,7 @@ static bool gr_fog_field(struct script_context *context, const struct script_val
     if (!fog.field || !give_fog(context, &fog, args, result, error))
         return false;
     if (colour->program)
-        ((struct fog *)result->pointer)->colour = vec3_all(fog_field_brightest(fog.field));
+        ((struct fog *)result->pointer)->colour = colour_all(fog_field_brightest(fog.field));
     return true;
 }
 

@@ -10,15 +10,15 @@ extern const char *const gr_keys_lua[];
 
 /* The numbers of a display colour; nothing for another value. */
 static int colour(lua_State *L) {
-    struct vec3 colour;
+    struct colour colour;
     int type = lua_type(L, 1);
     (void)sandbox_enter(L); /* for messages about colours */
     bool may_be = type == LUA_TSTRING || (type == LUA_TTABLE && !is_vector(L, 1));
     if (!may_be || !display_colour_at(L, 1, &colour))
         return 0;
-    lua_pushnumber(L, colour.x);
-    lua_pushnumber(L, colour.y);
-    lua_pushnumber(L, colour.z);
+    lua_pushnumber(L, colour.r);
+    lua_pushnumber(L, colour.g);
+    lua_pushnumber(L, colour.b);
     return 3;
 }
 

@@ -118,9 +118,9 @@ static bool keep_nodes(struct script_context *context, const struct script_value
 }
 
 /* Lights that fade with distance and those that emit may have large numbers, and the sun may have some. */
-static void warn_of_bytes(struct script_context *context, const struct light *light, struct vec3 colour) {
+static void warn_of_bytes(struct script_context *context, const struct light *light, struct colour colour) {
     bool fades = light->attenuation != ATTENUATION_COEFFICIENTS || light->falloff[1] != 0 || light->falloff[2] != 0;
-    if (!fades && !light->emissive && vec3_max_abs(colour) >= 100)
+    if (!fades && !light->emissive && colour_max_abs(colour) >= 100)
         context_warn_of_bytes(context, "colour", colour);
 }
 
@@ -132,7 +132,7 @@ static bool give_light(struct script_context *context, const struct light *light
         !keep_nodes(context, &args[LIGHT_EXCLUDE], &kept->exclude, &kept->exclude_count))
         return error_no_memory(error, "a light");
     kept->light = *light;
-    kept->light.colour = args[LIGHT_COLOUR].vector;
+    kept->light.colour = args[LIGHT_COLOUR].colour;
     warn_of_bytes(context, light, kept->light.colour);
     kept->light.has_display = args[LIGHT_COLOUR].display;
     kept->light.display = kept->light.colour;
@@ -169,12 +169,12 @@ static bool make_area_light(struct script_context *context, struct light *light,
     if (light->emissive && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
         return error_set(error, ERROR_SCENE, "a light with emission has no falloff, range or intensity");
     if (light->emissive && !args[LIGHT_COLOUR].given)
-        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+        area_light[LIGHT_COLOUR].colour = colour_all(1);
     if (!set_attenuation(light, args, error) || !give_light(context, light, area_light, result, error))
         return false;
     struct scene_light *kept = result->pointer;
     if (light->emissive)
-        kept->light.colour = vec3_mul(kept->light.colour, args[LIGHT_EMISSION].vector);
+        kept->light.colour = colour_mul(kept->light.colour, args[LIGHT_EMISSION].colour);
     return true;
 }
 
@@ -256,12 +256,12 @@ static bool gr_mesh_light(struct script_context *context, const struct script_va
                           .emissive = true,
                           .samples = (int)args[MESHLIGHT_SAMPLES].number,
                           .has_emission = args[MESHLIGHT_EMISSION].given,
-                          .emission = args[MESHLIGHT_EMISSION].vector};
+                          .emission = args[MESHLIGHT_EMISSION].colour};
     struct script_value area_light[MESHLIGHT_COUNT];
     for (int i = 0; i < MESHLIGHT_COUNT; i++)
         area_light[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
-        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+        area_light[LIGHT_COLOUR].colour = colour_all(1);
     if (!give_light(context, &light, area_light, result, error))
         return false;
     ((struct scene_light *)result->pointer)->node = args[MESHLIGHT_MESH].node;
@@ -284,12 +284,12 @@ static bool gr_sky_light(struct script_context *context, const struct script_val
         *sky = *args[SKYLIGHT_SKY].sky;
     else if (!args[SKYLIGHT_SKY].text && !args[SKYLIGHT_SKY].program)
         *sky = (struct sky){
-            .kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector, .display = args[SKYLIGHT_SKY].display};
+            .kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].colour, .display = args[SKYLIGHT_SKY].display};
     light.sky = sky;
     for (int i = 0; i < SKYLIGHT_COUNT; i++)
         area_light[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
-        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+        area_light[LIGHT_COLOUR].colour = colour_all(1);
     return give_light(context, &light, area_light, result, error);
 }
 

@@ -62,7 +62,7 @@ static bool give(struct script_result *result, struct material *material) {
 static const struct texture *number_or_texture(struct script_context *context, const struct script_value *value,
                                                struct error *error) {
     struct script_value own = *value;
-    own.vector = vec3_all(value->number);
+    own.colour = colour_all(value->number);
     return gr_texture_of(context, &own, error);
 }
 
@@ -188,8 +188,8 @@ static struct material *phong(struct script_context *context, const struct scrip
     struct material *m = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
     if (!m)
         return NULL;
-    m->phong.kd = args[PHONG_KD].vector;
-    m->phong.ks = args[PHONG_KS].vector;
+    m->phong.kd = args[PHONG_KD].colour;
+    m->phong.ks = args[PHONG_KS].colour;
     m->phong.shininess = args[PHONG_SHININESS].given ? args[PHONG_SHININESS].number : 1;
     m->phong.reflect = args[PHONG_REFLECT].number;
     m->phong.refract = args[PHONG_REFRACT].number;
@@ -200,8 +200,8 @@ static struct material *phong(struct script_context *context, const struct scrip
     if (args[PHONG_HIGHLIGHT].given)
         m->phong.highlight = highlights[args[PHONG_HIGHLIGHT].choice];
     m->phong.unlit = args[PHONG_LIT].given && !args[PHONG_LIT].boolean;
-    m->phong.emission = args[PHONG_EMISSION].vector;
-    m->phong.absorption = args[PHONG_ABSORPTION].vector;
+    m->phong.emission = args[PHONG_EMISSION].colour;
+    m->phong.absorption = args[PHONG_ABSORPTION].colour;
     m->phong.roughness = args[PHONG_ROUGHNESS].number;
     m->phong.glossy_samples = (int)args[PHONG_GLOSSY_SAMPLES].number;
     return with_textures(context, m, args, error) ? m : NULL;
@@ -209,8 +209,8 @@ static struct material *phong(struct script_context *context, const struct scrip
 
 static bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
                         struct error *error) {
-    context_warn_of_bytes(context, "kd", args[PHONG_KD].vector);
-    context_warn_of_bytes(context, "ks", args[PHONG_KS].vector);
+    context_warn_of_bytes(context, "kd", args[PHONG_KD].colour);
+    context_warn_of_bytes(context, "ks", args[PHONG_KS].colour);
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
         return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));
@@ -227,7 +227,7 @@ static bool gr_rr_material(struct script_context *context, const struct script_v
 /* The pattern mixes kd with another colour. */
 static bool pattern_over(struct script_context *context, struct material *m, struct texture pattern,
                          const struct script_value *mix, struct script_result *result, struct error *error) {
-    struct texture other = mix->display ? texture_display_colour(mix->vector) : texture_constant(mix->vector);
+    struct texture other = mix->display ? texture_display_colour(mix->colour) : texture_constant(mix->colour);
     return m && material_mix_kd(m, pattern, other, &context->scene.arena, error) && give(result, m);
 }
 
@@ -343,7 +343,7 @@ static bool read_image(struct script_context *context, const struct script_value
     if ((tiles->given || offset->given) && !out->apart) {
         out->apart = true;
         out->scale[0] = out->scale[1] = 1;
-        out->tint = vec3_all(1);
+        out->tint = colour_all(1);
         out->wrap_v = out->wrap;
     }
     if (tiles->given)

@@ -90,7 +90,7 @@ double models_light_at(const struct model *model, struct vec3 point, double near
         const struct model_light *light = &model_lights(model)[i];
         double far = vec3_length(vec3_sub(affine_point(&light->model_from_light, vec3_all(0)), point));
         double distance = light->kind == MODEL_LIGHT_DIRECTIONAL ? 1 : fmax(far, near);
-        sum += vec3_max_abs(light->intensity) * colour_of_lumens / (distance * distance);
+        sum += colour_max_abs(light->intensity) * colour_of_lumens / (distance * distance);
     }
     return sum;
 }
@@ -105,7 +105,7 @@ static void push_light(lua_State *L, const struct model_light *from) {
     *light = (struct scene_light){0};
     light->light = (struct light){
         .kind = LIGHT_POINT,
-        .colour = vec3_scale(from->intensity, colour_of_lumens),
+        .colour = colour_scale(from->intensity, colour_of_lumens),
         .position = affine_point(&turn.forward, affine_point(own, vec3_all(0))),
         .direction = vec3_normalize(affine_vector(&turn.forward, affine_vector(own, vec3_make(0, 0, -1)))),
         .attenuation = ATTENUATION_INVERSE_SQUARE,

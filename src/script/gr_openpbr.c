@@ -144,8 +144,8 @@ static double number_or(const struct script_value *value, double otherwise) {
     return value->given ? value->number : otherwise;
 }
 
-static struct vec3 colour_or(const struct script_value *value, struct vec3 otherwise) {
-    return value->given ? value->vector : otherwise;
+static struct colour colour_or(const struct script_value *value, struct colour otherwise) {
+    return value->given ? value->colour : otherwise;
 }
 
 /* What the specification has and gray has not. */
@@ -160,7 +160,7 @@ static bool is_there(const struct script_value *args, struct error *error) {
                  {GEOMETRY_COAT_NORMAL, false}};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
         const struct script_value *value = &args[later[i].parameter];
-        bool used = later[i].colour ? vec3_max_abs(value->vector) > 0 : value->number != 0;
+        bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
         if (value->given && (used || later[i].parameter == GEOMETRY_COAT_NORMAL))
             return error_set(error, ERROR_SCENE, "%s is not implemented", openpbr_parameters[later[i].parameter].name);
     }
@@ -178,8 +178,8 @@ static struct material *layered(struct script_context *context, struct openpbr *
     }
     **out = openpbr_defaults();
     m->openpbr = *out;
-    m->phong.kd = vec3_all(0.8);
-    m->phong.ks = vec3_all(1);
+    m->phong.kd = colour_all(0.8);
+    m->phong.ks = colour_all(1);
     m->phong.shininess = 1;
     m->phong.ior = 1;
     m->phong.two_sided = true;
@@ -191,7 +191,7 @@ static struct material *layered(struct script_context *context, struct openpbr *
 static const struct texture *texture_of(struct script_context *context, const struct script_value *value,
                                         struct error *error) {
     struct script_value own = *value;
-    own.vector = vec3_all(1);
+    own.colour = colour_all(1);
     return gr_texture_of(context, &own, error);
 }
 
@@ -218,8 +218,8 @@ static bool with_luminance(struct script_context *context, struct material *m, c
     if (!value->texture)
         return true;
     const struct texture *ratio = texture_of(context, value, error);
-    const struct texture *one = texture_keep(arena, texture_constant(vec3_all(1)), error);
-    const struct texture *none = texture_keep(arena, texture_constant(vec3_all(0)), error);
+    const struct texture *one = texture_keep(arena, texture_constant(colour_all(1)), error);
+    const struct texture *none = texture_keep(arena, texture_constant(colour_all(0)), error);
     const struct texture *mix = ratio && one && none ? texture_keep(arena, texture_mix(one, none, ratio), error) : NULL;
     return mix && material_multiply(m, INPUT_EMISSION, mix, arena, error);
 }
@@ -291,7 +291,7 @@ static double absorption(double colour, double depth) {
 /* The kernels read a tangent of length 0 as none. */
 static bool tangent_is_fine(const struct script_parameter *parameter, const struct script_value *value,
                             struct error *error) {
-    return !value->given || vec3_max_abs(value->vector) > 0 ||
+    return !value->given || colour_max_abs(value->colour) > 0 ||
            error_set(error, ERROR_SCENE, "%s has length 0", parameter->name);
 }
 
@@ -323,18 +323,18 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     phong->roughness = number_or(&args[SPECULAR_ROUGHNESS], phong->roughness);
     phong->refract = args[TRANSMISSION_WEIGHT].number;
     phong->reflect = out->base_metalness;
-    phong->emission = vec3_scale(colour_or(&args[EMISSION_COLOUR], vec3_all(1)), args[EMISSION_LUMINANCE].number);
+    phong->emission = colour_scale(colour_or(&args[EMISSION_COLOUR], colour_all(1)), args[EMISSION_LUMINANCE].number);
     phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
     phong->has_ior = phong->refract > 0 && !out->thin_walled;
     phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
     /* With a depth, the colour is that of light after this length. */
     double depth = args[TRANSMISSION_DEPTH].number;
-    struct vec3 colour = out->transmission_colour;
+    struct colour colour = out->transmission_colour;
     if (!(depth > 0) || !phong->has_ior)
         return;
     out->deep = true;
     phong->absorption =
-        vec3_make(absorption(colour.x, depth), absorption(colour.y, depth), absorption(colour.z, depth));
+        colour_make(absorption(colour.r, depth), absorption(colour.g, depth), absorption(colour.b, depth));
 }
 
 static bool openpbr(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -375,7 +375,7 @@ static const struct script_parameter metal_parameters[] = {
 };
 
 struct metal {
-    struct vec3 f0, tint;
+    struct colour f0, tint;
 };
 #define METAL(name, r, g, b, tint_r, tint_g, tint_b) {{r, g, b}, {tint_r, tint_g, tint_b}},
 static const struct metal metals[] = {METALS(METAL)};

@@ -164,7 +164,7 @@ static bool choose_sky(struct script_context *context, const struct script_value
         *sky = *background->sky;
     } else if (background->given && !background->text) {
         sky->kind = SKY_CONSTANT;
-        sky->colour = background->vector;
+        sky->colour = background->colour;
         sky->display = background->display;
     }
     return true;
@@ -562,7 +562,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
                                                      : (struct vec3){0, 0, -1},
                    .up = args[RENDER_UP].given ? args[RENDER_UP].vector : (struct vec3){0, 1, 0},
                    .fov = args[RENDER_FOV].given ? args[RENDER_FOV].number : 50},
-        .ambient = args[RENDER_AMBIENT].vector,
+        .ambient = args[RENDER_AMBIENT].colour,
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
         .settings = script_of(context)->host->settings,
@@ -586,7 +586,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)
-        context_warn_of_bytes(context, "background", args[RENDER_BACKGROUND].vector);
+        context_warn_of_bytes(context, "background", args[RENDER_BACKGROUND].colour);
     /* The linear pipeline decodes colours of the screen. */
     bool linear = settings_linear(&request.settings);
     if (linear && args[RENDER_AMBIENT].display)

@@ -14,7 +14,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
                                     struct error *error) {
     struct arena *arena = &context->scene.arena;
     const struct script_texture *given = value->texture;
-    struct vec3 v = value->vector;
+    struct colour v = value->colour;
     const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
     if (image) { /* transparent parts are white, unless alpha is opacity */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
@@ -24,7 +24,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
     }
     if (given)
         return given->texture;
-    return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
+    return texture_keep(arena, v.r == v.g && v.g == v.b ? texture_number(v.r) : texture_constant(v), error);
 }
 
 const struct texture_image *gr_cut_of(const struct script_value *value, enum material_input input) {
@@ -86,7 +86,7 @@ static const struct script_parameter mix_parameters[] = {
 static bool mix(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error) {
     struct script_value ratio = args[MIXED_RATIO];
-    ratio.vector = vec3_all(ratio.given ? ratio.number : 0.5);
+    ratio.colour = colour_all(ratio.given ? ratio.number : 0.5);
     const struct texture *a = gr_texture_of(context, &args[MIXED_A], error);
     const struct texture *b = a ? gr_texture_of(context, &args[MIXED_B], error) : NULL;
     const struct texture *share = b ? gr_texture_of(context, &ratio, error) : NULL;
@@ -171,9 +171,9 @@ static struct image_function *make_image_function(struct script_context *context
         out->scale[k] = image->scale[k];
         out->offset[k] = image->offset[k];
     }
-    out->tint[0] = image->tint.x;
-    out->tint[1] = image->tint.y;
-    out->tint[2] = image->tint.z;
+    out->tint[0] = image->tint.r;
+    out->tint[1] = image->tint.g;
+    out->tint[2] = image->tint.b;
     return out;
 }
 

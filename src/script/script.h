@@ -23,7 +23,7 @@ struct render_request {
     const char *file; /* as the script wrote it, with compatible number formats; relative to the working directory */
     double width, height; /* checked to be whole numbers in 1..2^20 */
     struct camera camera;
-    struct vec3 ambient;
+    struct colour ambient;
     struct medium outside; /* of all solids */
     const struct scene_light *lights;
     uint32_t light_count;

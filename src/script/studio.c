@@ -78,7 +78,8 @@ struct framed studio_frame(struct node *root, const struct framing *framing) {
 }
 
 static bool shines(const struct material *material) {
-    return material && (vec3_max_abs(material_emission_bound(material)) > 0 || material_origin(material)->phong.unlit);
+    return material &&
+           (colour_max_abs(material_emission_bound(material)) > 0 || material_origin(material)->phong.unlit);
 }
 
 bool studio_is_dark(const struct scene *scene, const struct node *root, struct arena *arena, bool *dark,
@@ -124,7 +125,7 @@ static struct scene_light soft_box(const struct camera_axes *axes, struct vec3 m
                                           .corner = corner,
                                           .edge1 = edge1,
                                           .edge2 = edge2,
-                                          .colour = vec3_all(radiance),
+                                          .colour = colour_all(radiance),
                                           .falloff = {1, 0, 0},
                                           .emissive = true,
                                           .visible = true}};
@@ -159,10 +160,10 @@ void studio_light(struct render_request *request, bool even, struct scene_light 
         request->sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 3};
         request->sky_chosen = true;
     } else {
-        request->ambient = vec3_all(ambient[linear]);
+        request->ambient = colour_all(ambient[linear]);
     }
     if (even)
-        request->sky = (struct sky){.kind = SKY_CONSTANT, .colour = vec3_all(even_sky)};
+        request->sky = (struct sky){.kind = SKY_CONSTANT, .colour = colour_all(even_sky)};
 }
 
 double studio_ground(const struct settings *settings, struct vec3 view) {

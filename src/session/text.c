@@ -2,6 +2,7 @@
  * limit. A text_writer passes its piece on if the next word does not fit. */
 #define _GNU_SOURCE
 #include "session/text.h"
+#include "math/colour.h"
 
 #include "base/terminal_text.h"
 
@@ -192,9 +193,20 @@ static void add_number(struct text_writer *writer, double number) {
     text_writer_print(writer, isfinite(number) ? "%.17g" : "null", number);
 }
 
+static void add_three(struct text_writer *writer, double a, double b, double c) {
+    add(writer, "[", 1);
+    add_number(writer, a);
+    add(writer, ",", 1);
+    add_number(writer, b);
+    add(writer, ",", 1);
+    add_number(writer, c);
+    add(writer, "]", 1);
+}
+
 void text_writer_put(struct text_writer *writer, const char *format, ...) {
     va_list list;
     struct vec3 v;
+    struct colour c;
     va_start(list, format);
     for (const char *at = format; *at; at++) {
         if (*at != '%') {
@@ -225,16 +237,20 @@ void text_writer_put(struct text_writer *writer, const char *format, ...) {
             v = va_arg(list, struct vec3);
             text_writer_print(writer, "(%.6g, %.6g, %.6g)", v.x, v.y, v.z);
             break;
+        case 'c':
+            c = va_arg(list, struct colour);
+            text_writer_print(writer, "(%.6g, %.6g, %.6g)", c.r, c.g, c.b);
+            break;
         case 'j':
             add_number(writer, va_arg(list, double));
             break;
         case 'a':
             v = va_arg(list, struct vec3);
-            for (int i = 0; i < 3; i++) {
-                add(writer, i > 0 ? "," : "[", 1);
-                add_number(writer, vec3_get(v, i));
-            }
-            add(writer, "]", 1);
+            add_three(writer, v.x, v.y, v.z);
+            break;
+        case 'r':
+            c = va_arg(list, struct colour);
+            add_three(writer, c.r, c.g, c.b);
             break;
         case 'b':
             text_writer_print(writer, va_arg(list, int) ? "true" : "false");

@@ -47,8 +47,8 @@ enum { TEXT_WRITER_PIECE = sizeof(((struct text_writer *)0)->text) };
 void text_writer_print(struct text_writer *writer, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* The same with conversions for words and JSON:
  *   %s  text of the program              %u %d  numbers of these types
- *   %n  text of a script: control        %g %v  a double, a struct vec3: (x, y, z), with 6 digits
- *       characters become '?'            %j %a  the same in JSON with 17 digits: exact; null for infinities and NaN
+ *   %n  text of a script: control        %g %v %c  a double, a struct vec3, a struct colour: (x, y, z), with 6 digits
+ *       characters become '?'            %j %a %r  the same in JSON with 17 digits: exact; null for infinities and NaN
  *   %q  a JSON string with its quotes    %b     true or false
  *                                        %i     an int: so many blanks */
 void text_writer_put(struct text_writer *writer, const char *format, ...);

@@ -47,7 +47,8 @@ struct light_info {
     uint32_t kind;       /* an enum light_kind, for its name */
     uint32_t properties; /* of enum light_property */
     bool has_position;   /* its position is known */
-    struct vec3 position, colour;
+    struct vec3 position;
+    struct colour colour;
     struct vec3 direction, edge1, edge2; /* as in struct light, zero if it has none */
     double radius, cos_outer;
     bool moves, turns, sizes; /* the possible edits */

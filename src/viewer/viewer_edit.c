@@ -72,8 +72,8 @@ void viewer_resend_edits(struct viewer *viewer) {
         (void)change_list_set(&viewer->edit.pending, &viewer->edit.steps.now.items[i], true);
 }
 
-static struct vec3 three(const double *numbers) {
-    return vec3_make(numbers[0], numbers[1], numbers[2]);
+static struct colour three(const double *numbers) {
+    return colour_make(numbers[0], numbers[1], numbers[2]);
 }
 
 /* The current change of one kind of the selection, or a change without effect. */

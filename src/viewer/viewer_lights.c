@@ -54,8 +54,8 @@ static struct light_info *selected(struct viewer *viewer) {
     return known ? &viewer->lights.items[number - 1] : NULL;
 }
 
-static double largest(struct vec3 v) {
-    return fmax(v.x, fmax(v.y, v.z));
+static double largest(struct colour v) {
+    return fmax(v.r, fmax(v.g, v.b));
 }
 
 /* Markers. */
@@ -156,8 +156,18 @@ static void put(double *numbers, struct vec3 v) {
     numbers[2] = v.z;
 }
 
+static void put_colour(double *numbers, struct colour c) {
+    numbers[0] = c.r;
+    numbers[1] = c.g;
+    numbers[2] = c.b;
+}
+
 static struct vec3 three(const double *numbers) {
     return vec3_make(numbers[0], numbers[1], numbers[2]);
+}
+
+static struct colour colour_of(const double *numbers) {
+    return colour_make(numbers[0], numbers[1], numbers[2]);
 }
 
 static void make(struct viewer *viewer, const struct change *change) {
@@ -216,28 +226,28 @@ void viewer_brighten_light(struct viewer *viewer, double stops) {
     struct light_info *light = selected(viewer);
     struct change change = light_change(viewer, CHANGE_LIGHT);
     double before = change.numbers[3], after = el_exp2(stops);
-    put(change.numbers + 3, vec3_all(after));
+    put_colour(change.numbers + 3, colour_all(after));
     make(viewer, &change);
     if (light && before > 0)
-        light->colour = vec3_scale(light->colour, after / before);
+        light->colour = colour_scale(light->colour, after / before);
 }
 
-struct vec3 viewer_light_colour_now(const struct viewer *viewer) {
+struct colour viewer_light_colour_now(const struct viewer *viewer) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     struct change change = light_change(viewer, CHANGE_LIGHT);
     if (change.colours)
-        return three(change.numbers + COLOUR_AT);
-    return light && change.numbers[3] > 0 ? vec3_scale(light->colour, 1 / change.numbers[3]) : vec3_all(0);
+        return colour_of(change.numbers + COLOUR_AT);
+    return light && change.numbers[3] > 0 ? colour_scale(light->colour, 1 / change.numbers[3]) : colour_all(0);
 }
 
-void viewer_light_colour(struct viewer *viewer, struct vec3 colour) {
+void viewer_light_colour(struct viewer *viewer, struct colour colour) {
     struct light_info *light = selected(viewer);
     struct change change = light_change(viewer, CHANGE_LIGHT);
     change.colours = true;
-    put(change.numbers + COLOUR_AT, colour);
+    put_colour(change.numbers + COLOUR_AT, colour);
     make(viewer, &change);
     if (light)
-        light->colour = vec3_mul(colour, three(change.numbers + 3));
+        light->colour = colour_mul(colour, colour_of(change.numbers + 3));
 }
 
 void viewer_light_delete(struct viewer *viewer) {
@@ -276,12 +286,12 @@ void viewer_add_light(struct viewer *viewer) {
     if (!room_for_one(viewer))
         return;
     put(change.numbers, vec3_add_scaled(layout, vec3_sub(eye, layout), 0.5));
-    put(change.numbers + 3, vec3_all(0.5));
+    put_colour(change.numbers + 3, colour_all(0.5));
     viewer_make_edit(viewer, &change, true, false);
     select_new(viewer, &(struct light_info){.properties = LIGHT_HAS_POSITION,
                                             .has_position = true,
                                             .position = three(change.numbers),
-                                            .colour = vec3_all(0.5),
+                                            .colour = colour_all(0.5),
                                             .moves = true});
 }
 
@@ -299,7 +309,7 @@ void viewer_copy_light(struct viewer *viewer) {
         route = vec3_all(0);
     change.source = viewer->edit.selection.light;
     put(change.numbers, route);
-    put(change.numbers + 3, vec3_all(1));
+    put_colour(change.numbers + 3, colour_all(1));
     viewer_make_edit(viewer, &change, true, false);
     held.serial = viewer->lights.count + 1;
     if (has)

@@ -23,7 +23,7 @@ void viewer_add_light(struct viewer *viewer);
 void viewer_copy_light(struct viewer *viewer);
 void viewer_brighten_light(struct viewer *viewer, double stops); /* to this number of lights above the script's */
 double viewer_light_stops_now(const struct viewer *viewer);
-struct vec3 viewer_light_colour_now(const struct viewer *viewer); /* before it is brightened */
-void viewer_light_colour(struct viewer *viewer, struct vec3 colour);
+struct colour viewer_light_colour_now(const struct viewer *viewer); /* before it is brightened */
+void viewer_light_colour(struct viewer *viewer, struct colour colour);
 
 #endif

@@ -228,10 +228,10 @@ static void draw_tools(struct viewer *viewer, struct column *column) {
 }
 
 /* Three sliders. */
-static bool draw_sliders(struct viewer *viewer, struct column *column, double top, struct vec3 *colour) {
+static bool draw_sliders(struct viewer *viewer, struct column *column, double top, struct colour *colour) {
     struct panel *panel = &viewer->window.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
-    double parts[3] = {colour->x, colour->y, colour->z};
+    double parts[3] = {colour->r, colour->g, colour->b};
     bool changed = false;
     if (panel->pressed)
         viewer->edit.joins = false;
@@ -240,7 +240,7 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
         changed = panel_slider(panel, &slider, &parts[i]) || changed;
         column->y += panel_line_height(panel);
     }
-    *colour = vec3_make(parts[0], parts[1], parts[2]);
+    *colour = colour_make(parts[0], parts[1], parts[2]);
     return changed;
 }
 
@@ -285,14 +285,14 @@ static void draw_inputs(struct viewer *viewer, struct column *column) {
         viewer_material_now(viewer, viewer->edit.part, numbers);
         /* Three sliders for a colour, one for a number. */
         bool colour = material_part_count(viewer->edit.part) == 3, changed;
-        struct vec3 c = {numbers[0], numbers[1], numbers[2]};
+        struct colour c = {numbers[0], numbers[1], numbers[2]};
         double top = viewer->edit.part == MATERIAL_PART_KD || viewer->edit.part == MATERIAL_PART_KS ? 1 : 4;
         if (panel->pressed)
             viewer->edit.joins = false;
         changed = colour ? draw_sliders(viewer, column, top, &c)
                          : draw_number(viewer, column, viewer->edit.part, &numbers[0]);
         if (colour)
-            numbers[0] = c.x, numbers[1] = c.y, numbers[2] = c.z;
+            numbers[0] = c.r, numbers[1] = c.g, numbers[2] = c.b;
         if (changed)
             viewer_set_material(viewer, viewer->edit.part, numbers);
         draw_text(viewer, column, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", material_part_name(viewer->edit.part),
@@ -330,13 +330,13 @@ static void draw_light(struct viewer *viewer, struct column *column) {
         draw_point(viewer, column, "at", light->position);
     if (vec3_max_abs(light->direction) > 0)
         draw_point(viewer, column, "to", light->direction);
-    draw_point(viewer, column, "colour", light->colour);
+    draw_text(viewer, column, "colour %.4g %.4g %.4g", light->colour.r, light->colour.g, light->colour.b);
     draw_tools(viewer, column);
     if (viewer->edit.selection.kind != SELECTED_LIGHT)
         return;
     /* Brightness first, since it keeps the colour. */
     double stops = viewer_light_stops_now(viewer);
-    struct vec3 colour = viewer_light_colour_now(viewer);
+    struct colour colour = viewer_light_colour_now(viewer);
     if (panel->pressed)
         viewer->edit.joins = false;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;

@@ -156,10 +156,10 @@ static void choose(const struct junction *junction, const struct face *face, str
 }
 
 static void set_boundary(const struct junction *junction, const struct face *chosen, struct joint *joint) {
-    joint->boundary.tint = vec3_all(1);
+    joint->boundary.tint = colour_all(1);
     for (int i = 0; i < junction->count; i++)
         if (&junction->faces[i] != chosen)
-            joint->boundary.tint = vec3_mul(joint->boundary.tint, junction->faces[i].boundary.tint);
+            joint->boundary.tint = colour_mul(joint->boundary.tint, junction->faces[i].boundary.tint);
     joint->boundary.eta = medium_stack_ior(&joint->before) / medium_stack_ior(&joint->behind);
     joint->boundary.behind = &joint->behind;
 }

@@ -15,7 +15,7 @@
 struct mesh_light_collection {
     const struct world *world; /* the world of the meshes */
     const struct light *light;
-    struct vec3 emission;    /* of the light, if it has one of its own; white if that is black */
+    struct colour emission;  /* of the light, if it has one of its own; white if that is black */
     const struct node *node; /* of a light of the scene */
     const uint8_t *marked;   /* by its primitives: which of them belong to the light; NULL: all */
     struct light_mesh_builder mesh;
@@ -23,7 +23,8 @@ struct mesh_light_collection {
 
 static void add_triangle(struct mesh_light_collection *g, const struct mesh *mesh, uint32_t number,
                          const struct transform *map, double sign, const struct prototype *prototype) {
-    struct vec3 corners[3], emission = g->emission;
+    struct vec3 corners[3];
+    struct colour emission = g->emission;
     uint32_t slot;
     mesh_triangle(mesh, number, corners, &slot);
     double size = 0;
@@ -98,8 +99,8 @@ enum { POINTS = sizeof points / sizeof *points };
 static const double min_share = 1.0 / 64; /* of the emission of the whole material */
 
 /* The emission at a point, filtered over its part of the triangle. */
-static struct vec3 emission_at(const struct world *world, const struct light_triangle *t, const double weights[2],
-                               double width) {
+static struct colour emission_at(const struct world *world, const struct light_triangle *t, const double weights[2],
+                                 double width) {
     struct vec3 at = vec3_add_scaled(vec3_add_scaled(t->corner, t->edge1, weights[0]), t->edge2, weights[1]);
     struct ray ray = {.origin = vec3_add(at, t->normal), .direction = vec3_negate(t->normal), .time = 0.5};
     struct crossing crossing = {.t = 1, .u = weights[0], .v = weights[1], .part = t->part, .enter = true};
@@ -108,7 +109,7 @@ static struct vec3 emission_at(const struct world *world, const struct light_tri
     ray.footprint.width = width;
     world_describe(world, &ray, t->primitive, &crossing, &hit);
     material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
-    return vec3_scale(bsdf.emission, fmin(bsdf.opacity, 1));
+    return colour_scale(bsdf.emission, fmin(bsdf.opacity, 1));
 }
 
 bool mesh_lights_estimate(const struct world *world, struct light *light, struct arena *arena, struct pool *pool,
@@ -124,17 +125,18 @@ bool mesh_lights_estimate(const struct world *world, struct light *light, struct
         if ((i & 255) == 0 && pool_cancelled(pool))
             return error_set(error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
         /* The mean over some points, with a small share of the bound: a place that no point met stays possible. */
-        struct vec3 across = vec3_cross(t->edge1, t->edge2), sum = {0, 0, 0};
+        struct vec3 across = vec3_cross(t->edge1, t->edge2);
+        struct colour sum = {0, 0, 0};
         double width = sqrt(vec3_length(across) / (2 * POINTS));
         for (int k = 0; k < POINTS; k++)
-            sum = vec3_add_scaled(sum, emission_at(world, t, points[k], width), (1 - min_share) / POINTS);
+            sum = colour_add_scaled(sum, emission_at(world, t, points[k], width), (1 - min_share) / POINTS);
         struct vec3 corners[3] = {t->corner, vec3_add(t->corner, t->edge1), vec3_add(t->corner, t->edge2)};
         builder.primitive = t->primitive;
         builder.part = t->part;
-        sum = vec3_add_scaled(vec3_mul(sum, light->colour), light_triangle_radiance(t), min_share);
+        sum = colour_add_scaled(colour_mul(sum, light->colour), light_triangle_radiance(t), min_share);
         light_mesh_add(&builder, corners, vec3_dot(across, t->normal) < 0 ? -1 : 1, t->offset * 0x1p40, sum);
     }
-    light_mesh_end(&builder, vec3_all(1), mesh);
+    light_mesh_end(&builder, colour_all(1), mesh);
     mesh->shown = old->shown;
     light->mesh = mesh;
     return true;
@@ -186,16 +188,16 @@ static bool resolve_mesh(struct flattening *f, const struct node *node, struct l
     if (!mesh || !marked || !light_lists_mark(world, &node, 1, marked, 1, root))
         return error_no_memory(f->error, "a mesh light");
     /* Black emission of its own replaces that of the materials: the light keeps its triangles. */
-    bool black = light->has_emission && vec3_max_abs(light->emission) == 0;
+    bool black = light->has_emission && colour_max_abs(light->emission) == 0;
     struct mesh_light_collection g = {.world = world,
                                       .light = light,
-                                      .emission = black ? vec3_all(1) : light->emission,
+                                      .emission = black ? colour_all(1) : light->emission,
                                       .node = node,
                                       .marked = marked};
     uint64_t total = count_triangles(&g);
     if (!(total > 0 ? collect(&g, total, f->arena, f->error) : collect_unseen(&g, f, f->error)))
         return false;
-    light_mesh_end(&g.mesh, black ? vec3_all(0) : light->colour, mesh);
+    light_mesh_end(&g.mesh, black ? colour_all(0) : light->colour, mesh);
     mesh->shown = total > 0;
     if (mesh->count == 0 && f->warn) {
         char text[256];

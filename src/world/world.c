@@ -691,8 +691,8 @@ static bool make_materials(struct flattening *f) {
         world->material_has_tangents[i] = material->needs_tangents;
         world->material_has_medium[i] = surface_is_transparent(material);
         world->media.all[i] = medium_of(world, i);
-        struct vec3 emission = material_emission_bound(world->authored.materials[i]);
-        world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
+        struct colour emission = material_emission_bound(world->authored.materials[i]);
+        world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.r, emission.g), emission.b));
     }
     return true;
 }

@@ -176,7 +176,8 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
     hit->pattern_point = point;
     hit->pattern_normal = facet->normal;
     hit->has_uv = hit->has_colour = hit->has_second = false;
-    hit->colour = hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
+    hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
+    hit->colour = colour_all(0);
     hit->u = hit->v = hit->curvature = hit->pattern_scale = 0;
     hit->offset = HIT_OFFSET_ERRORS * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;
     hit->behind = 0;

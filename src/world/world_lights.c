@@ -18,17 +18,17 @@
 
 /* Of a prototype: its brightest material. */
 struct emission {
-    struct vec3 colour;
+    struct colour colour;
     bool emissive, varies;
 };
 
 static void collect_emission(const struct world *world, uint32_t first, uint32_t slots, struct emission *out) {
     for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
         const struct surface_material *material = &world->surfaces.materials[i];
-        struct vec3 colour = surface_emission(&world->surfaces, material);
-        struct vec3 bound = surface_emission_bound(&world->surfaces, material);
-        bool brighter = vec3_max_abs(colour) > vec3_max_abs(out->colour);
-        out->emissive = out->emissive || vec3_max_abs(colour) > 0 || vec3_max_abs(bound) > 0;
+        struct colour colour = surface_emission(&world->surfaces, material);
+        struct colour bound = surface_emission_bound(&world->surfaces, material);
+        bool brighter = colour_max_abs(colour) > colour_max_abs(out->colour);
+        out->emissive = out->emissive || colour_max_abs(colour) > 0 || colour_max_abs(bound) > 0;
         out->varies = out->varies || surface_emission_varies(material);
         out->colour = brighter ? colour : out->colour;
     }
@@ -181,7 +181,7 @@ static bool derive_triangle(struct derived *d, const struct planar *planar, bool
     builder.one_sided = false;
     builder.primitive = d->primitive;
     light_mesh_add(&builder, corners, 1, size, d->light.colour);
-    light_mesh_end(&builder, vec3_all(1), mesh);
+    light_mesh_end(&builder, colour_all(1), mesh);
     d->light.kind = LIGHT_MESH;
     d->light.mesh = mesh;
     d->emitter.by_triangle = true;
@@ -281,7 +281,7 @@ static bool take_light(struct building *b, uint32_t number) {
     emitter->by_triangle = true;
     emitter->has_own = light->has_emission;
     if (light->has_emission)
-        emitter->emission = vec3_mul(light->emission, light->colour);
+        emitter->emission = colour_mul(light->emission, light->colour);
     for (uint32_t i = 0; i < light->mesh->count && light->mesh->shown; i++) {
         uint32_t primitive = light->mesh->triangles[i].primitive;
         if (primitive_moves(world, primitive))
@@ -336,7 +336,7 @@ static uint32_t moving_owner(const struct building *b, uint32_t primitive) {
 static void take_over(struct derived *d, const struct light *owner, const struct emitter *of_owner) {
     bool own = of_owner->has_own;
     d->light.lit = owner->lit;
-    d->light.colour = own ? of_owner->emission : vec3_mul(d->light.colour, owner->colour);
+    d->light.colour = own ? of_owner->emission : colour_mul(d->light.colour, owner->colour);
     d->emitter.has_own = own;
     d->emitter.emission = own ? of_owner->emission : owner->colour;
 }
@@ -356,7 +356,7 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
                         .pool = b->pool,
                         .error = b->error};
     /* Of a mesh light that moves, or of the material. */
-    d.emitter.emission = vec3_all(1);
+    d.emitter.emission = colour_all(1);
     if (owner != LIGHT_NONE)
         take_over(&d, &world->lights[owner], &b->emitters[owner]);
     bool ok;
@@ -513,8 +513,8 @@ static bool is_own_triangle(const struct world_lights *lights, uint32_t light, u
     return lights->of_primitive[lights->lights[light].mesh->triangles[triangle].primitive] == light;
 }
 
-static bool is_dark(struct vec3 c) {
-    return c.x == 0 && c.y == 0 && c.z == 0;
+static bool is_dark(struct colour c) {
+    return c.r == 0 && c.g == 0 && c.b == 0;
 }
 
 /* A part of a light as a receiver sees it: a triangle, the context of a light, or the bound that is sampled instead. */
@@ -554,7 +554,7 @@ static bool sample_point_light(const struct light *light, struct vec3 point, str
         return false;
     out->direction = arrival.direction;
     out->target = arrival.middle;
-    out->radiance = vec3_scale(vec3_scale(arrival.colour, arrival.strength), radiance_of(1));
+    out->radiance = colour_scale(colour_scale(arrival.colour, arrival.strength), radiance_of(1));
     out->pdf = 1;
     out->is_delta = true;
     out->decided = false;
@@ -579,7 +579,7 @@ static __attribute__((noinline)) bool sample_extended_light(const struct world_l
     bool own = emitter->shown && receiver->primitive == emitter->primitive && receiver->primitive != WORLD_NOTHING;
     out->direction = sample.direction;
     out->target = sample.target;
-    out->radiance = sample.is_delta ? vec3_scale(sample.intensity, radiance_of(1)) : sample.radiance;
+    out->radiance = sample.is_delta ? colour_scale(sample.intensity, radiance_of(1)) : sample.radiance;
     out->pdf = sample.pdf;
     out->is_delta = emitter->unmet;
     out->decided = emitter->decided || own;
@@ -612,15 +612,15 @@ bool world_lights_shows(const struct world_lights *lights, const struct world_li
     return triangle_of_hit(lights, sample->light, hit) == sample->triangle;
 }
 
-struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
-                                  struct vec3 emission) {
+struct colour world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
+                                    struct colour emission) {
     uint32_t light = lights->of_primitive[hit->primitive];
     if (light == LIGHT_NONE)
         return emission;
     const struct emitter *emitter = &lights->emitters[light];
     if (emitter->unmet || !world_lights_illuminate(lights, light, primitive))
-        return vec3_all(0);
-    return emitter->has_own ? emitter->emission : vec3_mul(emission, emitter->emission);
+        return colour_all(0);
+    return emitter->has_own ? emitter->emission : colour_mul(emission, emitter->emission);
 }
 
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
@@ -676,20 +676,20 @@ double world_lights_visible(const struct world_lights *lights, const struct ray 
     return share;
 }
 
-struct vec3 world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
-                                 const struct world_light_sample *sample, const struct ray *ray,
-                                 struct world_scratch *scratch, double *t) {
+struct colour world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
+                                   const struct world_light_sample *sample, const struct ray *ray,
+                                   struct world_scratch *scratch, double *t) {
     struct ray rest = *ray;
     struct hit hit;
     struct bsdf bsdf;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     double share = 1;
     *t = 0;
     for (int i = 0; i < HOLE_LIMIT && share > 0 && next_surface(lights->world, &rest, scratch, &hit, &bsdf); i++) {
         double opacity = fmin(bsdf.opacity, 1);
         if (opacity > 0 && world_lights_shows(lights, sample, &hit)) {
-            struct vec3 radiance = world_lights_radiance(lights, receiver->primitive, &hit, bsdf.emission);
-            sum = vec3_add_scaled(sum, radiance, share * opacity);
+            struct colour radiance = world_lights_radiance(lights, receiver->primitive, &hit, bsdf.emission);
+            sum = colour_add_scaled(sum, radiance, share * opacity);
             *t = hit.t;
         }
         share *= 1 - opacity;

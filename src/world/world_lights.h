@@ -35,7 +35,7 @@ struct emitter {
     bool decided; /* a ray decides: the emission varies, there are holes, or the light is only a bound of the emitter */
     bool unmet;   /* scattered rays do not hit it: a delta light */
     bool has_own; /* of gr.mesh_light: the emission that takes the place of the materials' */
-    struct vec3 emission;          /* that one, or a factor */
+    struct colour emission;        /* that one, or a factor */
     const struct light_box *bound; /* sampled in place of the light; NULL: none */
 };
 
@@ -74,7 +74,7 @@ struct light_receiver {
 struct world_light_sample {
     struct vec3 direction;      /* unit, from the point */
     struct light_target target; /* of the shadow ray, from receiver.from */
-    struct vec3 radiance;       /* where `decided` is false; of a delta light over pdf 1 */
+    struct colour radiance;     /* where `decided` is false; of a delta light over pdf 1 */
     double pdf;                 /* by solid angle at the point, for this part; of a delta light 1 */
     bool is_delta;              /* no scattered ray finds this light */
     bool decided;
@@ -88,17 +88,17 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
 double world_lights_visible(const struct world_lights *lights, const struct ray *ray, struct world_scratch *scratch);
 /* The radiance of a `decided` sample that arrives along the ray to it, including holes; *t: where the ray hits the
  * light. */
-struct vec3 world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
-                                 const struct world_light_sample *sample, const struct ray *ray,
-                                 struct world_scratch *scratch, double *t);
+struct colour world_lights_seen_by(const struct world_lights *lights, const struct light_receiver *receiver,
+                                   const struct world_light_sample *sample, const struct ray *ray,
+                                   struct world_scratch *scratch, double *t);
 /* Whether a hit is what a `decided` sample was of. */
 bool world_lights_shows(const struct world_lights *lights, const struct world_light_sample *sample,
                         const struct hit *hit);
 
 /* What a hit surface, whose material emits `emission` there, sends to a receiver on primitive `primitive`
  * (WORLD_NOTHING: none): with gr.mesh_light what that says of it. */
-struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
-                                  struct vec3 emission);
+struct colour world_lights_radiance(const struct world_lights *lights, uint32_t primitive, const struct hit *hit,
+                                    struct colour emission);
 /* The density (by solid angle, times the probability of the light) with which samples for the receiver have this unit
  * direction and end at this hit; 0: only scattered rays find it. */
 double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,

@@ -41,12 +41,12 @@ double surface_albedo_bound_of(const struct material *material) {
     return bound;
 }
 
-static struct vec3 read_alone(const struct texture *texture, bool is_number, const struct hit *hit) {
+static struct colour read_alone(const struct texture *texture, bool is_number, const struct hit *hit) {
     struct texture_builder builder = {.count = 0};
     struct texture_tables tables;
     struct texture_reader reader;
     struct arena arena = {.head = NULL};
-    struct vec3 value = {0, 0, 0};
+    struct colour value = {0, 0, 0};
     uint32_t program;
     bool ok = texture_builder_add(&builder, texture, is_number, &program) &&
               texture_builder_finish(&builder, &arena, &tables);
@@ -60,10 +60,10 @@ static struct vec3 read_alone(const struct texture *texture, bool is_number, con
     return value;
 }
 
-struct vec3 texture_colour_at(const struct texture *texture, const struct hit *hit) {
+struct colour texture_colour_at(const struct texture *texture, const struct hit *hit) {
     return read_alone(texture, false, hit);
 }
 
 double texture_number_at(const struct texture *texture, const struct hit *hit) {
-    return read_alone(texture, true, hit).x;
+    return read_alone(texture, true, hit).r;
 }

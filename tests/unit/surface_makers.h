@@ -8,7 +8,7 @@ void surface_inputs_of(const struct material *material, const struct hit *hit, s
 void surface_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
                   const struct material_context *context, struct bsdf *out);
 double surface_albedo_bound_of(const struct material *material);
-struct vec3 texture_colour_at(const struct texture *texture, const struct hit *hit);
+struct colour texture_colour_at(const struct texture *texture, const struct hit *hit);
 double texture_number_at(const struct texture *texture, const struct hit *hit);
 
 #endif

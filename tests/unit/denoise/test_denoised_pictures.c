@@ -242,10 +242,10 @@ static void check_layers_of_light(enum stereo stereo) {
     enum { SIZE = 40 };
     struct stage s;
     stage_begin(&s, 2);
-    struct material *glossy = stage_phong(&s, vec3_make(0.2, 0.1, 0.1), vec3_make(0.5, 0.6, 0.7), 10);
-    struct material *area_light = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-    area_light->phong.emission = vec3_make(5, 4, 3);
-    const struct material *materials[] = {stage_phong(&s, vec3_make(0.7, 0.6, 0.2), vec3_all(0), 1), glossy,
+    struct material *glossy = stage_phong(&s, colour_make(0.2, 0.1, 0.1), colour_make(0.5, 0.6, 0.7), 10);
+    struct material *area_light = stage_phong(&s, colour_all(0), colour_all(0), 1);
+    area_light->phong.emission = colour_make(5, 4, 3);
+    const struct material *materials[] = {stage_phong(&s, colour_make(0.7, 0.6, 0.2), colour_all(0), 1), glossy,
                                           stage_glass(&s, 1, 0, 1), stage_glass(&s, 1, 1, 1.5), area_light};
     for (int i = 0; i < 5; i++)
         stage_move(&s, stage_sphere(&s, s.root, materials[i]), 2.2 * (i - 2), i == 4 ? 1.5 : 0, 0);
@@ -287,8 +287,8 @@ TEST(layers_of_light_follow_the_depth_of_paths) {
     for (int depth = 0; depth < 2; depth++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *area_light = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
-        area_light->phong.emission = vec3_all(1);
+        struct material *area_light = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
+        area_light->phong.emission = colour_all(1);
         stage_sphere(&s, s.root, area_light);
         stage_move(&s, stage_sphere(&s, s.root, area_light), 1.5, 0, 0);
         s.settings.integrator = INTEGRATOR_PATH;

@@ -109,12 +109,12 @@ TEST(the_layer_of_lights_has_the_middle_of_every_kind_of_light) {
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         struct stage s;
         stage_floor(&s);
-        struct node *cube = stage_cube(&s, s.root, stage_phong(&s, vec3_all(0.5), vec3_all(0), 1));
+        struct node *cube = stage_cube(&s, s.root, stage_phong(&s, colour_all(0.5), colour_all(0), 1));
         stage_move(&s, cube, -0.5, -0.5, -0.5);
         stage_scale(&s, cube, 0.4, 0.4, 0.4);
         stage_move(&s, cube, 0, 2.5, 0);
         s.lights[0] = all[i];
-        s.lights[0].colour = vec3_all(1);
+        s.lights[0].colour = colour_all(1);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));

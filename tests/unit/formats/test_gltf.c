@@ -129,7 +129,7 @@ TEST(gltf_nodes_have_matrices_or_parts_and_share_their_mesh) {
     CHECK_EQ_INT(first->kind, NODE_GEOMETRY);
     CHECK(first->shape.mesh == first->shape.mesh);
     CHECK_EQ_INT(first->slot_count, 1);
-    CHECK_NEAR(first->slots[0]->phong.kd.y, 1, 0);
+    CHECK_NEAR(first->slots[0]->phong.kd.g, 1, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);
     model_destroy(&model);
@@ -169,13 +169,13 @@ TEST(cameras_lights_and_animations_of_gltf_are_listed_with_the_transforms_of_the
     CHECK(camera[1].vertical_angle == 0 && camera[1].half_size[0] == 3 && camera[1].half_size[1] == 2);
     const struct model_light *sun = model_lights(&model), *spot = sun + 1, *point = sun + 2;
     CHECK_EQ_INT(sun->kind, MODEL_LIGHT_DIRECTIONAL);
-    CHECK(sun->intensity.x == 1 && sun->range == 0 && sun->model_from_light.m[2][3] == 10);
+    CHECK(sun->intensity.r == 1 && sun->range == 0 && sun->model_from_light.m[2][3] == 10);
     CHECK_EQ_INT(spot->kind, MODEL_LIGHT_SPOT);
     CHECK_TEXT(spot->name, "key");
-    CHECK(spot->intensity.x == 40 && spot->intensity.y == 20 && spot->intensity.z == 0 && spot->range == 7);
+    CHECK(spot->intensity.r == 40 && spot->intensity.g == 20 && spot->intensity.b == 0 && spot->range == 7);
     CHECK(spot->inner == 0.1 && spot->outer == 0.2);
     CHECK_EQ_INT(point->kind, MODEL_LIGHT_POINT);
-    CHECK(point->intensity.z == 3);
+    CHECK(point->intensity.b == 3);
     CHECK_TEXT(model_animations(&model)[0].name, "walk");
     model_destroy(&model);
 }
@@ -301,8 +301,8 @@ TEST(gltf_accessors_of_all_kinds_are_read) {
     CHECK(s.has_uv && s.has_colour);
     CHECK_NEAR(s.u, 0.25, 1e-12);
     CHECK_NEAR(1 - s.v, 0.5, 1e-12); /* glTF counts v from the top */
-    CHECK_NEAR(s.colour.x, 0.25, 1e-6);
-    CHECK_NEAR(s.colour.z, 0.75, 1e-6);
+    CHECK_NEAR(s.colour.r, 0.25, 1e-6);
+    CHECK_NEAR(s.colour.b, 0.75, 1e-6);
     CHECK_NEAR(vec3_normalize(s.shading_normal).z, 1, 1e-12);
     model_destroy(&model);
 }
@@ -361,12 +361,12 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     CHECK_EQ_INT(m[0].map_kd.wrap_v, IMAGE_MIRROR);
     CHECK_EQ_INT(m[0].map_kd.filter, IMAGE_NEAREST);
     CHECK_NEAR(m[0].map_kd.offset[1], 1 - 3 - 0.25, 0);
-    CHECK_NEAR(m[0].kd.x, 0.5, 0);
+    CHECK_NEAR(m[0].kd.r, 0.5, 0);
     CHECK(m[0].layered && m[1].layered && !m[2].layered);
     CHECK_NEAR(m[0].layers.base_metalness, 0, 0);
     CHECK(m[0].two_sided);
     CHECK_NEAR(m[0].roughness, 0.5, 0);
-    CHECK_NEAR(m[1].kd.y, 0.5, 0);
+    CHECK_NEAR(m[1].kd.g, 0.5, 0);
     CHECK_NEAR(m[1].layers.base_metalness, 1, 0);
     CHECK_NEAR(m[1].roughness, 0, 0);
     struct assets assets = {0};
@@ -378,12 +378,12 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
     struct surface_inputs inputs;
     surface_inputs_of(node->slots[0], &hit, &inputs);
-    CHECK_NEAR(inputs.kd.x, 0.5 * 120 / 255.0, 1e-12);
-    CHECK_NEAR(inputs.kd.y, 120 / 255.0, 1e-12);
-    CHECK_NEAR(inputs.kd.z, 1, 1e-12);
+    CHECK_NEAR(inputs.kd.r, 0.5 * 120 / 255.0, 1e-12);
+    CHECK_NEAR(inputs.kd.g, 120 / 255.0, 1e-12);
+    CHECK_NEAR(inputs.kd.b, 1, 1e-12);
     hit = (struct hit){.has_colour = true, .colour = {0.5, 0.25, 0}};
     surface_inputs_of(node->slots[2], &hit, &inputs);
-    CHECK_NEAR(inputs.kd.y, 0.25, 0);
+    CHECK_NEAR(inputs.kd.g, 0.25, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);
     model_destroy(&model);

@@ -120,8 +120,8 @@ TEST(obj_read_leniently_keeps_every_face_of_the_strict_reading) {
 TEST(colours_of_obj_vertices_are_shown_and_multiply_the_materials_of_the_file) {
     static const struct {
         const char *text;
-        struct vec3 colour; /* of the first triangle */
-        uint32_t white;     /* the material of faces without one */
+        struct colour colour; /* of the first triangle */
+        uint32_t white;       /* the material of faces without one */
     } cases[] = {
         {"v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n", {1, 0, 0}, 0},
         {"v 0 0 0 1 0 .5 0\nv 1 0 0 1 0 .5 0\nv 0 1 0 1 0 .5 0\nf 1 2 3\n", {0, 0.5, 0}, 0},
@@ -136,7 +136,7 @@ TEST(colours_of_obj_vertices_are_shown_and_multiply_the_materials_of_the_file) {
         if (!parse_text(&model, test_path("t.obj"), cases[i].text, &(struct model_options){0}))
             continue;
         struct surface surface = surface_of(&model, 0);
-        CHECK(surface.has_colour && vec3_max_abs(vec3_sub(surface.colour, cases[i].colour)) < 1e-6);
+        CHECK(surface.has_colour && colour_max_abs(colour_sub(surface.colour, cases[i].colour)) < 1e-6);
         for (size_t k = 0; k < model.materials.count; k++)
             CHECK(model_materials(&model)[k].by_vertex);
         const uint32_t *slots = model_meshes(&model)->slots.items;
@@ -203,10 +203,10 @@ TEST(ply_colours_of_faces_are_shown) {
                 continue;
             for (uint32_t t = 0; t < 3; t++) {
                 struct surface surface = surface_of(&model, t);
-                CHECK(surface.has_colour && surface.colour.x == (t != 1) && surface.colour.y == (t == 2) &&
-                      surface.colour.z == (t != 0));
+                CHECK(surface.has_colour && surface.colour.r == (t != 1) && surface.colour.g == (t == 2) &&
+                      surface.colour.b == (t != 0));
             }
-            CHECK(model_materials(&model)[0].by_vertex && model_materials(&model)[0].kd.x == 1);
+            CHECK(model_materials(&model)[0].by_vertex && model_materials(&model)[0].kd.r == 1);
             CHECK_EQ_INT(model.warning_count, 0);
             model_destroy(&model);
         }
@@ -349,7 +349,7 @@ TEST(stl_colours_of_both_conventions_are_shown) {
     static const struct {
         const char *header;
         uint16_t attributes[3];
-        struct vec3 colours[3];
+        struct colour colours[3];
     } cases[] = {
         {"x", {0x8000 | 31 << 10, 0x8000 | 31, 0}, {{1, 0, 0}, {0, 0, 1}, {0.8, 0.8, 0.8}}},
         {"x COLOR=\xff\x33\x01\xff", {31, 31 << 10, 0x8000}, {{1, 0, 0}, {0, 0, 1}, {1, 0.2, 1 / 255.0}}},
@@ -364,7 +364,7 @@ TEST(stl_colours_of_both_conventions_are_shown) {
         CHECK_TEXT(error.text, "");
         for (uint32_t t = 0; t < 3; t++) {
             struct surface surface = surface_of(&model, t);
-            CHECK(surface.has_colour && vec3_max_abs(vec3_sub(surface.colour, cases[i].colours[t])) < 1e-6);
+            CHECK(surface.has_colour && colour_max_abs(colour_sub(surface.colour, cases[i].colours[t])) < 1e-6);
         }
         CHECK(model_materials(&model)[0].by_vertex);
         model_destroy(&model);

@@ -44,7 +44,7 @@ static struct hit middle(void) {
                         .second = {3.5 / 16, 0.25, {1, 0, 0}, {0, 1, 0}}};
 }
 
-static struct vec3 vertex_colour = {1, 1, 1};
+static struct colour vertex_colour = {1, 1, 1};
 
 /* inputs, bsdf: what a hit in the middle has. */
 static bool surface_of_file(const char *name, const char *material, struct surface_inputs *inputs, struct bsdf *bsdf) {
@@ -87,14 +87,14 @@ TEST(colours_of_vertices_multiply_the_picture_of_a_material_and_its_kd) {
     test_write_text(in_folder("c.obj"), "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nvt 0 0\nmtllib c.mtl\n"
                                         "usemtl picture\nf 1/1 2/1 3/1\nusemtl plain\nf 1 2 3\n");
     struct surface_inputs inputs = {0};
-    vertex_colour.x = 0.5;
+    vertex_colour.r = 0.5;
     if (inputs_of_file("c.obj", "picture", &inputs)) {
-        CHECK_NEAR(inputs.kd.x, 0.5 * 0.2, 1e-12);
-        CHECK_NEAR(inputs.kd.y, 0.4, 1e-12);
-        CHECK_NEAR(inputs.kd.z, 0.5, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 0.5 * 0.2, 1e-12);
+        CHECK_NEAR(inputs.kd.g, 0.4, 1e-12);
+        CHECK_NEAR(inputs.kd.b, 0.5, 1e-12);
     }
     if (inputs_of_file("c.obj", "plain", &inputs))
-        CHECK_NEAR(inputs.kd.x, 0.1, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 0.1, 1e-12);
 }
 
 TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
@@ -122,22 +122,22 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
                            "usemtl tilt\nf 1 2 3\n");
     struct surface_inputs inputs = {0};
     if (inputs_of_file("m.obj", "ks", &inputs)) {
-        CHECK_NEAR(inputs.ks.x, 0.1, 1e-12);
-        CHECK_NEAR(inputs.ks.y, 0.2, 1e-12);
-        CHECK_NEAR(inputs.ks.z, 0.5, 1e-12);
+        CHECK_NEAR(inputs.ks.r, 0.1, 1e-12);
+        CHECK_NEAR(inputs.ks.g, 0.2, 1e-12);
+        CHECK_NEAR(inputs.ks.b, 0.5, 1e-12);
     }
     if (inputs_of_file("m.obj", "ks alone", &inputs))
-        CHECK_NEAR(inputs.ks.y, 0.4, 1e-12);
+        CHECK_NEAR(inputs.ks.g, 0.4, 1e-12);
     if (inputs_of_file("m.obj", "dull", &inputs))
-        CHECK_NEAR(inputs.ks.z, 0, 0);
+        CHECK_NEAR(inputs.ks.b, 0, 0);
     if (inputs_of_file("m.obj", "ke", &inputs)) {
-        CHECK_NEAR(inputs.emission.x, 0.4, 1e-12);
-        CHECK_NEAR(inputs.emission.z, 2, 1e-12);
+        CHECK_NEAR(inputs.emission.r, 0.4, 1e-12);
+        CHECK_NEAR(inputs.emission.b, 2, 1e-12);
     }
     if (inputs_of_file("m.obj", "ke alone", &inputs))
-        CHECK_NEAR(inputs.emission.x, 0.2, 1e-12);
+        CHECK_NEAR(inputs.emission.r, 0.2, 1e-12);
     if (inputs_of_file("m.obj", "glow", &inputs))
-        CHECK_NEAR(inputs.emission.y, 3, 0);
+        CHECK_NEAR(inputs.emission.g, 3, 0);
     if (inputs_of_file("m.obj", "holes", &inputs))
         CHECK_NEAR(inputs.opacity, (0.2 + 0.4 + 1) / 3, 1e-12);
     double slope = 10.0 / 255 * 16 * BUMP_HEIGHT;
@@ -149,7 +149,7 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
         CHECK_NEAR(inputs.normal.z, 1, 0);
     if (inputs_of_file("m.obj", "tilt", &inputs)) {
         CHECK_NEAR(inputs.normal.x / inputs.normal.z, (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
-        CHECK_NEAR(inputs.kd.y, 0.4, 1e-12);
+        CHECK_NEAR(inputs.kd.g, 0.4, 1e-12);
     }
 }
 
@@ -173,11 +173,11 @@ static void write_two_materials(const char *materials) {
     test_write_text(in_folder("m.gltf"), text);
 }
 
-static struct vec3 weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
+    struct colour sum = {0, 0, 0};
     for (int i = 0; i < bsdf->count; i++)
         if (bsdf->lobes[i].kind == kind)
-            sum = vec3_add(sum, bsdf->lobes[i].weight);
+            sum = colour_add(sum, bsdf->lobes[i].weight);
     return sum;
 }
 
@@ -193,21 +193,21 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
     struct surface_inputs inputs = {0};
     struct bsdf bsdf;
     if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
-        CHECK_NEAR(inputs.kd.y, 0.5, 1e-12);
-        CHECK_NEAR(inputs.ks.z, 1, 0);
+        CHECK_NEAR(inputs.kd.g, 0.5, 1e-12);
+        CHECK_NEAR(inputs.ks.b, 1, 0);
         CHECK_NEAR(inputs.roughness, 0.5 * 0.4, 1e-12);
-        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 0.75, 1e-12); /* times 1, the blue of the picture */
-        CHECK_NEAR(inputs.emission.x, 0.2, 1e-12);
-        CHECK_NEAR(inputs.emission.z, 0.5, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).r, 0.75, 1e-12); /* times 1, the blue of the picture */
+        CHECK_NEAR(inputs.emission.r, 0.2, 1e-12);
+        CHECK_NEAR(inputs.emission.b, 0.5, 1e-12);
         CHECK_NEAR(inputs.normal.x / inputs.normal.z, 0.5 * (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
         CHECK_NEAR(inputs.opacity, 1, 0);
     }
     if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) {
-        CHECK_NEAR(inputs.emission.x, 0, 0); /* the factor is black */
+        CHECK_NEAR(inputs.emission.r, 0, 0); /* the factor is black */
         CHECK_NEAR(inputs.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
-        CHECK_NEAR(inputs.kd.x, 0.2, 1e-12);
-        CHECK_NEAR(inputs.kd.y, 0.5 * 0.4, 1e-12);
-        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 0.2, 1e-12);
+        CHECK_NEAR(inputs.kd.g, 0.5 * 0.4, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).r, 1, 1e-12);
     }
 }
 
@@ -223,11 +223,11 @@ TEST(gltf_pictures_by_second_or_turned_coordinates_are_looked_up_there) {
         "\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1.5707963267948966,\"texCoord\":1}}}}}");
     struct surface_inputs inputs = {0};
     if (inputs_of_file("m.gltf", "a", &inputs)) {
-        CHECK_NEAR(inputs.kd.x, 30.0 / 255, 1e-12);
-        CHECK_NEAR(inputs.emission.x, 35.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 30.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.emission.r, 35.0 / 255, 1e-12);
     }
     if (inputs_of_file("m.gltf", "b", &inputs)) /* u is v, which counts from the upper edge */
-        CHECK_NEAR(inputs.kd.x, 115.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 115.0 / 255, 1e-12);
 }
 
 TEST(gltf_materials_of_specular_colour_and_gloss_are_layers) {
@@ -241,15 +241,15 @@ TEST(gltf_materials_of_specular_colour_and_gloss_are_layers) {
     struct surface_inputs inputs = {0};
     struct bsdf bsdf;
     if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
-        CHECK_NEAR(inputs.kd.x, 0.5 * 128 / 255, 1e-12);
-        CHECK_NEAR(inputs.ks.y, 0.5, 1e-12);
+        CHECK_NEAR(inputs.kd.r, 0.5 * 128 / 255, 1e-12);
+        CHECK_NEAR(inputs.ks.g, 0.5, 1e-12);
         CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
-        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 0, 0);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).r, 0, 0);
     }
     if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) { /* as bright as a metal */
-        CHECK_NEAR(inputs.kd.z, 204.0 / 255, 1e-12);
+        CHECK_NEAR(inputs.kd.b, 204.0 / 255, 1e-12);
         CHECK_NEAR(inputs.roughness, 0.25, 1e-12);
-        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).r, 1, 1e-12);
     }
 }
 
@@ -304,10 +304,10 @@ TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {
     CHECK_NEAR(m[0].layers.coat_ior, 1.5, 0);
     CHECK_NEAR(m[0].layers.coat_darkening, 0, 0);
     CHECK_NEAR(m[0].layers.fuzz_weight, 0.5, 0);
-    CHECK_NEAR(m[0].layers.fuzz_colour.y, 0.5, 0);
+    CHECK_NEAR(m[0].layers.fuzz_colour.g, 0.5, 0);
     CHECK_NEAR(m[0].layers.fuzz_roughness, 0.75, 0);
     CHECK_NEAR(m[0].layers.specular_weight, 0.5, 0);
-    CHECK_NEAR(m[0].ks.y, 0.5, 0);
+    CHECK_NEAR(m[0].ks.g, 0.5, 0);
     CHECK(m[0].layers.thin_walled && !m[1].layers.thin_walled);
     CHECK_NEAR(m[1].layers.specular_ior, 1.25, 0);
     model_destroy(&model);
@@ -315,14 +315,14 @@ TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {
     struct bsdf bsdf;
     if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
         CHECK_NEAR(inputs.opacity, 0.25, 0);
-        CHECK_NEAR(inputs.emission.y, 4, 0);
-        CHECK(weight_of(&bsdf, LOBE_FUZZ).x > 0);
+        CHECK_NEAR(inputs.emission.g, 4, 0);
+        CHECK(weight_of(&bsdf, LOBE_FUZZ).r > 0);
     }
     if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) {
         CHECK(bsdf.transmits);
         CHECK_NEAR(bsdf.eta, 1 / 1.25, 1e-12);
-        CHECK_NEAR(inputs.absorption.x, 0, 0);
-        CHECK_NEAR(inputs.absorption.z, log(4) / 2, 1e-12);
+        CHECK_NEAR(inputs.absorption.r, 0, 0);
+        CHECK_NEAR(inputs.absorption.b, log(4) / 2, 1e-12);
     }
 }
 
@@ -350,7 +350,7 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         CHECK(material_cover(&over, INPUT_KD, &picture, &arena, &error));
         surface_inputs_of(&over, &hit, &inputs);
         CHECK_NEAR(inputs.opacity, wanted[i], 1e-12);
-        CHECK_NEAR(inputs.kd.y, 20 / 255.0, 1e-12);
+        CHECK_NEAR(inputs.kd.g, 20 / 255.0, 1e-12);
         arena_destroy(&arena);
     }
     image_release(image);
@@ -381,9 +381,9 @@ static void check_unusable(const char *name, const char *text, size_t size, cons
         struct hit hit = middle();
         struct surface_inputs got;
         surface_inputs_of(node->slots[0], &hit, &got);
-        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
-        CHECK_NEAR(got.ks.x, 0.3, 0);
-        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_NEAR(colour_max_abs(colour_sub(got.kd, colour_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(got.ks.r, 0.3, 0);
+        CHECK_NEAR(colour_max_abs(got.emission), 0, 0);
         CHECK_NEAR(got.opacity, 1, 0);
         CHECK_NEAR(got.normal.z, 1, 0);
         CHECK_EQ_INT(model->warning_count, 1);
@@ -420,8 +420,8 @@ TEST(pictures_on_a_mesh_without_coordinates_have_no_effect_but_a_warning) {
         struct surface_inputs got;
         hit.has_uv = false;
         surface_inputs_of(node->slots[0], &hit, &got);
-        CHECK_NEAR(vec3_max_abs(vec3_sub(got.kd, vec3_make(0.2, 0.4, 0.6))), 0, 0);
-        CHECK_NEAR(vec3_max_abs(got.emission), 0, 0);
+        CHECK_NEAR(colour_max_abs(colour_sub(got.kd, colour_make(0.2, 0.4, 0.6))), 0, 0);
+        CHECK_NEAR(colour_max_abs(got.emission), 0, 0);
         CHECK_EQ_INT(model->warning_count, 1);
         CHECK(strstr(model->warnings[0],
                      "the pictures of the material 'a' have no effect on meshes without coordinates"));

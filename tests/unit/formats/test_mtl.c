@@ -34,14 +34,14 @@ TEST(mtl_statements_become_materials) {
     if (!read_model(&model, "a.obj"))
         return;
     const struct model_material *m = material(&model, "plain");
-    CHECK_NEAR(m->kd.y, 0.2, 0);
-    CHECK_NEAR(m->ks.z, 0.5, 0);
-    CHECK_NEAR(m->ka.x, 1, 0);
-    CHECK_NEAR(m->ke.y, 2, 0);
+    CHECK_NEAR(m->kd.g, 0.2, 0);
+    CHECK_NEAR(m->ks.b, 0.5, 0);
+    CHECK_NEAR(m->ka.r, 1, 0);
+    CHECK_NEAR(m->ke.g, 2, 0);
     CHECK_NEAR(m->shininess, 32, 0);
     CHECK_NEAR(m->dissolve, 0.25, 0);
     CHECK_NEAR(m->ior, 1.5, 0);
-    CHECK_NEAR(m->filter.x, 0.5, 0);
+    CHECK_NEAR(m->filter.r, 0.5, 0);
     CHECK_EQ_INT(m->illum, 7);
     CHECK_NEAR(material(&model, "two words")->dissolve, 0.25, 0);
     CHECK_NEAR(material(&model, "halo")->dissolve, 0.5, 0);
@@ -137,7 +137,7 @@ TEST(mtl_that_is_missing_and_values_that_are_wrong_are_warnings) {
             continue;
         CHECK_EQ_INT(model.warning_count, 1);
         CHECK_TEXT(model.warnings[0] + strlen(test_folder()) + 1, cases[i].message);
-        CHECK_NEAR(model_materials(&model)[0].kd.x, 0.8, 0);
+        CHECK_NEAR(model_materials(&model)[0].kd.r, 0.8, 0);
         CHECK(!model_materials(&model)[0].has_shininess && model_materials(&model)[0].dissolve == 1);
         model_destroy(&model);
     }
@@ -211,7 +211,7 @@ TEST(a_map_without_a_name_has_no_effect_but_a_warning) {
         return;
     CHECK_EQ_INT(model.warning_count, 1);
     CHECK(strstr(model.warnings[0], "n.mtl:2: the name of a picture is missing (2 times, the first here)"));
-    CHECK(!material(&model, "a")->map_kd.name && material(&model, "a")->kd.x == 1);
+    CHECK(!material(&model, "a")->map_kd.name && material(&model, "a")->kd.r == 1);
     model_destroy(&model);
 }
 
@@ -312,8 +312,8 @@ TEST(mtl_materials_follow_their_mesh) {
         CHECK_EQ_INT(node->slot_count, 4);
         CHECK_TEXT(node->slot_names[3], "other");
         CHECK(node->slots[3] == NULL);
-        CHECK_NEAR(node->slots[0]->phong.kd.x, 1, 0);
-        CHECK_NEAR(node->slots[0]->phong.ks.x, 0, 0);
+        CHECK_NEAR(node->slots[0]->phong.kd.r, 1, 0);
+        CHECK_NEAR(node->slots[0]->phong.ks.r, 0, 0);
         CHECK_EQ_INT(node->slots[1]->kind, MATERIAL_FRESNEL);
         struct surface_material glass = surface_material_make(node->slots[1], false, NULL);
         CHECK(surface_is_transparent(&glass));

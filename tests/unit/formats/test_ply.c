@@ -140,9 +140,9 @@ TEST(ply_normals_uvs_and_colours_are_used_at_the_surface) {
         CHECK(surface.has_uv && surface.has_colour);
         CHECK_NEAR(surface.u, 0.25, 1e-12);
         CHECK_NEAR(surface.v, 0.5, 1e-12);
-        CHECK_NEAR(surface.colour.x, 0.25, 1e-6);
-        CHECK_NEAR(surface.colour.y, 0.25, 1e-6);
-        CHECK_NEAR(surface.colour.z, 0.5, 1e-6);
+        CHECK_NEAR(surface.colour.r, 0.25, 1e-6);
+        CHECK_NEAR(surface.colour.g, 0.25, 1e-6);
+        CHECK_NEAR(surface.colour.b, 0.5, 1e-6);
         CHECK_NEAR(surface.shading_normal.y, 0.5, 1e-12);
         CHECK_NEAR(surface.shading_normal.z, 0.5, 1e-12);
         CHECK_EQ_INT(model.materials.count, 1);

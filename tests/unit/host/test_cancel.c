@@ -150,7 +150,7 @@ TEST(the_building_of_a_world_stops_soon) {
     struct stage s;
     struct test_random random = {3};
     stage_begin(&s, 2);
-    struct material *material = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    struct material *material = stage_phong(&s, colour_all(1), colour_all(0), 1);
     for (int i = 0; i < 80000; i++) {
         struct node *ball = stage_sphere(&s, s.root, material);
         stage_move(&s, ball, test_uniform(&random, -50, 50), test_uniform(&random, -50, 50),
@@ -224,10 +224,10 @@ TEST(sending_photons_and_making_their_map_stop_soon) {
         struct node *ball = stage_sphere(&s, s.root, glass);
         stage_move(&s, ball, i % 3 * 1.5 - 1.5, (double)(i / 3) * 1.5 - 1.5, 0);
     }
-    struct node *floor = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *floor = stage_cube(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     stage_scale(&s, floor, 40, 1, 40);
     stage_move(&s, floor, -20, -5, -20);
-    stage_point_light(&s, vec3_make(1, 8, 2), vec3_all(1));
+    stage_point_light(&s, vec3_make(1, 8, 2), colour_all(1));
     s.settings.caustics.photons = 500000;
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     expect_quick("photons", s.pool, render, &s);

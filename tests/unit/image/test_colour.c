@@ -68,7 +68,7 @@ TEST(pictures_of_light_are_linear_already) {
 static struct image *in_world(struct stage *s, struct image *image, enum material_input input,
                               enum texture_encoding encoding, enum colour_pipeline colour) {
     const struct texture_image lookup = {.image = image, .mapping = MAPPING_UV, .encoding = encoding};
-    struct material *m = stage_phong(s, vec3_all(1), vec3_all(1), 10);
+    struct material *m = stage_phong(s, colour_all(1), colour_all(1), 10);
     const struct texture *texture = texture_keep(&s->scene.arena, texture_image(&lookup, NULL), &s->error);
     CHECK(texture && material_multiply(m, input, texture, &s->scene.arena, &s->error));
     struct node *root = stage_group(s, s->root);
@@ -116,7 +116,7 @@ TEST(a_pixel_trace_reports_the_decoded_colours_of_the_picture) {
     CHECK(in_world(&s, image, INPUT_KD, ENCODING_AUTO, COLOUR_LINEAR));
     CHECK(material_observe(&s.world.surfaces, &hit, s.world.authored.materials[0],
                            &(struct material_context){.thin = false}, keep_last, &reported));
-    CHECK_NEAR(reported.kd.x, decoded(64 / 255.0) * (255 - 64) / 255, 1e-4); /* with its alpha, over black */
+    CHECK_NEAR(reported.kd.r, decoded(64 / 255.0) * (255 - 64) / 255, 1e-4); /* with its alpha, over black */
     stage_end(&s);
     image_release(image);
 }
@@ -330,9 +330,9 @@ TEST(colours_of_the_screen_are_accepted_for_lights_fogs_and_skies) {
     }
     struct light light = {.colour = {0.5, 0, 2}, .display = {0.25, 0, 1}, .has_display = true};
     light_decode(&light);
-    CHECK_NEAR(light.colour.x, 2 * decoded(0.25), 1e-12);
-    CHECK_NEAR(light.colour.y, 0, 0);
-    CHECK_NEAR(light.colour.z, 2, 1e-12);
+    CHECK_NEAR(light.colour.r, 2 * decoded(0.25), 1e-12);
+    CHECK_NEAR(light.colour.g, 0, 0);
+    CHECK_NEAR(light.colour.b, 2, 1e-12);
 }
 
 TEST(errors_of_colours_of_the_screen_name_what_is_accepted) {

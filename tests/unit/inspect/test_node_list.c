@@ -37,8 +37,8 @@ TEST(a_node_selected_in_the_tree_is_what_a_click_on_it_selects) {
     struct picked clicked, chosen;
     stage_begin(&s, 1);
     struct node *group = stage_group(&s, s.root);
-    stage_move(&s, stage_sphere(&s, group, stage_phong(&s, vec3_all(0.5), vec3_all(0), 1)), 3, 0, 0);
-    (void)stage_sphere(&s, group, stage_phong(&s, vec3_make(0.1, 0.2, 0.3), vec3_all(0), 1));
+    stage_move(&s, stage_sphere(&s, group, stage_phong(&s, colour_all(0.5), colour_all(0), 1)), 3, 0, 0);
+    (void)stage_sphere(&s, group, stage_phong(&s, colour_make(0.1, 0.2, 0.3), colour_all(0), 1));
     stage_rotate(&s, group, 1, 20);
     CHECK(stage_render(&s, 32, 32));
     struct render_job job = stage_job(&s, 32, 32);

@@ -15,8 +15,8 @@
 
 /* --- the parts of a ray add up to its colour --- */
 
-static double difference(struct vec3 a, struct vec3 b) {
-    return vec3_max_abs(vec3_sub(a, b)) / (1 + vec3_max_abs(a));
+static double difference(struct colour a, struct colour b) {
+    return colour_max_abs(colour_sub(a, b)) / (1 + colour_max_abs(a));
 }
 
 struct tally {
@@ -30,38 +30,38 @@ static void check_ray(struct tally *tally, const struct pixel_trace_ray *ray) {
     tally->limits += ray->cut == RAY_OVER_LIMIT;
     if (!ray->begun)
         return;
-    struct vec3 whole = vec3_add(vec3_mul(ray->seen, ray->left), ray->in_scattered);
+    struct colour whole = colour_add(colour_mul(ray->seen, ray->left), ray->in_scattered);
     tally->worst = fmax(tally->worst, difference(whole, ray->brings));
-    tally->fogged += ray->in_scattered.x != 0;
-    tally->absorbed += ray->left.x < 1 && ray->in_scattered.x == 0;
-    struct vec3 holes = {0, 0, 0}, surface = vec3_add(ray->direct, ray->bsdf.emission), lights = ray->ambient;
+    tally->fogged += ray->in_scattered.r != 0;
+    tally->absorbed += ray->left.r < 1 && ray->in_scattered.r == 0;
+    struct colour holes = {0, 0, 0}, surface = colour_add(ray->direct, ray->bsdf.emission), lights = ray->ambient;
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
-        lights = vec3_add(lights, light->colour);
+        lights = colour_add(lights, light->colour);
         tally->blocked += light->lit == PIXEL_TRACE_LIGHT_BLOCKED;
         tally->reached += light->lit == PIXEL_TRACE_LIGHT_REACHES;
         tally->excluded += light->lit == PIXEL_TRACE_LIGHT_NOT_OURS;
         if (light->lit == PIXEL_TRACE_LIGHT_REACHES && !light->area_light) {
-            struct vec3 own = vec3_mul(vec3_scale(light->light->colour, light->strength), light->reflected);
-            own = vec3_scale(own, (double)light->arrived / (double)light->asked);
+            struct colour own = colour_mul(colour_scale(light->light->colour, light->strength), light->reflected);
+            own = colour_scale(own, (double)light->arrived / (double)light->asked);
             tally->worst = fmax(tally->worst, difference(own, light->colour));
         }
     }
     for (const struct pixel_trace_link *link = ray->links; link; link = link->next)
         tally->links++;
     for (const struct pixel_trace_ray *child = ray->first; child; child = child->next) {
-        struct vec3 part = vec3_mul(child->weight, child->brings);
+        struct colour part = colour_mul(child->weight, child->brings);
         if (child->kind == RAY_HOLE)
-            holes = vec3_add(holes, part);
+            holes = colour_add(holes, part);
         else
-            surface = vec3_add(surface, part);
+            surface = colour_add(surface, part);
         check_ray(tally, child);
     }
     if (!ray->met || ray->cut != RAY_FOLLOWED)
         return;
     tally->holes += ray->opacity < 1;
-    tally->worst = fmax(tally->worst, difference(vec3_add(lights, ray->photons), ray->direct));
+    tally->worst = fmax(tally->worst, difference(colour_add(lights, ray->photons), ray->direct));
     if (ray->shaded)
-        holes = vec3_add_scaled(holes, surface, ray->opacity);
+        holes = colour_add_scaled(holes, surface, ray->opacity);
     tally->worst = fmax(tally->worst, difference(holes, ray->seen));
 }
 
@@ -73,23 +73,23 @@ struct check {
 
 static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     struct check *check = context;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     double count = 0;
     (void)error;
     check->pixels++;
     check->marked += pixel_trace->marked;
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
         if (sample->counts) {
-            sum = vec3_add(sum, sample->colour);
+            sum = colour_add(sum, sample->colour);
             count++;
         }
         check->tally.worst = fmax(check->tally.worst, difference(sample->first->brings, sample->colour));
         check_ray(&check->tally, sample->first);
     }
-    struct vec3 reported = {(double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]};
-    struct vec3 have = stage_pixel(check->stage, pixel_trace->x, pixel_trace->y);
-    check->wrong += reported.x != have.x || reported.y != have.y || reported.z != have.z;
-    check->wrong += difference(vec3_scale(sum, 1 / count), reported) > 1e-6; /* the film is single precision */
+    struct colour reported = {(double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]};
+    struct colour have = stage_pixel(check->stage, pixel_trace->x, pixel_trace->y);
+    check->wrong += reported.r != have.r || reported.g != have.g || reported.b != have.b;
+    check->wrong += difference(colour_scale(sum, 1 / count), reported) > 1e-6; /* the film is single precision */
     return true;
 }
 
@@ -121,17 +121,17 @@ static struct check print_picture(struct stage *s, uint32_t width, uint32_t heig
 
 /* A mirror, marble, absorbing glass, a rough surface, an emitter, and shadows between them. */
 static void fill_stage(struct stage *s) {
-    struct material *mirror = stage_phong(s, vec3_make(0.2, 0.3, 0.2), vec3_all(0.7), 30);
+    struct material *mirror = stage_phong(s, colour_make(0.2, 0.3, 0.2), colour_all(0.7), 30);
     mirror->phong.reflect = 0.6;
     struct material *marble = scene_material(&s->scene, MATERIAL_MARBLE, mirror, &s->error);
-    CHECK(material_mix_kd(marble, texture_marble(0.7, 3, 2, 1), texture_constant(vec3_make(0.9, 0.2, 0.1)),
+    CHECK(material_mix_kd(marble, texture_marble(0.7, 3, 2, 1), texture_constant(colour_make(0.9, 0.2, 0.1)),
                           &s->scene.arena, &s->error));
     struct material *glass = stage_glass(s, 0.2, 0.7, 1.5);
-    glass->phong.absorption = vec3_make(0.3, 0.1, 0.05);
-    struct material *rough = stage_phong(s, vec3_all(0.4), vec3_all(0.5), 10);
+    glass->phong.absorption = colour_make(0.3, 0.1, 0.05);
+    struct material *rough = stage_phong(s, colour_all(0.4), colour_all(0.5), 10);
     rough->phong.reflect = 0.5;
     rough->phong.roughness = 0.3;
-    rough->phong.emission = vec3_make(0.05, 0, 0.02);
+    rough->phong.emission = colour_make(0.05, 0, 0.02);
     struct node *ball = stage_sphere(s, s->root, marble);
     stage_move(s, ball, -1.2, 0, 0);
     struct node *clear = stage_sphere(s, s->root, glass);
@@ -139,8 +139,8 @@ static void fill_stage(struct stage *s) {
     struct node *floor = stage_cube(s, s->root, rough);
     stage_scale(s, floor, 12, 0.2, 12);
     stage_move(s, floor, -6, -1.6, -6);
-    stage_point_light(s, vec3_make(4, 6, 5), vec3_make(0.8, 0.7, 0.6));
-    stage_point_light(s, vec3_make(-3, 5, -2), vec3_make(0.3, 0.4, 0.6));
+    stage_point_light(s, vec3_make(4, 6, 5), colour_make(0.8, 0.7, 0.6));
+    stage_point_light(s, vec3_make(-3, 5, -2), colour_make(0.3, 0.4, 0.6));
     s->lights[s->light_count++] = (struct light){.kind = LIGHT_PARALLELOGRAM,
                                                  .position = {0, 5, 3.5},
                                                  .corner = {-1, 5, 3},
@@ -152,7 +152,7 @@ static void fill_stage(struct stage *s) {
     not_lit[0] = floor;
     s->authored[1].exclude = not_lit;
     s->authored[1].exclude_count = 1;
-    s->ambient = vec3_all(0.2);
+    s->ambient = colour_all(0.2);
     s->sky = (struct sky){.kind = SKY_GRADIENT};
 }
 
@@ -198,16 +198,16 @@ TEST(a_pixel_trace_that_is_too_long_counts_what_it_leaves_out) {
     pixel_trace_init(&pixel_trace, 0, 0);
     struct pixel_sample position = {0, 0, 0.5, 0.5, 0, 1};
     struct ray ray = {.direction = {0, 0, -1}};
-    struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
+    struct observed_end end = {true, colour_all(1), colour_all(1), colour_all(0), colour_all(1)};
     OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = &position);
     for (int i = 0; i < PIXEL_TRACE_RAYS + 10; i++) {
-        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_CAMERA, vec3_all(1), RAY_FOLLOWED});
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_CAMERA, colour_all(1), RAY_FOLLOWED});
         OBSERVE(&pixel_trace.observer, OBSERVED_RAY_BEGIN, .begin = {&ray, NULL, NULL, INFINITY, 1});
-        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_REFLECTED, vec3_all(1), RAY_FOLLOWED});
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_REFLECTED, colour_all(1), RAY_FOLLOWED});
         CHECK_EQ_INT(pixel_trace.mute, i >= PIXEL_TRACE_RAYS);
         OBSERVE(&pixel_trace.observer, OBSERVED_RAY_END, .end = end);
     }
-    OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_END, .sample = {&position, vec3_all(1)});
+    OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_END, .sample = {&position, colour_all(1)});
     CHECK_EQ_INT(pixel_trace.rays, PIXEL_TRACE_RAYS);
     CHECK_EQ_INT(pixel_trace.omitted, 10);
     CHECK(!pixel_trace.failed);
@@ -227,7 +227,7 @@ static bool note_path(void *context, uint32_t first, uint32_t count, const struc
 TEST(paths_to_instances_name_every_node_and_index_on_them) {
     struct stage s;
     stage_begin(&s, 1);
-    const struct material *m = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    const struct material *m = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
     struct node *pair = stage_group(&s, s.root), *other = stage_group(&s, s.root);
     struct node *ball = stage_sphere(&s, pair, m);
     CHECK(node_add_child(&s.scene, other, pair, &s.error) &&

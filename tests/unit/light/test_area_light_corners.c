@@ -101,7 +101,7 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
                            .colour = {1, 1, 1},
                            .emissive = true};
     struct light_triangle triangle = {.corner = {0, 0, 0}, .edge1 = {1, 0, 0}, .edge2 = {0, 1, 0}, .normal = {0, 0, 1}};
-    triangle.intensity = vec3_all(1);
+    triangle.intensity = colour_all(1);
     const double until[] = {1};
     struct light_mesh mesh = {.count = 1, .triangles = &triangle, .until = until, .one_sided = true};
     struct light area_light = {.kind = LIGHT_MESH, .mesh = &mesh, .colour = {1, 1, 1}, .emissive = true};
@@ -113,21 +113,21 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
             struct sample2 xi = {k / 8.0, (8 - k) / 8.0};
             (void)light_context_make(&writer, points[i], points[i], &context);
             struct light_sample sample = light_sample(&writer, &context, xi);
-            CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
+            CHECK(sample.intensity.r == 0 && vec3_finite(sample.target.at));
             (void)light_context_make(&area_light, points[i], points[i], &context);
             sample = light_sample(&area_light, &context, xi);
-            CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
+            CHECK(sample.intensity.r == 0 && vec3_finite(sample.target.at));
         }
     /* Behind and in front of a lamp that shines to one side. */
     struct light_sample sample;
     struct vec3 behind = {0.2, 0.2, -1}, before = {0.2, 0.2, 1};
     (void)light_context_make(&area_light, behind, behind, &context);
     sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
-    CHECK(sample.intensity.x == 0);
+    CHECK(sample.intensity.r == 0);
     mesh.one_sided = false;
     sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
-    CHECK(sample.intensity.x > 0);
+    CHECK(sample.intensity.r > 0);
     (void)light_context_make(&area_light, before, before, &context);
     sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
-    CHECK(sample.intensity.x > 0);
+    CHECK(sample.intensity.r > 0);
 }

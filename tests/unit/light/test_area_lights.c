@@ -19,7 +19,7 @@ static const double pi = 3.14159265358979323846;
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 0.02, 0.03, z}, {-0.02, -0.03, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
-    return stage_pixel(s, 0, 0).x;
+    return stage_pixel(s, 0, 0).r;
 }
 
 static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3 edge2) {
@@ -257,8 +257,8 @@ static struct node *mesh_node(struct stage *s, const struct maker *maker, const 
 }
 
 static const struct material *glowing(struct stage *s, double radiance) {
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    material->phong.emission = vec3_all(radiance);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
+    material->phong.emission = colour_all(radiance);
     return material;
 }
 
@@ -294,8 +294,8 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
         if (shown)
             CHECK(node_add_child(&s.scene, holder, node, &s.error));
         s.lights[0].has_emission = !shown;
-        s.lights[0].emission = vec3_all(2);
-        s.lights[0].colour = vec3_make(0.5, 1, 1);
+        s.lights[0].emission = colour_all(2);
+        s.lights[0].colour = colour_make(0.5, 1, 1);
         CHECK_NEAR(patch_at(&s, 0, 0), corner_factor(a, b, h), 2.5e-3);
         stage_end(&s);
     }
@@ -330,8 +330,8 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
         s.lights[0].has_emission = route == BY_LIGHT;
-        s.lights[0].emission = vec3_all(2);
-        s.lights[0].colour = vec3_make(0.5, 1, 1);
+        s.lights[0].emission = colour_all(2);
+        s.lights[0].colour = colour_make(0.5, 1, 1);
         CHECK_NEAR(patch_at(&s, 0, 0), corner_factor(a, b, h), 2.5e-3);
         CHECK(s.warnings == 0);
         stage_end(&s);
@@ -382,8 +382,8 @@ TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
 TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
-    white->phong.emission = vec3_all(0.5);
+    struct material *white = stage_phong(&s, colour_all(1), colour_all(0), 1);
+    white->phong.emission = colour_all(0.5);
     white->phong.two_sided = true;
     struct maker maker = {0}; /* a corner of two squares: each lights the other by the factor (1 - 1 / sqrt 2) / 2 */
     for (int i = 0; i < 6; i++)
@@ -452,7 +452,7 @@ TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
     for (int i = 0; i < 4; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
         s.lights[0] = sky_area_light(&sky, 64);
         s.light_count = 1;
         s.settings.full = true;
@@ -460,7 +460,7 @@ TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
         struct vec3 v = views[i], up = {0, 0, 1};
         s.camera = (struct camera){vec3_scale(v, -100), v, up, 1e-5};
         CHECK(stage_render(&s, 1, 1));
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0.5 - v.y / 3, 2e-3);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).r, 0.5 - v.y / 3, 2e-3);
         stage_end(&s);
     }
 }
@@ -470,7 +470,7 @@ TEST(white_rough_and_polished_objects_vanish_in_uniform_light) {
     struct stage s;
     stage_begin(&s, 2);
     struct sky sky = {.kind = SKY_CONSTANT, .colour = {0.7, 0.7, 0.7}};
-    stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     struct node *mirror = stage_sphere(&s, s.root, stage_glass(&s, 1, 0, 1));
     stage_move(&s, mirror, 6, 0, 0);
     struct material *rough = stage_glass(&s, 1, 0, 1);
@@ -489,7 +489,7 @@ TEST(white_rough_and_polished_objects_vanish_in_uniform_light) {
     CHECK(stage_render(&s, 48, 36));
     double sum = 0, worst = 0;
     for (uint32_t i = 0; i < 48 * 36; i++) {
-        double off = stage_pixel(&s, i % 48, i / 48).x - 0.7;
+        double off = stage_pixel(&s, i % 48, i / 48).r - 0.7;
         sum += off / (48 * 36);
         worst = fmax(worst, fabs(off));
     }
@@ -506,7 +506,7 @@ static double irradiance(const struct sky *sky, struct vec3 normal, int steps) {
             double y = 1 - 2 * (j + 0.5) / steps, turn = pi * (i + 0.5) / steps, level = sqrt(1 - y * y);
             struct vec3 d = {level * cos(turn), y, level * sin(turn)};
             double cosine = vec3_dot(d, normal);
-            sum += cosine > 0 ? cosine * sky_colour(sky, d, 0).y : 0;
+            sum += cosine > 0 ? cosine * sky_colour(sky, d, 0).g : 0;
         }
     }
     return sum * 4 / (2.0 * steps * steps);
@@ -564,7 +564,7 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
     skies[1].intensity = 3;
     skies[1].turn_sine = 0.6, skies[1].turn_cosine = 0.8;
     CHECK(sky_from_faces(six, &skies[2], &error));
-    sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &skies[3]);
+    sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, colour_all(0.15), &skies[3]);
     char warning[256];
     struct pool *pool = pool_create(2, warning);
     for (int i = 0; i < 6; i++) {
@@ -575,11 +575,12 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
         for (int k = 0; k < N * N; k++) {
             struct sample2 xi = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
             struct sky_sample sample = sky_table_sample(&skies[i], table, xi);
-            struct vec3 d = sample.direction, light = sample.intensity;
+            struct vec3 d = sample.direction;
+            struct colour light = sample.intensity;
             CHECK_NEAR(vec3_length(d), 1, 1e-12);
             double cosine = vec3_dot(d, normal);
-            sum += cosine > 0 ? cosine * light.y : 0;
-            max = fmax(max, light.z);
+            sum += cosine > 0 ? cosine * light.g : 0;
+            max = fmax(max, light.b);
         }
         /* The gradient has only blue. */
         double expected = i == 0 ? 0 : irradiance(&skies[i], normal, 500);
@@ -636,7 +637,7 @@ TEST(lamps_that_are_meshes_and_skies_give_the_same_bits_everywhere) {
         struct stage s;
         stage_begin(&s, runs[i].threads);
         struct node *top = stage_group(&s, s.root), *area_light = square_node(&s, glowing(&s, 5));
-        struct material *white = stage_phong(&s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
+        struct material *white = stage_phong(&s, colour_make(0.8, 0.7, 0.6), colour_all(0.2), 20);
         struct node *floor = stage_cube(&s, top, white);
         stage_scale(&s, floor, 20, 1, 20);
         stage_move(&s, floor, -10, -2, -10);

@@ -9,6 +9,7 @@
 #include "math/frame.h"
 #include "tests/harness.h"
 #include "tests/unit/call_makers.h"
+#include "tests/unit/colour_length.h"
 #include "tests/unit/script_host.h"
 
 #include <math.h>
@@ -38,7 +39,7 @@ static void make_mesh(struct example *e, struct vec3 middle, double size) {
             const double *c = corners[faces[f][k]];
             at[k] = vec3_add_scaled(middle, vec3_make(c[0], c[1], c[2]), size / 2);
         }
-        light_mesh_add(&builder, at, 1, 3, vec3_make(1 + f, 2, 3));
+        light_mesh_add(&builder, at, 1, 3, colour_make(1 + f, 2, 3));
     }
     light_mesh_end(&builder, e->light.colour, &e->mesh);
     e->light.mesh = &e->mesh;
@@ -88,7 +89,7 @@ static void example_begin(struct example *e, enum light_kind kind, bool area_lig
         break;
     case LIGHT_SKY:
         e->light.emissive = true;
-        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &e->sky);
+        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, colour_all(0.15), &e->sky);
         e->light.sky = &e->sky;
         break;
     }
@@ -228,7 +229,7 @@ static void check_density(const char *name, const struct sampled *s) {
     memset(counted, 0, sizeof counted);
     for (uint64_t i = 0; i < N; i++) {
         struct light_sample sample = sample_of(s, xi_of(77, i));
-        bool on = vec3_max_abs(sample.intensity) > 0;
+        bool on = colour_max_abs(sample.intensity) > 0;
         lost += !on;
         counted[cell_of(sample.direction)] += on;
     }
@@ -315,7 +316,7 @@ TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
         double mean = 0, angle = 0;
         for (uint64_t i = 0; i < N; i++) {
             struct light_sample sample = light_sample(&e.light, &context, xi_of(5, i));
-            mean += vec3_max_abs(sample.intensity) > 0 ? 1 / sample.pdf / N : 0;
+            mean += colour_max_abs(sample.intensity) > 0 ? 1 / sample.pdf / N : 0;
         }
         for (int i = 0; i < SIDE * SIDE; i++) {
             struct vec3 d = grid_direction((i / SIDE + 0.5) / SIDE * ROWS, (i % SIDE + 0.5) / SIDE * COLUMNS);
@@ -342,18 +343,18 @@ TEST(a_sample_of_every_lamp_has_the_radiance_of_a_ray_that_meets_it) {
             struct light_hit hit;
             CHECK(!sample.is_delta);
             CHECK_NEAR(vec3_length(sample.direction), 1, 1e-12);
-            if (!(vec3_max_abs(sample.intensity) > 0))
+            if (!(colour_max_abs(sample.intensity) > 0))
                 continue;
             on++;
             if (!hit_of_sample(&e.light, &context, &sample, &ray, &hit))
                 continue; /* on its rim */
-            struct vec3 seen = light_emitted(&e.light, &ray, &hit);
+            struct colour seen = light_emitted(&e.light, &ray, &hit);
             CHECK_NEAR(light_pdf(&e.light, &context, sample.direction, &hit) / sample.pdf, 1, 1e-6);
-            CHECK_NEAR(vec3_length(vec3_sub(seen, sample.radiance)), 0, 1e-6);
-            CHECK(vec3_max_abs(seen) <= light_brightest(&e.light) * (1 + 1e-9));
+            CHECK_NEAR(colour_length(colour_sub(seen, sample.radiance)), 0, 1e-6);
+            CHECK(colour_max_abs(seen) <= light_brightest(&e.light) * (1 + 1e-9));
             /* The pi between radiance and classic intensity (docs/design/light.md). */
-            struct vec3 unit = vec3_scale(sample.intensity, pi * sample.pdf);
-            CHECK_NEAR(vec3_length(vec3_sub(unit, sample.radiance)), 0, 1e-9);
+            struct colour unit = colour_scale(sample.intensity, pi * sample.pdf);
+            CHECK_NEAR(colour_length(colour_sub(unit, sample.radiance)), 0, 1e-9);
         }
         CHECK(on > 200);
     }
@@ -375,8 +376,8 @@ TEST(a_light_without_emission_shades_from_one_direction_and_has_no_density) {
             CHECK(sample.is_delta && sample.pdf == 1);
             CHECK(light_pdf(&e.light, &context, sample.direction, &hit) == 0);
             CHECK(vec3_length(vec3_sub(sample.direction, arrival.direction)) == 0);
-            CHECK_NEAR(sample.intensity.x, e.light.colour.x * arrival.strength, 1e-15);
-            CHECK(sample.intensity.x > 0);
+            CHECK_NEAR(sample.intensity.r, e.light.colour.r * arrival.strength, 1e-15);
+            CHECK(sample.intensity.r > 0);
             CHECK(context.single == (vec3_length(vec3_sub(sample.target.at, arrival.middle.at)) == 0));
             delta += i == 0;
         }
@@ -392,8 +393,8 @@ enum { GRID = 24, SAMPLES = 16, PHOTONS = 100000 };
 static const double floor_radius = 2;
 
 /* The light on a disc in the plane y = 0, by samples. */
-static struct vec3 flux_by_samples(const struct light *light) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour flux_by_samples(const struct light *light) {
+    struct colour sum = {0, 0, 0};
     for (uint64_t k = 0; k < GRID * GRID; k++) {
         struct sample2 at = {((double)(k / GRID) + 0.5) / GRID, ((double)(k % GRID) + 0.5) / GRID};
         struct sample2 round = sample_disc(at);
@@ -402,10 +403,10 @@ static struct vec3 flux_by_samples(const struct light *light) {
         for (uint64_t i = 0; i < SAMPLES && light_context_make(light, from, from, &context); i++) {
             struct light_sample sample = light_sample(light, &context, xi_of(k, i));
             if (sample.direction.y > 0)
-                sum = vec3_add_scaled(sum, sample.intensity, sample.direction.y);
+                sum = colour_add_scaled(sum, sample.intensity, sample.direction.y);
         }
     }
-    return vec3_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * SAMPLES));
+    return colour_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * SAMPLES));
 }
 
 /* A uniformly drawn photon and the inverse of its density: LOCAL over all directions, others over a perpendicular
@@ -415,7 +416,7 @@ static struct light_photon photon_at(const struct light_emitter *emitter, uint64
     struct vec3 direction = grid_direction(a.x * ROWS, a.y * COLUMNS);
     if (emitter->domain == LIGHT_DOMAIN_LOCAL) {
         struct light_photon photon = light_photon(emitter, direction, b);
-        photon.power = vec3_scale(photon.power, 4 * pi);
+        photon.power = colour_scale(photon.power, 4 * pi);
         return photon;
     }
     struct light_photon photon = light_photon(emitter, direction, b);
@@ -423,13 +424,13 @@ static struct light_photon photon_at(const struct light_emitter *emitter, uint64
     frame_tangents(photon.direction, &right, &up);
     photon.origin = vec3_add_scaled(vec3_scale(right, floor_radius * (2 * a.x - 1)), up, floor_radius * (2 * a.y - 1));
     photon.origin = vec3_add_scaled(photon.origin, photon.direction, -10);
-    photon.power = vec3_scale(photon.power, 4 * floor_radius * floor_radius);
+    photon.power = colour_scale(photon.power, 4 * floor_radius * floor_radius);
     return photon;
 }
 
-static struct vec3 flux_by_photons(const struct light *light) {
+static struct colour flux_by_photons(const struct light *light) {
     struct light_emitter emitter;
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     if (!light_emitter_make(light, 0, 0, 1, &emitter))
         return sum;
     for (uint64_t i = 0; i < PHOTONS; i++) {
@@ -439,7 +440,7 @@ static struct vec3 flux_by_photons(const struct light *light) {
         double length = -photon.origin.y / photon.direction.y;
         struct vec3 landed = vec3_add_scaled(photon.origin, photon.direction, length);
         if (landed.x * landed.x + landed.z * landed.z < floor_radius * floor_radius)
-            sum = vec3_add_scaled(sum, photon.power, light_photon_attenuation(light, length) / PHOTONS);
+            sum = colour_add_scaled(sum, photon.power, light_photon_attenuation(light, length) / PHOTONS);
     }
     return sum;
 }
@@ -450,10 +451,10 @@ TEST(photons_of_every_light_carry_the_power_of_its_samples) {
             struct example e;
             /* Without emission it is sampled as if from its centre: small, so that positions do not matter. */
             example_begin(&e, (enum light_kind)kind, area_light, area_light ? 1.2 : 0.2);
-            struct vec3 sampled = flux_by_samples(&e.light), sent = flux_by_photons(&e.light);
-            CHECK(sampled.x > 0);
-            CHECK_NEAR(sent.x / sampled.x, 1, 0.03);
-            CHECK_NEAR(sent.z / sampled.z, 1, 0.03);
+            struct colour sampled = flux_by_samples(&e.light), sent = flux_by_photons(&e.light);
+            CHECK(sampled.r > 0);
+            CHECK_NEAR(sent.r / sampled.r, 1, 0.03);
+            CHECK_NEAR(sent.b / sampled.b, 1, 0.03);
             example_end(&e);
         }
     }
@@ -508,7 +509,7 @@ TEST(the_bounds_of_every_light_hold_its_samples) {
                 for (uint64_t k = 0; k < 64 && light_context_make(&e.light, from, from, &context); k++) {
                     struct light_sample sample = light_sample(&e.light, &context, xi_of(43, k));
                     double cosine = fabs(vec3_dot(sample.direction, vec3_normalize(normal)));
-                    brought += (sample.intensity.x + sample.intensity.y + sample.intensity.z) / 3 * cosine / 64;
+                    brought += (sample.intensity.r + sample.intensity.g + sample.intensity.b) / 3 * cosine / 64;
                 }
                 CHECK(importance > 0 || !(brought > 0));
                 CHECK(brought < 3 * importance + 1e-12);

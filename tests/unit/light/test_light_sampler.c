@@ -30,7 +30,7 @@ static struct light random_light(uint64_t seed, uint64_t i) {
     static const double falloffs[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.25, 0.125}};
     uint64_t key = random_combine(seed, i), turn = random_combine(key, 1) % 5;
     struct light light = {.kind = kinds[random_combine(key, 0) % 5], .colour = {3, 2, 1}};
-    light.colour = vec3_scale(light.colour, random_combine(key, 2) % 16 == 0 ? 0 : number(key, 3, 0.1, 4));
+    light.colour = colour_scale(light.colour, random_combine(key, 2) % 16 == 0 ? 0 : number(key, 3, 0.1, 4));
     memcpy(light.falloff, falloffs[turn], sizeof light.falloff);
     light.attenuation = turn > 2 ? ATTENUATION_COEFFICIENTS : turn > 1 ? ATTENUATION_RANGE : ATTENUATION_INVERSE_SQUARE;
     light.range = number(key, 4, 1, 6);
@@ -137,7 +137,7 @@ static double brings(const struct light *light, struct vec3 point, struct vec3 n
     for (uint64_t i = 0; i < 16; i++) {
         struct sample2 xi = {random_unit(random_combine(5, i)), random_unit(random_combine(6, i))};
         struct light_sample sample = light_sample(light, &context, xi);
-        max = fmax(max, vec3_max_abs(sample.intensity) * fabs(vec3_dot(sample.direction, normal)));
+        max = fmax(max, colour_max_abs(sample.intensity) * fabs(vec3_dot(sample.direction, normal)));
     }
     return max;
 }
@@ -207,7 +207,7 @@ static double relative_variance(const struct lights *l, struct vec3 point, struc
         if (!light_context_make(&l->all[i], point, point, &context))
             continue;
         struct light_sample sample = light_sample(&l->all[i], &context, (struct sample2){0.5, 0.5});
-        double f = sample.intensity.y * fmax(0, vec3_dot(sample.direction, normal));
+        double f = sample.intensity.g * fmax(0, vec3_dot(sample.direction, normal));
         double pmf = light_sampler_pmf(&l->sampler, point, normal, part_of(i));
         CHECK(pmf > 0 || f == 0);
         sum += f;

@@ -17,7 +17,7 @@ static const double pi = 3.14159265358979323846;
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 3, 1000, z}, {-3, -1000, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
-    return stage_pixel(s, 0, 0).x;
+    return stage_pixel(s, 0, 0).r;
 }
 
 static struct light area_light(enum light_kind kind, struct vec3 position, double radius) {
@@ -144,7 +144,7 @@ TEST(directional_light_is_the_cosine_without_attenuation) {
     CHECK_NEAR(patch_at(&s, 0, 0), 0.8, 1e-7);
     CHECK_NEAR(patch_at(&s, 15, -9), 0.8, 1e-7);
     /* A ball of radius 1 at height 4 over x = -3: its shadow falls on the origin. */
-    struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     stage_move(&s, ball, -3, 4, 0);
     CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
     CHECK_NEAR(patch_at(&s, 0, 1.01), 0.8, 1e-7);
@@ -196,13 +196,13 @@ TEST(lists_of_nodes_decide_what_a_light_reaches) {
     for (int mode = 0; mode < 4; mode++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+        struct material *white = stage_phong(&s, colour_all(1), colour_all(0), 1);
         struct node *group = stage_group(&s, s.root), *left = stage_sphere(&s, group, white);
         struct node *right = stage_sphere(&s, s.root, white);
         stage_move(&s, left, -2, 0, 0);
         stage_move(&s, right, 2, 0, 0);
         s.settings.samples = 1;
-        stage_point_light(&s, vec3_make(0, 0, 10), vec3_all(1));
+        stage_point_light(&s, vec3_make(0, 0, 10), colour_all(1));
         const struct node *list[] = {mode < 2 ? group : right};
         if (mode % 2 == 0) {
             s.authored[0].include = list;
@@ -212,7 +212,7 @@ TEST(lists_of_nodes_decide_what_a_light_reaches) {
             s.authored[0].exclude_count = 1;
         }
         CHECK(stage_render(&s, 101, 101));
-        bool left_lit = stage_pixel(&s, 28, 50).x > 0, right_lit = stage_pixel(&s, 72, 50).x > 0;
+        bool left_lit = stage_pixel(&s, 28, 50).r > 0, right_lit = stage_pixel(&s, 72, 50).r > 0;
         CHECK(left_lit == (mode == 0 || mode == 3));
         CHECK(right_lit == (mode == 1 || mode == 2));
         stage_end(&s);
@@ -241,13 +241,13 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
         if (kinds[i] == LIGHT_PARALLELOGRAM)
             s.lights[0] = rectangle(vec3_make(-1, -1, 0), vec3_make(3, 0, 0), vec3_make(1, 2, 0));
         s.lights[0].visible = true;
-        s.lights[0].colour = vec3_make(0.5, 0.25, 3);
+        s.lights[0].colour = colour_make(0.5, 0.25, 3);
         s.light_count = 1;
         CHECK(stage_render(&s, 200, 200));
-        CHECK_NEAR(stage_pixel(&s, 100, 100).z, 3, 1e-6);
+        CHECK_NEAR(stage_pixel(&s, 100, 100).b, 3, 1e-6);
         double sum = 0, pixel = 2 * tan(25 * pi / 180) / 200 * 10;
         for (uint32_t p = 0; p < 200 * 200; p++)
-            sum += stage_pixel(&s, p % 200, p / 200).x / 0.5;
+            sum += stage_pixel(&s, p % 200, p / 200).r / 0.5;
         double silhouette = 10 * tan(asin(0.2)), expected[] = {4 * pi, pi * silhouette * silhouette, 6};
         CHECK_NEAR(sum * pixel * pixel, expected[i], 0.02);
         stage_end(&s);
@@ -296,7 +296,7 @@ TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_lean
                     continue;
                 struct stage s;
                 stage_begin(&s, 1);
-                struct material *material = stage_phong(&s, vec3_all(1), vec3_all(0.5), 3);
+                struct material *material = stage_phong(&s, colour_all(1), colour_all(0.5), 3);
                 material->phong.two_sided = true;
                 (void)leaning_square(&s, 75, 4, material);
                 s.light_count = 1;
@@ -304,7 +304,7 @@ TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_lean
                 double above = patch_at(&s, 0, 0);
                 s.camera = (struct camera){{3, -1000, 0}, {-3, 1000, 0}, {0, 0, -1}, 1e-4};
                 CHECK(stage_render(&s, 1, 1));
-                double below = stage_pixel(&s, 0, 0).x;
+                double below = stage_pixel(&s, 0, 0).r;
                 if (side)
                     CHECK(above > 0.001 && below == 0);
                 else
@@ -326,11 +326,11 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
             s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 0, 40), 25);
             s.lights[0].visible = visible == 1;
             s.lights[0].emissive = rough < 2;
-            s.lights[0].colour = vec3_all(1);
+            s.lights[0].colour = colour_all(1);
             s.light_count = 1;
             s.camera = (struct camera){{0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 1};
             CHECK(stage_render(&s, 1, 1));
-            double seen = stage_pixel(&s, 0, 0).x;
+            double seen = stage_pixel(&s, 0, 0).r;
             if (visible)
                 CHECK_NEAR(seen, 1, 1e-6);
             else
@@ -338,7 +338,7 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
             s.settings.integrator = INTEGRATOR_PATH;
             if (visible && rough != 3) { /* a rough mirror scatters the light of a point as such */
                 CHECK(stage_render(&s, 1, 1));
-                CHECK_NEAR(stage_pixel(&s, 0, 0).x, 1, rough ? 0.05 : 1e-6);
+                CHECK_NEAR(stage_pixel(&s, 0, 0).r, 1, rough ? 0.05 : 1e-6);
             }
             stage_end(&s);
         }
@@ -359,7 +359,7 @@ TEST(a_closed_solid_is_dark_inside_of_itself_with_every_integrator) {
             for (int integrator = 0; integrator < LIST_COUNT(INTEGRATORS); integrator++) {
                 struct stage s;
                 stage_begin(&s, 1);
-                struct material *material = stage_phong(&s, vec3_all(0.8), vec3_all(0.3), 5);
+                struct material *material = stage_phong(&s, colour_all(0.8), colour_all(0.3), 5);
                 material->phong.two_sided = true;
                 stage_sphere(&s, s.root, material)->shape = shapes[i];
                 s.light_count = 1;
@@ -396,21 +396,21 @@ TEST(a_light_may_set_its_number_of_shadow_rays) {
 TEST(half_of_a_lamp_behind_a_wall_gives_half_of_the_light) {
     struct stage s;
     stage_floor(&s);
-    struct node *wall = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *wall = stage_cube(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     stage_move(&s, wall, 0, 0, -0.5);
     stage_scale(&s, wall, 10, 1e-3, 10);
     stage_move(&s, wall, 0, 1, 0);
     s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 2, 0), 0.5);
     s.camera = (struct camera){{-1, 0.5, 0}, {1, -0.5, 0}, {0, 1, 0}, 1e-4}; /* below the wall's edge */
     CHECK(stage_render(&s, 1, 1));
-    CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0.5 * 0.25 / 4, 3e-4);
+    CHECK_NEAR(stage_pixel(&s, 0, 0).r, 0.5 * 0.25 / 4, 3e-4);
     stage_end(&s);
 }
 
 /* All kinds together over objects that cast shadows. */
 static void lit_scene(struct stage *s, double unit) {
     struct node *top = stage_group(s, s->root);
-    struct material *white = stage_phong(s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
+    struct material *white = stage_phong(s, colour_make(0.8, 0.7, 0.6), colour_all(0.2), 20);
     struct node *node = stage_cube(s, top, white);
     stage_move(s, node, -0.5, -1, -0.5);
     stage_scale(s, node, 20, 1, 20);
@@ -431,7 +431,7 @@ static void lit_scene(struct stage *s, double unit) {
                                   .range = 9 * unit};
     s->lights[5] = area_light(LIGHT_SPHERE, vec3_make(0, 3 * unit, 3 * unit), 0.5 * unit);
     s->lights[5].emissive = false;
-    s->lights[5].colour = vec3_all(0.3);
+    s->lights[5].colour = colour_all(0.3);
     for (int i = 0; i < 6; i++) {
         s->lights[i].samples = 2;
         s->lights[i].visible = i == 0;

@@ -38,8 +38,8 @@ TEST(six_pictures_are_the_cross_they_were_cut_from) {
     for (int i = 0; i < 2000; i++) {
         struct vec3 d = any_direction(&random);
         double spread = i % 2 ? 0.2 : 0;
-        struct vec3 off = vec3_sub(sky_colour(&of_cross, d, spread), sky_colour(&of_faces, d, spread));
-        CHECK(vec3_max_abs(off) == 0);
+        struct colour off = colour_sub(sky_colour(&of_cross, d, spread), sky_colour(&of_faces, d, spread));
+        CHECK(colour_max_abs(off) == 0);
     }
     image_release(images[3]);
     images[3] = whole;
@@ -70,10 +70,10 @@ TEST(a_map_of_the_sphere_is_looked_up_by_longitude_and_latitude) {
         for (uint32_t x = 0; x < 64; x += 5) {
             struct vec3 d = direction_at((x - 31.5) / 64 * 2 * pi, (15.5 - y) / 32 * pi);
             struct rgba texel = image_texel(sky.image, x, y);
-            struct vec3 c = sky_colour(&sky, d, 0);
-            CHECK_NEAR(c.x, texel.r, 1e-9);
-            CHECK_NEAR(c.y, texel.g, 1e-9);
-            CHECK_NEAR(c.z, texel.b, 1e-9);
+            struct colour c = sky_colour(&sky, d, 0);
+            CHECK_NEAR(c.r, texel.r, 1e-9);
+            CHECK_NEAR(c.g, texel.g, 1e-9);
+            CHECK_NEAR(c.b, texel.b, 1e-9);
         }
     }
     image_release(sky.image);
@@ -85,13 +85,13 @@ static void check_seams(struct image *image) {
     const double step = 1e-7;
     for (int i = 0; i < 500; i++) {
         double spread = i % 2 ? 0.3 : 0, latitude = test_uniform(&random, -1.5, 1.5);
-        struct vec3 a = sky_colour(&sky, direction_at(pi - step, latitude), spread);
-        struct vec3 b = sky_colour(&sky, direction_at(-pi + step, latitude), spread);
-        CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4);
+        struct colour a = sky_colour(&sky, direction_at(pi - step, latitude), spread);
+        struct colour b = sky_colour(&sky, direction_at(-pi + step, latitude), spread);
+        CHECK(colour_max_abs(colour_sub(a, b)) < 1e-4);
         double longitude = test_uniform(&random, -3, 3), pole = i % 4 < 2 ? pi / 2 : -pi / 2;
         a = sky_colour(&sky, direction_at(longitude, pole - step), spread);
         b = sky_colour(&sky, direction_at(longitude, pole + step), spread);
-        CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4);
+        CHECK(colour_max_abs(colour_sub(a, b)) < 1e-4);
     }
     image_release(sky.image);
 }
@@ -114,8 +114,8 @@ TEST(a_sky_is_turned_counterclockwise_seen_from_above_and_made_brighter) {
     turned.turn_sine = 1;
     turned.turn_cosine = 0;
     /* A quarter turn moves the picture at -z to -x. */
-    struct vec3 a = sky_colour(&sky, vec3_make(0, 0.6, -0.8), 0), b = sky_colour(&turned, vec3_make(-0.8, 0.6, 0), 0);
-    CHECK(vec3_max_abs(vec3_sub(vec3_scale(a, 3), b)) < 1e-9);
+    struct colour a = sky_colour(&sky, vec3_make(0, 0.6, -0.8), 0), b = sky_colour(&turned, vec3_make(-0.8, 0.6, 0), 0);
+    CHECK(colour_max_abs(colour_sub(colour_scale(a, 3), b)) < 1e-9);
     image_release(sky.image);
 }
 
@@ -126,35 +126,35 @@ TEST(stops_are_met_and_linear_between) {
                                          {0, 0, 0, 1},  {0.5, 0.5, 0.5, 1}, {1, 1, 1, 1}};
     for (int i = 0; i < 6; i++) {
         double y = expected[i][0];
-        struct vec3 c = sky_colour(&sky, vec3_make(sqrt(1 - y * y), y, 0), 0);
-        CHECK_NEAR(c.x, expected[i][1], 1e-12);
-        CHECK_NEAR(c.y, expected[i][2], 1e-12);
-        CHECK_NEAR(c.z, expected[i][3], 1e-12);
+        struct colour c = sky_colour(&sky, vec3_make(sqrt(1 - y * y), y, 0), 0);
+        CHECK_NEAR(c.r, expected[i][1], 1e-12);
+        CHECK_NEAR(c.g, expected[i][2], 1e-12);
+        CHECK_NEAR(c.b, expected[i][3], 1e-12);
     }
 }
 
-static double luminance(struct vec3 c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+static double luminance(struct colour c) {
+    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
 
 TEST(the_clear_sky_has_the_zenith_luminance_and_symmetry_of_its_model) {
     for (int i = 0; i < 4; i++) {
         double theta = 0.3 + 0.25 * i, turbidity = 2 + i;
         struct sky sky;
-        sky_make_clear(vec3_make(sin(theta), cos(theta), 0), turbidity, vec3_all(0.1), &sky);
+        sky_make_clear(vec3_make(sin(theta), cos(theta), 0), turbidity, colour_all(0.1), &sky);
         double chi = (4.0 / 9 - turbidity / 120) * (pi - 2 * theta);
         double zenith = (4.0453 * turbidity - 4.9710) * tan(chi) - 0.2155 * turbidity + 2.4192;
         CHECK_NEAR(luminance(sky_colour(&sky, vec3_make(0, 1, 0), 0)), zenith / 20, 2e-3 * zenith);
         struct test_random random = {21};
         for (int k = 0; k < 100; k++) {
             struct vec3 d = any_direction(&random), mirrored = {d.x, d.y, -d.z};
-            CHECK(vec3_max_abs(vec3_sub(sky_colour(&sky, d, 0), sky_colour(&sky, mirrored, 0))) < 1e-12);
+            CHECK(colour_max_abs(colour_sub(sky_colour(&sky, d, 0), sky_colour(&sky, mirrored, 0))) < 1e-12);
             CHECK(luminance(sky_colour(&sky, d, 0)) <= luminance(sky_colour(&sky, sky.clear.sun, 0)) * 1.3 + 1e-9 ||
                   d.y < 0.1); /* bright around the sun and at the horizon */
         }
-        struct vec3 away = sky_colour(&sky, vec3_make(-sin(0.8), cos(0.8), 0), 0);
-        CHECK(away.z > away.y && away.y > away.x); /* blue */
-        CHECK(sky_colour(&sky, vec3_make(0.6, -0.8, 0), 0).x == 0.1);
+        struct colour away = sky_colour(&sky, vec3_make(-sin(0.8), cos(0.8), 0), 0);
+        CHECK(away.b > away.g && away.g > away.r); /* blue */
+        CHECK(sky_colour(&sky, vec3_make(0.6, -0.8, 0), 0).r == 0.1);
     }
 }
 

@@ -79,9 +79,9 @@ static void check_letters(bool mirror) {
             for (int x = 0; x < 5; x++) {
                 struct vec3 d = vec3_add_scaled(view, right, 2 * (x + 0.5) / 5 - 1);
                 d = vec3_normalize(vec3_add_scaled(d, letter->up, 1 - 2 * (y + 0.5) / 7));
-                struct vec3 c = sky_colour(&sky, d, 0);
-                CHECK_NEAR(c.y, k * 20 / 255.0, 1e-12);
-                read[y][mirror ? 4 - x : x] = c.x > 0.9 ? '#' : '.';
+                struct colour c = sky_colour(&sky, d, 0);
+                CHECK_NEAR(c.g, k * 20 / 255.0, 1e-12);
+                read[y][mirror ? 4 - x : x] = c.r > 0.9 ? '#' : '.';
             }
             CHECK_TEXT(read[y], letter->rows[y]);
         }
@@ -109,7 +109,7 @@ TEST(sky_faces_lie_where_the_contract_says) {
     } faces[] = {{'F', {0, 0, 1}}, {'R', {-1, 0, 0}}, {'K', {0, 0, -1}},
                  {'L', {1, 0, 0}}, {'T', {0, 1, 0}},  {'B', {0, -1, 0}}};
     for (int k = 0; k < 6; k++)
-        CHECK_NEAR(sky_colour(&sky, faces[k].direction, 0).x, faces[k].name / 255.0, 1e-12);
+        CHECK_NEAR(sky_colour(&sky, faces[k].direction, 0).r, faces[k].name / 255.0, 1e-12);
     image_release(sky.image);
 }
 
@@ -125,16 +125,16 @@ TEST(sky_top_and_bottom_join_the_front_face) {
     struct sky sky = cross_sky(&cross, false);
     for (int x = 1; x < SIZE - 1; x++) {
         double right = 2 * (x + 0.5) / SIZE - 1, inset = 1 - 1.0 / SIZE;
-        struct vec3 top = sky_colour(&sky, vec3_normalize(vec3_make(-right, 1, inset)), 0);
-        CHECK_NEAR(top.x, x * 10 / 255.0, 1e-9);
-        CHECK_NEAR(top.y, 0, 1e-9);
-        CHECK_NEAR(top.z, 1, 1e-9);
-        struct vec3 bottom = sky_colour(&sky, vec3_normalize(vec3_make(-right, -1, inset)), 0);
-        CHECK_NEAR(bottom.x, x * 10 / 255.0, 1e-9);
-        CHECK_NEAR(bottom.y, (SIZE - 1) * 10 / 255.0, 1e-9);
-        struct vec3 upper = sky_colour(&sky, vec3_normalize(vec3_make(-right, inset, 1)), 0);
-        CHECK_NEAR(upper.x, x * 10 / 255.0, 1e-9);
-        CHECK_NEAR(upper.y, 0, 1e-9);
+        struct colour top = sky_colour(&sky, vec3_normalize(vec3_make(-right, 1, inset)), 0);
+        CHECK_NEAR(top.r, x * 10 / 255.0, 1e-9);
+        CHECK_NEAR(top.g, 0, 1e-9);
+        CHECK_NEAR(top.b, 1, 1e-9);
+        struct colour bottom = sky_colour(&sky, vec3_normalize(vec3_make(-right, -1, inset)), 0);
+        CHECK_NEAR(bottom.r, x * 10 / 255.0, 1e-9);
+        CHECK_NEAR(bottom.g, (SIZE - 1) * 10 / 255.0, 1e-9);
+        struct colour upper = sky_colour(&sky, vec3_normalize(vec3_make(-right, inset, 1)), 0);
+        CHECK_NEAR(upper.r, x * 10 / 255.0, 1e-9);
+        CHECK_NEAR(upper.g, 0, 1e-9);
     }
     image_release(sky.image);
 }
@@ -161,15 +161,15 @@ TEST(sky_has_no_seams_at_edges_and_corners) {
             int axis = i % 3;
             struct vec3 p = vec3_make(s[axis], s[(axis + 1) % 3], s[(axis + 2) % 3]);
             double spread = i % 5 ? test_uniform(&random, 0, 1) : 0;
-            struct vec3 c = sky_colour(&sky, vec3_normalize(p), spread);
+            struct colour c = sky_colour(&sky, vec3_normalize(p), spread);
             for (int k = 0; k < 6; k++) {
                 struct vec3 q = p;
                 double *parts[3] = {&q.x, &q.y, &q.z};
                 *parts[k / 2] *= k % 2 ? 1 + 1e-9 : 1 - 1e-9;
-                struct vec3 d = sky_colour(&sky, vec3_normalize(q), spread);
-                CHECK_NEAR(c.x, d.x, 1e-6);
-                CHECK_NEAR(c.y, d.y, 1e-6);
-                CHECK_NEAR(c.z, 128 / 255.0, 1e-5);
+                struct colour d = sky_colour(&sky, vec3_normalize(q), spread);
+                CHECK_NEAR(c.r, d.r, 1e-6);
+                CHECK_NEAR(c.g, d.g, 1e-6);
+                CHECK_NEAR(c.b, 128 / 255.0, 1e-5);
             }
         }
         image_release(sky.image);
@@ -188,10 +188,10 @@ TEST(sky_corners_of_the_picture_never_show) {
         for (int i = 0; i < 4000; i++) {
             struct vec3 d =
                 vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), test_uniform(&random, -1, 1));
-            struct vec3 c = sky_colour(&sky, vec3_normalize(d), i % 2 ? test_uniform(&random, 0, 3) : 0);
-            CHECK_NEAR(c.x, 1, 1e-15);
-            CHECK_NEAR(c.y, 1, 1e-15);
-            CHECK_NEAR(c.z, 1, 1e-15);
+            struct colour c = sky_colour(&sky, vec3_normalize(d), i % 2 ? test_uniform(&random, 0, 3) : 0);
+            CHECK_NEAR(c.r, 1, 1e-15);
+            CHECK_NEAR(c.g, 1, 1e-15);
+            CHECK_NEAR(c.b, 1, 1e-15);
         }
         image_release(sky.image);
     }
@@ -203,8 +203,8 @@ TEST(sky_wide_cones_blur) {
     double sharp = 0, blurred = 0;
     for (int i = 0; i < 2000; i++) {
         struct vec3 d = vec3_normalize(vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), 1));
-        sharp += fabs(sky_colour(&sky, d, 0).x - 0.5);
-        blurred += fabs(sky_colour(&sky, d, 0.5).x - 0.5);
+        sharp += fabs(sky_colour(&sky, d, 0).r - 0.5);
+        blurred += fabs(sky_colour(&sky, d, 0.5).r - 0.5);
     }
     CHECK(blurred < sharp / 8);
     image_release(sky.image);
@@ -214,22 +214,22 @@ TEST(sky_survives_directions_that_are_none) {
     struct sky sky = random_sky(4, 4, 7);
     static const struct vec3 bad[] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 1, 1}, {1, -INFINITY, NAN}};
     for (int i = 0; i < 4; i++) {
-        struct vec3 c = sky_colour(&sky, bad[i], i % 2 ? NAN : INFINITY);
-        CHECK(c.x == 0 && c.y == 0 && c.z == 0);
+        struct colour c = sky_colour(&sky, bad[i], i % 2 ? NAN : INFINITY);
+        CHECK(c.r == 0 && c.g == 0 && c.b == 0);
         c = sky_colour(&sky, vec3_make(1, 0, 0), i % 2 ? NAN : INFINITY);
-        CHECK(c.x >= 0 && c.x <= 1);
+        CHECK(c.r >= 0 && c.r <= 1);
     }
     image_release(sky.image);
 }
 
 TEST(sky_gradient_and_constant_follow_their_formulas) {
     struct sky gradient = {.kind = SKY_GRADIENT}, constant = {.kind = SKY_CONSTANT, .colour = {3, 2, -1}};
-    struct vec3 c = sky_colour(&gradient, vec3_make(0.6, 0.8, 0), 0.1);
-    CHECK(c.x == 0 && c.y == 0 && c.z == (1 + 0.8) / 2);
+    struct colour c = sky_colour(&gradient, vec3_make(0.6, 0.8, 0), 0.1);
+    CHECK(c.r == 0 && c.g == 0 && c.b == (1 + 0.8) / 2);
     c = sky_colour(&gradient, vec3_make(0, -1, 0), 0);
-    CHECK(c.x == 0 && c.y == 0 && c.z == 0);
+    CHECK(c.r == 0 && c.g == 0 && c.b == 0);
     c = sky_colour(&constant, vec3_make(0, -1, 0), 0);
-    CHECK(c.x == 3 && c.y == 2 && c.z == -1);
+    CHECK(c.r == 3 && c.g == 2 && c.b == -1);
 }
 
 TEST(sky_proportions_are_checked) {

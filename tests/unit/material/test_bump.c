@@ -10,15 +10,15 @@
 #include <stdlib.h>
 
 /* The value of a texel, 0 .. 1 per channel. */
-typedef struct vec3 painter(double x, double y);
+typedef struct colour painter(double x, double y);
 
 static struct image *paint(painter *colour, uint32_t width, uint32_t height, int bits) {
     struct error error = {0};
     uint16_t *words = malloc((size_t)width * height * 4 * sizeof *words);
     uint8_t *bytes = (uint8_t *)words;
     for (uint32_t i = 0; i < width * height; i++) {
-        struct vec3 c = colour(((i % width) + 0.5) / width, ((i / width) + 0.5) / height);
-        double rgba[4] = {c.x, c.y, c.z, 1};
+        struct colour c = colour(((i % width) + 0.5) / width, ((i / width) + 0.5) / height);
+        double rgba[4] = {c.r, c.g, c.b, 1};
         for (uint32_t k = 0; k < 4; k++) {
             if (bits == 16)
                 words[4 * (size_t)i + k] = (uint16_t)(rgba[k] * 65535 + 0.5);
@@ -32,48 +32,48 @@ static struct image *paint(painter *colour, uint32_t width, uint32_t height, int
     return image;
 }
 
-static struct vec3 half(double x, double y) {
+static struct colour half(double x, double y) {
     (void)x, (void)y;
-    return vec3_all(0.5);
+    return colour_all(0.5);
 }
 
 /* 16-bit integers at the centres of 255 texels. */
 #define RAMP (65280.0 / 65535)
 
-static struct vec3 ramp_right(double x, double y) {
+static struct colour ramp_right(double x, double y) {
     (void)y;
-    return vec3_all(RAMP * x);
+    return colour_all(RAMP * x);
 }
 
-static struct vec3 ramp_down(double x, double y) {
+static struct colour ramp_down(double x, double y) {
     (void)x;
-    return vec3_all(RAMP * y);
+    return colour_all(RAMP * y);
 }
 
-static struct vec3 waves(double x, double y) {
+static struct colour waves(double x, double y) {
     const double turn = 6.283185307179586;
-    return vec3_all(0.5 + 0.2 * sin(turn * 2 * x) + 0.2 * cos(turn * y));
+    return colour_all(0.5 + 0.2 * sin(turn * 2 * x) + 0.2 * cos(turn * y));
 }
 
-static struct vec3 stripes(double x, double y) {
+static struct colour stripes(double x, double y) {
     (void)y;
-    return vec3_all(fmod(x * 128, 1) < 0.5 ? 0 : 1);
+    return colour_all(fmod(x * 128, 1) < 0.5 ? 0 : 1);
 }
 
-static struct vec3 neutral_blue(double x, double y) {
+static struct colour neutral_blue(double x, double y) {
     (void)x, (void)y;
-    return vec3_make(128.0 / 255, 128.0 / 255, 1);
+    return colour_make(128.0 / 255, 128.0 / 255, 1);
 }
 
 /* About (0.6, 0, 0.8), in bytes. */
-static struct vec3 tilted_right(double x, double y) {
+static struct colour tilted_right(double x, double y) {
     (void)x, (void)y;
-    return vec3_make(204.0 / 255, 128.0 / 255, 230.0 / 255);
+    return colour_make(204.0 / 255, 128.0 / 255, 230.0 / 255);
 }
 
-static struct vec3 tilted_up(double x, double y) {
+static struct colour tilted_up(double x, double y) {
     (void)x, (void)y;
-    return vec3_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
+    return colour_make(128.0 / 255, 204.0 / 255, 230.0 / 255);
 }
 
 static struct bump bump_of(struct stage *s, enum material_kind kind, struct image *image, double height, bool flip_u) {
@@ -85,7 +85,8 @@ static struct bump bump_of(struct stage *s, enum material_kind kind, struct imag
 }
 
 static struct material *raised_white(struct stage *s, const struct bump *bump) {
-    struct material *m = scene_material(&s->scene, bump->kind, stage_phong(s, vec3_all(1), vec3_all(0), 1), &s->error);
+    struct material *m =
+        scene_material(&s->scene, bump->kind, stage_phong(s, colour_all(1), colour_all(0), 1), &s->error);
     CHECK(material_add_bump(m, bump, &s->scene.arena, &s->error));
     return m;
 }
@@ -261,7 +262,7 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
             double a1 = a + steps[k][0], b1 = b + steps[k][1];
             corners[k] = vec3_make(sin(b1) * sin(a1), cos(a1), cos(b1) * sin(a1));
             double u = (atan2(-corners[k].z, -corners[k].x) + pi) / (2 * pi), v = a1 / pi;
-            p[k] = vec3_scale(corners[k], 1 + height * waves(u, v).x);
+            p[k] = vec3_scale(corners[k], 1 + height * waves(u, v).r);
         }
         struct vec3 real = vec3_normalize(vec3_cross(vec3_sub(p[0], p[1]), vec3_sub(p[2], p[3])));
         real = vec3_dot(real, direction) < 0 ? vec3_negate(real) : real;
@@ -389,30 +390,30 @@ TEST(bumps_grow_with_the_object_bit_by_bit) {
     image_release(image);
 }
 
-static struct vec3 left_half(double x, double y) {
+static struct colour left_half(double x, double y) {
     (void)y;
-    return vec3_all(x < 0.5 ? 1 : 0);
+    return colour_all(x < 0.5 ? 1 : 0);
 }
 
 TEST(pictures_of_opacity_cut_holes_that_show_what_is_behind) {
     struct image *image = paint(left_half, 64, 64, 8);
     struct stage s;
     stage_begin(&s, 1);
-    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    struct material *red = stage_phong(&s, colour_make(1, 0, 0), colour_all(0), 1);
     red->phong.unlit = true;
     struct material *cut = cut_out(&s, image, red);
     struct mesh *mesh = square_mesh(false);
     struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
     stage_scale(&s, card, 2, 2, 1);
     stage_move(&s, card, -1, -1, 0);
-    s.sky.colour = vec3_make(0, 0, 1);
+    s.sky.colour = colour_make(0, 0, 1);
     s.camera.fov = 6;
     CHECK(stage_render(&s, 20, 20));
     for (uint32_t x = 0; x < 20; x++) {
         if (x == 9 || x == 10)
             continue; /* the edge between the halves of the picture */
-        CHECK_NEAR(stage_pixel(&s, x, 7).x, x < 10, 1e-6);
-        CHECK_NEAR(stage_pixel(&s, x, 7).z, x >= 10, 1e-6);
+        CHECK_NEAR(stage_pixel(&s, x, 7).r, x < 10, 1e-6);
+        CHECK_NEAR(stage_pixel(&s, x, 7).b, x >= 10, 1e-6);
     }
     stage_end(&s);
     image_release(image);
@@ -425,12 +426,12 @@ TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
     for (int i = 0; i < 3; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *cut = cut_out(&s, image, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        struct material *cut = cut_out(&s, image, stage_phong(&s, colour_all(1), colour_all(0), 1));
         struct node *card = add_shape(&s, (struct shape){.kind = SHAPE_MESH, .mesh = mesh}, cut);
         stage_scale(&s, card, 4, 4, 1);
         stage_move(&s, card, -2, -2, 4);
         stage_rotate(&s, card, 1, 60); /* out of the camera's way */
-        struct node *wall = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        struct node *wall = stage_cube(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
         stage_scale(&s, wall, 20, 20, 1);
         stage_move(&s, wall, -10, -10, -1);
         s.settings.accel = (enum accel_kind[]){ACCEL_AUTO, ACCEL_GRID, ACCEL_NONE}[i];
@@ -445,9 +446,9 @@ TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
         for (uint32_t x = 0; x < 60; x++) {
             double at = ((double)x + 0.5 - 30) / 10 * 10 * tan(20 * 3.14159265358979 / 180);
             all++;
-            dark += stage_pixel(&s, x, 10).x == 0;
+            dark += stage_pixel(&s, x, 10).r == 0;
             if (fabs(at) < 3.8 && (fabs(at) > 0.5))
-                CHECK_NEAR(stage_pixel(&s, x, 10).x, at < 0 ? 0 : 0.5, 1e-6);
+                CHECK_NEAR(stage_pixel(&s, x, 10).r, at < 0 ? 0 : 0.5, 1e-6);
         }
         CHECK(dark * 10 > all * 2);
         stage_end(&s);

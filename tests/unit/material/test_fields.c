@@ -38,7 +38,7 @@ static const struct fog_field *field_of(struct arena *arena, const struct expr_p
 }
 
 static double seen(const struct fog_field *field, struct vec3 o, struct vec3 d, double distance) {
-    struct vec3 source;
+    struct colour source;
     return fog_field_transmittance(field, &(struct fog_line){o, d, distance, 0}, &source);
 }
 
@@ -157,9 +157,9 @@ TEST(fog_with_a_colour_function_adds_the_integral_of_its_emission) {
     struct medium_effect effect;
     CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &ray, INFINITY, &effect));
     double left = exp(-s * 2), added = (1 - left * (1 + 2 * s)) / s;
-    CHECK_NEAR(effect.transmittance.x, left, 1e-12);
+    CHECK_NEAR(effect.transmittance.r, left, 1e-12);
     /* Steps of constant colour: their error falls with the square of their number. */
-    CHECK_NEAR(effect.source.x * (1 - left), added, 1e-3);
+    CHECK_NEAR(effect.source.r * (1 - left), added, 1e-3);
     CHECK_NEAR(fog_field_brightest(fog.field), 2, 1e-6);
     CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &ray, INFINITY, &effect));
     arena_destroy(&arena);
@@ -177,7 +177,7 @@ TEST(bounds_over_directions_contain_every_direction) {
         const struct expr_program *program = function_end(&m, fn_random_leaf(&m, &random, i % 9), &arena);
         CHECK(expr_field_largest(program, &largest));
         for (int k = 0; k < 2000; k++)
-            CHECK(expr_field_at(program, random_direction(&random)).x <= largest);
+            CHECK(expr_field_at(program, random_direction(&random)).r <= largest);
         arena_destroy(&arena);
     }
     struct arena arena = {0};
@@ -203,7 +203,7 @@ TEST(a_sky_function_lights_a_surface_by_its_integral) {
     stage_begin(&s, 1);
     struct sky sky;
     CHECK(sky_from_function(lobe(&s.arena, 1, 1, 3), &sky, &error));
-    CHECK_NEAR(sky_colour(&sky, vec3_make(0.6, 0.8, 0), 0).y, 0.512, 1e-15);
+    CHECK_NEAR(sky_colour(&sky, vec3_make(0.6, 0.8, 0), 0).g, 0.512, 1e-15);
     CHECK_NEAR(sky_brightest(&sky), 1, 1e-4);
     struct light light = {.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &sky};
     struct light_context context;
@@ -215,7 +215,7 @@ TEST(a_sky_function_lights_a_surface_by_its_integral) {
         struct sample2 xi = {(i % N + 0.5) / N, (i / N + 0.5) / N};
         struct light_sample sample = light_sample(&light, &context, xi);
         double cosine = fmax(0, sample.direction.y);
-        sum += sample.radiance.x * cosine / sample.pdf;
+        sum += sample.radiance.r * cosine / sample.pdf;
         worst = fmax(worst, fabs(light_pdf(&light, &context, sample.direction, NULL) - sample.pdf) / sample.pdf);
     }
     CHECK_NEAR(sum / (N * N), 2 * pi / 5, 1e-3);
@@ -242,10 +242,10 @@ TEST(lamps_with_a_profile_light_a_surface_by_their_integral) {
             light_sample(&light, &context, (struct sample2){(i % N + 0.5) / N, (i / N + 0.5) / N});
         struct ray ray = {.direction = sample.target.at, .t_max = INFINITY};
         struct light_hit hit;
-        sum += sample.radiance.x * sample.direction.y / sample.pdf;
+        sum += sample.radiance.r * sample.direction.y / sample.pdf;
         /* A ray sees what the sample says. */
         if (light_meets_ray(&light, &ray, &hit))
-            CHECK_NEAR(light_emitted(&light, &ray, &hit).x, sample.radiance.x, 1e-12);
+            CHECK_NEAR(light_emitted(&light, &ray, &hit).r, sample.radiance.r, 1e-12);
     }
     double rim = 1 / sqrt(1 + 0.75 * 0.75);
     CHECK_NEAR(sum / (N * N), 2 * 2 * pi * (1 - pow(rim, 5)) / 5, 1e-4);
@@ -267,9 +267,9 @@ TEST(lights_without_a_body_have_the_colour_of_their_direction) {
         struct light_arrival arrival;
         struct light_context context;
         CHECK(light_arrive(&light, at, &arrival) && light_context_make(&light, at, at, &context));
-        CHECK_NEAR(arrival.colour.x * arrival.strength, 3 * factor, 1e-12);
-        CHECK_NEAR(light_sample(&light, &context, (struct sample2){0.5, 0.5}).radiance.y, 2 * factor, 1e-12);
-        CHECK_NEAR(light_photon(&emitter, d, (struct sample2){0.5, 0.5}).power.z, factor, 1e-12);
+        CHECK_NEAR(arrival.colour.r * arrival.strength, 3 * factor, 1e-12);
+        CHECK_NEAR(light_sample(&light, &context, (struct sample2){0.5, 0.5}).radiance.g, 2 * factor, 1e-12);
+        CHECK_NEAR(light_photon(&emitter, d, (struct sample2){0.5, 0.5}).power.b, factor, 1e-12);
     }
     arena_destroy(&arena);
 }
@@ -292,7 +292,7 @@ TEST(paths_find_lights_without_a_body_in_the_colour_of_their_direction) {
         CHECK(stage_render(&s, 9, 9));
         light[i] = 0;
         for (uint32_t k = 0; k < 81; k++)
-            light[i] += stage_pixel(&s, k % 9, k / 9).x / 81;
+            light[i] += stage_pixel(&s, k % 9, k / 9).r / 81;
     }
     CHECK(light[0] > 0.1 && light[0] < 0.9);
     CHECK_NEAR(light[1], light[0], 0.01 * light[0]);

@@ -135,7 +135,7 @@ TEST(reflected_and_refracted_rays_go_through_the_fog) {
         struct stage s;
         stage_begin(&s, 1);
         struct node *slab = stage_cube(&s, s.root, stage_glass(&s, !through, through, through ? 1.5 : 1));
-        struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+        struct material *red = stage_phong(&s, colour_make(1, 0, 0), colour_all(0), 1);
         red->phong.unlit = true;
         struct node *wall = stage_cube(&s, s.root, red);
         stage_move(&s, slab, -0.5, -0.5, -1);
@@ -148,8 +148,8 @@ TEST(reflected_and_refracted_rays_go_through_the_fog) {
         s.settings.samples = 1;
         CHECK(stage_render(&s, 1, 1));
         double route = through ? 10 + 5 : 10 + 15;
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x, exp(-0.05 * route), 1e-6);
-        CHECK_NEAR(stage_pixel(&s, 0, 0).y, 1 - exp(-0.05 * route), 1e-6);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).r, exp(-0.05 * route), 1e-6);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).g, 1 - exp(-0.05 * route), 1e-6);
         stage_end(&s);
     }
 }
@@ -161,10 +161,10 @@ TEST(a_clear_sky_is_seen_through_the_fog) {
         stage_begin(&s, 1);
         fog.clear_sky = clear;
         s.fog = &fog;
-        s.sky.colour = vec3_make(1, 0, 0);
+        s.sky.colour = colour_make(1, 0, 0);
         CHECK(stage_render(&s, 1, 1));
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x, clear, 0);
-        CHECK_NEAR(stage_pixel(&s, 0, 0).y, !clear, 0);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).r, clear, 0);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).g, !clear, 0);
         stage_end(&s);
     }
 }
@@ -202,9 +202,9 @@ TEST(the_cut_off_uses_the_largest_brightness_and_the_display_s_range) {
         s.settings.reflect_limit = 1000;
         s.settings.cutoff = 0x1p-8;
         if (i == 1)
-            s.sky.colour = vec3_make(0, 4, 1);
+            s.sky.colour = colour_make(0, 4, 1);
         if (i == 2)
-            stage_point_light(&s, vec3_make(0, 0, 5), vec3_all(4));
+            stage_point_light(&s, vec3_make(0, 0, 5), colour_all(4));
         if (i == 3)
             s.settings.tone.exposure = 1;
         if (i == 4)

@@ -28,7 +28,7 @@ static struct hit plane_hit(double x, double z, double angle, double footprint) 
 }
 
 static struct texture texture_of(struct function_maker *maker, uint32_t node, struct arena *arena) {
-    return texture_function(function_end(maker, node, arena), false, vec3_all(0), vec3_all(1));
+    return texture_function(function_end(maker, node, arena), false, colour_all(0), colour_all(1));
 }
 
 /* (1 + sin kx) / 2 */
@@ -47,7 +47,7 @@ TEST(the_mean_over_a_footprint_is_that_of_its_area) {
         struct texture texture = waves(k, &arena);
         struct hit hit = plane_hit(x, 0, angle, width);
         double mean = 0.5 + 0.5 * sin(k * x) * sin(length / 2) / (length / 2);
-        CHECK_NEAR(texture_function_colour(&texture.operation, &hit).x, mean, length < 1 ? 0.02 : 0.006);
+        CHECK_NEAR(texture_function_colour(&texture.operation, &hit).r, mean, length < 1 ? 0.02 : 0.006);
     }
     arena_destroy(&arena);
 }
@@ -59,7 +59,7 @@ TEST(a_function_that_hardly_changes_within_a_footprint_has_the_bits_of_its_middl
         struct hit hit = plane_hit(0.1 * i, 1, 0.05 * i, 0.001);
         double inputs[EXPR_INPUT_COUNT] = {hit.point.x, hit.point.y, hit.point.z}, out[EXPR_OUTPUTS];
         expr_evaluate(texture.operation.recorded.program, inputs, out);
-        CHECK(texture_function_colour(&texture.operation, &hit).y == out[0]);
+        CHECK(texture_function_colour(&texture.operation, &hit).g == out[0]);
     }
     arena_destroy(&arena);
 }
@@ -69,7 +69,7 @@ TEST(a_function_of_one_point_has_no_filter) {
     struct texture texture = waves(100, &arena);
     texture.operation.recorded.points = 1;
     struct hit hit = plane_hit(0.3, 1, 1, 0.2);
-    CHECK_NEAR(texture_function_colour(&texture.operation, &hit).x, 0.5 + 0.5 * sin(30), 1e-14);
+    CHECK_NEAR(texture_function_colour(&texture.operation, &hit).r, 0.5 + 0.5 * sin(30), 1e-14);
     arena_destroy(&arena);
 }
 

@@ -22,7 +22,7 @@ struct ball {
 static void ball_init(struct ball *ball) {
     *ball = (struct ball){.numbers = openpbr_defaults(), .material = {.kind = MATERIAL_OPENPBR, .depth = 1}};
     ball->material.openpbr = &ball->numbers;
-    ball->material.phong.kd = ball->material.phong.ks = vec3_all(1);
+    ball->material.phong.kd = ball->material.phong.ks = colour_all(1);
     ball->material.phong.refract = 1;
 }
 
@@ -54,7 +54,7 @@ static bool step(const struct bsdf *bsdf, struct vec3 wo, struct test_random *ra
     for (int i = 0; i < CHOICES; i++) {
         struct sample2 u = {(i + dx) / CHOICES, fmod((double)(i * STRIDE) / CHOICES + dy, 1)};
         if (bsdf_sample(bsdf, BSDF_ALL, BSDF_IMPORTANCE, wo, u, &samples[i]))
-            sum += samples[i].weight.y;
+            sum += samples[i].weight.g;
         sums[i] = sum;
     }
     double at = test_uniform(random, 0, sum);
@@ -210,9 +210,9 @@ TEST_TIMES(balls_of_random_white_materials_are_invisible_in_uniform_light, 20) {
     CHECK_NEAR(mean, 1, times > 1 ? 0.002 : 0.01);
 }
 
-static struct vec3 random_colour(struct test_random *random) {
+static struct colour random_colour(struct test_random *random) {
     double r = test_uniform(random, 0, 1), g = test_uniform(random, 0, 1);
-    return vec3_make(r, g, test_uniform(random, 0, 1));
+    return colour_make(r, g, test_uniform(random, 0, 1));
 }
 
 /* Under a sky that grows brighter to the top, beside a large lamp. */
@@ -232,9 +232,9 @@ TEST_TIMES(balls_of_random_materials_are_the_same_with_and_without_sampled_light
         struct stage s;
         stage_begin(&s, 1);
         s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
-        struct material *surface = stage_glass(&s, 0, 0, 1), *lamp = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+        struct material *surface = stage_glass(&s, 0, 0, 1), *lamp = stage_phong(&s, colour_all(0), colour_all(0), 1);
         *surface = ball.material;
-        lamp->phong.emission = vec3_all(2);
+        lamp->phong.emission = colour_all(2);
         (void)stage_sphere(&s, s.root, surface);
         struct node *node = stage_sphere(&s, s.root, lamp);
         stage_scale(&s, node, 1.5, 1.5, 1.5);
@@ -253,11 +253,11 @@ TEST_TIMES(balls_of_random_materials_are_the_same_with_and_without_sampled_light
 /* --- from inside --- */
 
 /* The weights of the lobes that transmit, without the factors of facets. */
-static struct vec3 passing(const struct bsdf *bsdf) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour passing(const struct bsdf *bsdf) {
+    struct colour sum = {0, 0, 0};
     for (int i = 0; i < bsdf->count; i++)
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRANSMITS)
-            sum = vec3_add(sum, bsdf->lobes[i].weight);
+            sum = colour_add(sum, bsdf->lobes[i].weight);
     return sum;
 }
 
@@ -266,22 +266,22 @@ TEST(polished_layers_pass_the_same_light_in_and_out) {
         struct ball ball;
         ball_init(&ball);
         ball.numbers.coat_weight = 0.8;
-        ball.numbers.coat_colour = vec3_make(0.9, 0.5, 0.2);
+        ball.numbers.coat_colour = colour_make(0.9, 0.5, 0.2);
         ball.numbers.fuzz_weight = 0.5;
         ball.numbers.base_metalness = 0.1;
-        ball.numbers.transmission_colour = vec3_make(0.5, 1, 0.7);
+        ball.numbers.transmission_colour = colour_make(0.5, 1, 0.7);
         struct media inside = inside_of(&ball);
         struct medium_stack media = {.media = &inside};
         struct vec3 n = {0, 0, 1}, ray = {sine, 0, -sqrt(1 - sine * sine)};
         struct bsdf in = describe(&ball, n, ray, &media);
         medium_stack_cross(&media, &in.boundary);
         struct bsdf out = describe(&ball, n, vec3_negate(in.through), &media);
-        struct vec3 a = passing(&in), b = passing(&out);
-        CHECK(a.x > 0.01 && a.x > a.z);
+        struct colour a = passing(&in), b = passing(&out);
+        CHECK(a.r > 0.01 && a.r > a.b);
         CHECK_NEAR(out.through.x, -sine, 1e-14);
-        CHECK_NEAR(a.x, b.x, 1e-14);
-        CHECK_NEAR(a.y, b.y, 1e-14);
-        CHECK_NEAR(a.z, b.z, 1e-14);
+        CHECK_NEAR(a.r, b.r, 1e-14);
+        CHECK_NEAR(a.g, b.g, 1e-14);
+        CHECK_NEAR(a.b, b.b, 1e-14);
     }
 }
 
@@ -302,7 +302,7 @@ static double passed(struct ball *ball, bool front, int views) {
                                 test_uniform(&random, k / 20, k / 20 + 1) / 20};
             struct bsdf_sample sample;
             if (bsdf_sample(&bsdf, BSDF_ALL, BSDF_IMPORTANCE, vec3_negate(ray), u, &sample))
-                sum += sample.flags & BSDF_TRANSMITS ? sample.weight.y : 0;
+                sum += sample.flags & BSDF_TRANSMITS ? sample.weight.g : 0;
         }
     }
     return sum / (400.0 * views);

@@ -16,15 +16,15 @@ enum { FOGS = sizeof fogs / sizeof *fogs };
 static const struct ray ray_in_the_open = {.origin = {1, 2, 3}, .direction = {0, 0.6, -3.2}, .t_max = INFINITY};
 
 static bool is_nothing(const struct medium_effect *effect) {
-    struct vec3 t = effect->transmittance, s = effect->source;
-    return t.x == 1 && t.y == 1 && t.z == 1 && s.x == 0 && s.y == 0 && s.z == 0;
+    struct colour t = effect->transmittance, s = effect->source;
+    return t.r == 1 && t.g == 1 && t.b == 1 && s.r == 0 && s.g == 0 && s.b == 0;
 }
 
 /* Glass in a fog, or in nothing. */
 static const struct solid solids[] = {{1, 0}, {2, 1}};
 static struct media media_in(const struct fog *fog, struct medium all[3]) {
-    all[0] = medium_inside(1.3, vec3_all(1), vec3_all(9));
-    all[1] = medium_inside(1.5, vec3_all(1), vec3_make(0.1, 0, 2));
+    all[0] = medium_inside(1.3, colour_all(1), colour_all(9));
+    all[1] = medium_inside(1.5, colour_all(1), colour_make(0.1, 0, 2));
     all[2] = medium_outside(fog);
     return (struct media){solids, all, 2};
 }
@@ -41,16 +41,16 @@ TEST(fog_affects_lines_of_sight_in_the_open_and_nothing_else) {
         CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &ray, 4, &effect));
         double seen = fog_transmittance(&fogs[i], ray.origin, vec3_normalize(ray.direction), 4);
         CHECK(seen > 0 && seen < 1);
-        CHECK_NEAR(effect.transmittance.x, seen, 1e-15);
-        CHECK_NEAR(effect.transmittance.z, seen, 1e-15);
-        CHECK_NEAR(effect.source.y, fogs[i].colour.y, 0);
+        CHECK_NEAR(effect.transmittance.r, seen, 1e-15);
+        CHECK_NEAR(effect.transmittance.b, seen, 1e-15);
+        CHECK_NEAR(effect.source.g, fogs[i].colour.g, 0);
         for (int kind = MEDIUM_RAY_SCATTERED; kind <= MEDIUM_RAY_PHOTON; kind *= 2)
             CHECK(!medium_transmittance((enum medium_ray)kind, &ray, 4, &effect) && is_nothing(&effect));
         CHECK(medium_transmittance(MEDIUM_RAY_SIGHT, &ray, INFINITY, &effect) == !fogs[i].clear_sky);
         medium_stack_enter(&stack, 1);
         (void)medium_transmittance(MEDIUM_RAY_SIGHT, &ray, 4, &effect);
-        CHECK_NEAR(effect.transmittance.y, 1, 0);
-        CHECK_NEAR(effect.transmittance.x, exp(-0.4), 1e-15);
+        CHECK_NEAR(effect.transmittance.g, 1, 0);
+        CHECK_NEAR(effect.transmittance.r, exp(-0.4), 1e-15);
     }
 }
 
@@ -65,13 +65,13 @@ TEST(absorption_is_beers_law_for_every_kind_of_ray) {
     for (int kind = MEDIUM_RAY_SIGHT; kind <= MEDIUM_RAY_PHOTON; kind *= 2) {
         struct medium_effect effect;
         CHECK(medium_transmittance((enum medium_ray)kind, &ray, 1.75, &effect));
-        CHECK_NEAR(effect.transmittance.x, exp(-0.175), 1e-15);
-        CHECK_NEAR(effect.transmittance.y, 1, 0);
-        CHECK_NEAR(effect.transmittance.z, exp(-3.5), 1e-15);
-        CHECK_NEAR(effect.source.x, 0, 0);
+        CHECK_NEAR(effect.transmittance.r, exp(-0.175), 1e-15);
+        CHECK_NEAR(effect.transmittance.g, 1, 0);
+        CHECK_NEAR(effect.transmittance.b, exp(-3.5), 1e-15);
+        CHECK_NEAR(effect.source.r, 0, 0);
         CHECK(medium_transmittance((enum medium_ray)kind, &ray, INFINITY, &effect));
-        CHECK_NEAR(effect.transmittance.x, 0, 0);
-        CHECK_NEAR(effect.transmittance.y, 1, 0);
+        CHECK_NEAR(effect.transmittance.r, 0, 0);
+        CHECK_NEAR(effect.transmittance.g, 1, 0);
     }
 }
 
@@ -85,7 +85,7 @@ TEST(media_without_effect_affect_no_ray) {
     for (int inside = 0; inside < 2; inside++) {
         CHECK(!medium_transmittance(MEDIUM_RAY_SIGHT, &ray, 4, &effect) && is_nothing(&effect));
         CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &ray, INFINITY, &effect) && is_nothing(&effect));
-        all[1] = medium_inside(1.5, vec3_make(1, 0, 0), vec3_all(0));
+        all[1] = medium_inside(1.5, colour_make(1, 0, 0), colour_all(0));
         medium_stack_enter(&stack, 1);
     }
 }
@@ -97,7 +97,7 @@ TEST(fog_around_a_solid_is_another_medium_than_nothing_inside) {
         struct medium_stack inside = {.media = &media}, outside = inside;
         medium_stack_enter(&inside, 1);
         CHECK(!medium_stacks_equal(&inside, &outside));
-        all[1] = medium_inside(1, vec3_all(1), vec3_all(0));
+        all[1] = medium_inside(1, colour_all(1), colour_all(0));
         CHECK(medium_stacks_equal(&inside, &outside) == !fog);
     }
 }
@@ -106,9 +106,9 @@ TEST(fog_around_a_solid_is_another_medium_than_nothing_inside) {
 
 static struct medium milk(void) {
     struct medium medium = medium_outside(NULL);
-    medium.extinction = vec3_make(0.5, 1.5, 6);
-    medium.scattering = vec3_make(0.5, 1.2, 0);
-    medium.emission = vec3_make(0.3, 0, 2);
+    medium.extinction = colour_make(0.5, 1.5, 6);
+    medium.scattering = colour_make(0.5, 1.2, 0);
+    medium.emission = colour_make(0.3, 0, 2);
     return medium;
 }
 
@@ -117,24 +117,24 @@ static struct medium milk(void) {
 TEST(samples_of_a_medium_pass_and_scatter_by_beers_law_in_every_channel) {
     enum { N = 1500, PARTS = 10 };
     const struct medium medium = milk();
-    const struct vec3 throughputs[] = {{1, 1, 1}, {0.1, 2, 0.5}, {0, 1, 3}};
+    const struct colour throughputs[] = {{1, 1, 1}, {0.1, 2, 0.5}, {0, 1, 3}};
     const double distance = 1.3;
     for (int k = 0; k < 3; k++) {
-        struct vec3 passed = {0, 0, 0}, scattered[PARTS] = {{0, 0, 0}};
+        struct colour passed = {0, 0, 0}, scattered[PARTS] = {{0, 0, 0}};
         for (int i = 0; i < N * N; i++) {
             const struct sample2 u = {(i % N + 0.5) / N, ((double)(i / N) + 0.5) / N};
             struct medium_sample sample = medium_sample(&medium, distance, throughputs[k], u);
             int part = (int)(sample.distance / distance * PARTS);
-            struct vec3 *sum = sample.scatters ? &scattered[part < PARTS ? part : PARTS - 1] : &passed;
-            *sum = vec3_add_scaled(*sum, vec3_mul(throughputs[k], sample.weight), 1.0 / N / N);
+            struct colour *sum = sample.scatters ? &scattered[part < PARTS ? part : PARTS - 1] : &passed;
+            *sum = colour_add_scaled(*sum, colour_mul(throughputs[k], sample.weight), 1.0 / N / N);
         }
         for (int axis = 0; axis < 3; axis++) {
-            double t = vec3_get(medium.extinction, axis), s = vec3_get(medium.scattering, axis);
-            double from = vec3_get(throughputs[k], axis);
-            CHECK_NEAR(vec3_get(passed, axis), from * exp(-t * distance), 2e-3 * from);
+            double t = colour_get(medium.extinction, axis), s = colour_get(medium.scattering, axis);
+            double from = colour_get(throughputs[k], axis);
+            CHECK_NEAR(colour_get(passed, axis), from * exp(-t * distance), 2e-3 * from);
             for (int i = 0; i < PARTS; i++) {
                 double left = exp(-t * distance * i / PARTS) - exp(-t * distance * (i + 1) / PARTS);
-                CHECK_NEAR(vec3_get(scattered[i], axis), from * s / t * left, 2e-3 * from);
+                CHECK_NEAR(colour_get(scattered[i], axis), from * s / t * left, 2e-3 * from);
             }
         }
     }
@@ -143,33 +143,33 @@ TEST(samples_of_a_medium_pass_and_scatter_by_beers_law_in_every_channel) {
 TEST(a_medium_that_absorbs_nothing_keeps_the_sum_of_the_throughput) {
     struct medium medium = milk();
     medium.scattering = medium.extinction;
-    struct vec3 throughput = {0.2, 1, 0.7};
+    struct colour throughput = {0.2, 1, 0.7};
     struct test_random random = {5};
     for (int i = 0; i < 2000; i++) {
         const struct sample2 u = {test_uniform(&random, 0, 1), test_uniform(&random, 0, 1)};
         struct medium_sample sample = medium_sample(&medium, i % 3 ? 0.2 : INFINITY, throughput, u);
         CHECK(sample.scatters || i % 3);
-        throughput = vec3_mul(throughput, sample.weight);
-        CHECK_NEAR(throughput.x + throughput.y + throughput.z, 1.9, 1e-9);
+        throughput = colour_mul(throughput, sample.weight);
+        CHECK_NEAR(throughput.r + throughput.g + throughput.b, 1.9, 1e-9);
     }
 }
 
 TEST(the_emission_of_a_medium_is_the_integral_of_its_transmittance) {
     struct medium medium = milk();
-    struct vec3 near = medium_emission(&medium, 2), far = medium_emission(&medium, INFINITY);
-    CHECK_NEAR(near.x, 0.3 / 0.5 * (1 - exp(-1)), 1e-15);
-    CHECK_NEAR(near.y, 0, 0);
-    CHECK_NEAR(far.z, 2.0 / 6, 1e-15);
-    medium.extinction = vec3_make(0, 1e-12, 1);
-    medium.emission = vec3_make(1, 1, 1);
+    struct colour near = medium_emission(&medium, 2), far = medium_emission(&medium, INFINITY);
+    CHECK_NEAR(near.r, 0.3 / 0.5 * (1 - exp(-1)), 1e-15);
+    CHECK_NEAR(near.g, 0, 0);
+    CHECK_NEAR(far.b, 2.0 / 6, 1e-15);
+    medium.extinction = colour_make(0, 1e-12, 1);
+    medium.emission = colour_make(1, 1, 1);
     near = medium_emission(&medium, 3);
-    CHECK_NEAR(near.x, 3, 0);
-    CHECK_NEAR(near.y, 3, 1e-11);
-    CHECK_NEAR(near.z, 1 - exp(-3), 1e-15);
+    CHECK_NEAR(near.r, 3, 0);
+    CHECK_NEAR(near.g, 3, 1e-11);
+    CHECK_NEAR(near.b, 1 - exp(-3), 1e-15);
 }
 
 TEST(where_nothing_is_every_sample_passes) {
     const struct medium medium = medium_outside(NULL);
-    struct medium_sample sample = medium_sample(&medium, INFINITY, vec3_all(1), (struct sample2){0.5, 1 - 0x1p-32});
-    CHECK(!sample.scatters && sample.distance == INFINITY && sample.weight.x == 1 && sample.weight.z == 1);
+    struct medium_sample sample = medium_sample(&medium, INFINITY, colour_all(1), (struct sample2){0.5, 1 - 0x1p-32});
+    CHECK(!sample.scatters && sample.distance == INFINITY && sample.weight.r == 1 && sample.weight.b == 1);
 }

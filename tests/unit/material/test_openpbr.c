@@ -2,6 +2,7 @@
  * uniform light, from which all of it has to come back. */
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "tests/unit/colour_length.h"
 #include "tests/unit/path_estimate.h"
 #include "tests/unit/surface_makers.h"
 
@@ -25,7 +26,7 @@ struct layers {
 static void layers_init(struct layers *layers) {
     *layers = (struct layers){.numbers = openpbr_defaults(), .material = {.kind = MATERIAL_OPENPBR, .depth = 1}};
     layers->material.openpbr = &layers->numbers;
-    layers->material.phong.kd = layers->material.phong.ks = vec3_all(1);
+    layers->material.phong.kd = layers->material.phong.ks = colour_all(1);
     layers->material.phong.two_sided = true;
 }
 
@@ -53,7 +54,7 @@ static struct estimate albedo_of(const struct bsdf *bsdf, uint32_t lobes, struct
     for (uint32_t i = 0; i < n * n; i++) {
         struct bsdf_sample sample;
         struct sample2 u = sample_cell(key, i % n, i / n, n);
-        double x = bsdf_sample(bsdf, lobes, BSDF_IMPORTANCE, wo, u, &sample) ? sample.weight.y : 0;
+        double x = bsdf_sample(bsdf, lobes, BSDF_IMPORTANCE, wo, u, &sample) ? sample.weight.g : 0;
         sum += x;
         sum2 += x * x;
     }
@@ -70,7 +71,7 @@ static struct bsdf one_lobe(const struct layers *layers, enum lobe_kind kind, do
         if (bsdf.lobes[i].kind != kind)
             continue;
         bsdf.lobes[0] = bsdf.lobes[i];
-        bsdf.lobes[0].weight = vec3_all(1);
+        bsdf.lobes[0].weight = colour_all(1);
         bsdf.count = 1;
         return bsdf;
     }
@@ -165,22 +166,22 @@ TEST(fuzz_reflects_what_its_table_says_and_never_more_than_arrives) {
 
 TEST(metals_reflect_what_they_were_measured_to_reflect_head_on_and_at_82_degrees) {
     struct bsdf_facets facets;
-    struct vec3 f0 = {0.9, 0.5, 0.1}, tint = {0.9, 1, 0.7};
+    struct colour f0 = {0.9, 0.5, 0.1}, tint = {0.9, 1, 0.7};
     bsdf_facets_shape(&facets, vec3_make(0, 0, 1), vec3_all(0), 0.5, 0);
     bsdf_facets_metal(&facets, f0, tint);
-    struct vec3 head_on = bsdf_metal_fresnel(&facets, 1), at_82 = bsdf_metal_fresnel(&facets, 1.0 / 7);
-    CHECK_NEAR(head_on.x, 0.9, 1e-15);
-    CHECK_NEAR(head_on.z, 0.1, 1e-15);
+    struct colour head_on = bsdf_metal_fresnel(&facets, 1), at_82 = bsdf_metal_fresnel(&facets, 1.0 / 7);
+    CHECK_NEAR(head_on.r, 0.9, 1e-15);
+    CHECK_NEAR(head_on.b, 0.1, 1e-15);
     double fifth = pow(6.0 / 7, 5);
-    CHECK_NEAR(at_82.x, 0.9 * (0.9 + 0.1 * fifth), 1e-14);
-    CHECK_NEAR(at_82.z, 0.7 * (0.1 + 0.9 * fifth), 1e-14);
-    struct vec3 sum = {0, 0, 0};
+    CHECK_NEAR(at_82.r, 0.9 * (0.9 + 0.1 * fifth), 1e-14);
+    CHECK_NEAR(at_82.b, 0.7 * (0.1 + 0.9 * fifth), 1e-14);
+    struct colour sum = {0, 0, 0};
     for (int i = 0; i < 10000; i++)
-        sum = vec3_add_scaled(sum, bsdf_metal_fresnel(&facets, (i + 0.5) / 10000), 2 * (i + 0.5) / 1e8);
-    struct vec3 average = bsdf_metal_fresnel_average(&facets);
-    CHECK_NEAR(average.x, sum.x, 1e-7);
-    CHECK_NEAR(average.y, sum.y, 1e-7);
-    CHECK_NEAR(average.z, sum.z, 1e-7);
+        sum = colour_add_scaled(sum, bsdf_metal_fresnel(&facets, (i + 0.5) / 10000), 2 * (i + 0.5) / 1e8);
+    struct colour average = bsdf_metal_fresnel_average(&facets);
+    CHECK_NEAR(average.r, sum.r, 1e-7);
+    CHECK_NEAR(average.g, sum.g, 1e-7);
+    CHECK_NEAR(average.b, sum.b, 1e-7);
 }
 
 /* Silver at 549 nm has n = 0.06 + 3.586 i (Johnson and Christy 1972); gold and copper lack blue, in this order. */
@@ -209,8 +210,8 @@ TEST(the_table_of_metals_has_the_colours_of_metals) {
 TEST(the_albedo_bound_counts_the_colours_of_coat_fuzz_and_transmission_that_are_there) {
     struct layers l;
     layers_init(&l);
-    l.material.phong.kd = vec3_all(0.8);
-    l.numbers.coat_colour = l.numbers.transmission_colour = l.numbers.fuzz_colour = vec3_make(0.5, 3, 0.5);
+    l.material.phong.kd = colour_all(0.8);
+    l.numbers.coat_colour = l.numbers.transmission_colour = l.numbers.fuzz_colour = colour_make(0.5, 3, 0.5);
     CHECK_NEAR(surface_albedo_bound_of(&l.material), 1, 0); /* the highlight; no layer has a weight */
     l.numbers.fuzz_weight = 0.5;
     CHECK_NEAR(surface_albedo_bound_of(&l.material), 3, 0);
@@ -237,19 +238,19 @@ TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is)
     metal.numbers.base_metalness = 1;
     for (size_t i = 0; i < sizeof metals / sizeof *metals; i++) {
         const double *colour = metals[i][0], *tint = metals[i][1];
-        metal.material.phong.kd = vec3_make(colour[0], colour[1], colour[2]);
-        metal.material.phong.ks = vec3_make(tint[0], tint[1], tint[2]);
+        metal.material.phong.kd = colour_make(colour[0], colour[1], colour[2]);
+        metal.material.phong.ks = colour_make(tint[0], tint[1], tint[2]);
         CHECK(surface_albedo_bound_of(&metal.material) <= 1);
     }
     int gains = 0;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct bsdf_facets facets = {.roughness = 1};
         double largest = 0;
-        metal.material.phong.kd = vec3_all(cases[i].colour);
-        metal.material.phong.ks = vec3_all(cases[i].tint);
+        metal.material.phong.kd = colour_all(cases[i].colour);
+        metal.material.phong.ks = colour_all(cases[i].tint);
         bsdf_facets_metal(&facets, metal.material.phong.kd, metal.material.phong.ks);
         for (int k = 0; k <= 4000; k++)
-            largest = fmax(largest, bsdf_metal_fresnel(&facets, k / 4000.0).x);
+            largest = fmax(largest, bsdf_metal_fresnel(&facets, k / 4000.0).r);
         CHECK((largest > 1 + 1e-12) == (surface_albedo_bound_of(&metal.material) > 1));
         gains += largest > 1 + 1e-12;
     }
@@ -258,11 +259,11 @@ TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is)
 
 /* --- closed forms of layers --- */
 
-static struct vec3 weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
+    struct colour sum = {0, 0, 0};
     for (int i = 0; i < bsdf->count; i++)
         if (bsdf->lobes[i].kind == kind)
-            sum = vec3_add(sum, bsdf->lobes[i].weight);
+            sum = colour_add(sum, bsdf->lobes[i].weight);
     return sum;
 }
 
@@ -273,13 +274,13 @@ TEST(a_clear_coat_over_a_matt_base_reflects_what_reflections_between_them_add_up
     lacquer.numbers.coat_weight = 1;
     lacquer.numbers.coat_ior = 1.5;
     lacquer.numbers.specular_weight = 0;
-    lacquer.material.phong.kd = vec3_all(0.8);
+    lacquer.material.phong.kd = colour_all(0.8);
     enum { N = 2000 };
     double sum = 0;
     for (int i = 0; i < N; i++) {
         double c = (i + 0.5) / N;
         struct bsdf bsdf = seen(&lacquer, c, true);
-        sum += 2 * c / N * (weight_of(&bsdf, LOBE_MIRROR).x + weight_of(&bsdf, LOBE_DIFFUSE).x);
+        sum += 2 * c / N * (weight_of(&bsdf, LOBE_MIRROR).r + weight_of(&bsdf, LOBE_DIFFUSE).r);
     }
     CHECK_NEAR(sum, 0.65264, 2e-5);
     estimate_record("coat of index 1.5 over Lambert .8", 0.65264, (struct estimate){sum, 0}, 1);
@@ -290,18 +291,18 @@ TEST(a_clear_coat_over_polished_metal_reflects_the_sum_of_a_series) {
     struct layers coated;
     layers_init(&coated);
     coated.numbers.coat_weight = coated.numbers.base_metalness = 1;
-    coated.material.phong.kd = vec3_all(0.6);
+    coated.material.phong.kd = colour_all(0.6);
     for (double c = 0.1; c < 1; c += 0.2) {
         struct bsdf bsdf = seen(&coated, c, true);
         double f = dielectric_fresnel(c, 1 / 1.6), metal = 0.6 + 0.4 * pow(1 - c, 5), series = f,
                passes = (1 - f) * (1 - f);
         struct bsdf_facets facets;
         bsdf_facets_shape(&facets, vec3_make(0, 0, 1), vec3_all(0), 0.5, 0);
-        bsdf_facets_metal(&facets, vec3_all(0.6), vec3_all(1));
-        double mean = bsdf_metal_fresnel_average(&facets).x;
+        bsdf_facets_metal(&facets, colour_all(0.6), colour_all(1));
+        double mean = bsdf_metal_fresnel_average(&facets).r;
         /* The specification takes the mean of the metal for the reflections between them. */
         series += passes * metal / (1 - f * mean);
-        CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).x, series, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).r, series, 1e-12);
     }
 }
 
@@ -311,14 +312,14 @@ TEST(a_pane_reflects_and_passes_light_with_all_reflections_between_its_sides) {
     pane.numbers.thin_walled = true;
     pane.material.phong.refract = 1;
     struct bsdf bsdf = seen(&pane, 1, true);
-    CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).x, 1.0 / 13, 1e-14);
-    CHECK_NEAR(weight_of(&bsdf, LOBE_REFRACTION).x, 12.0 / 13, 1e-14);
+    CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).r, 1.0 / 13, 1e-14);
+    CHECK_NEAR(weight_of(&bsdf, LOBE_REFRACTION).r, 12.0 / 13, 1e-14);
     bsdf = seen(&pane, 0.3, true);
     struct bsdf_sample sample;
     uint32_t through = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
     CHECK(bsdf_sample(&bsdf, through, BSDF_RADIANCE, view_of(0.3, true), (struct sample2){0.5, 0.5}, &sample));
     CHECK_NEAR(sample.direction.x, -sqrt(1 - 0.09), 1e-15);
-    CHECK_NEAR(sample.weight.x, weight_of(&bsdf, LOBE_REFRACTION).x, 1e-15);
+    CHECK_NEAR(sample.weight.r, weight_of(&bsdf, LOBE_REFRACTION).r, 1e-15);
     struct medium_stack stack = {.count = 0};
     medium_stack_cross(&stack, &bsdf.boundary);
     CHECK_EQ_INT((int)stack.count, 0);
@@ -337,7 +338,7 @@ TEST(rough_glass_of_the_index_of_air_is_invisible) {
             struct bsdf_sample sample;
             CHECK(bsdf_sample(&bsdf, BSDF_ALL, BSDF_RADIANCE, view_of(c, true), (struct sample2){0.3, 0.3}, &sample));
             CHECK_NEAR(vec3_length(vec3_add(sample.direction, view_of(c, true))), 0, 1e-15);
-            CHECK_NEAR(sample.weight.x, 1, 1e-15);
+            CHECK_NEAR(sample.weight.r, 1, 1e-15);
             CHECK(sample.flags & BSDF_DELTA);
         }
     }
@@ -501,7 +502,7 @@ static void render_gloss(struct stage *s, const struct layers *layers, int gloss
 
 static void gloss_init(struct layers *layers) {
     layers_init(layers);
-    layers->material.phong.kd = vec3_all(0);
+    layers->material.phong.kd = colour_all(0);
     layers->material.phong.roughness = 0.5;
 }
 
@@ -512,7 +513,7 @@ TEST(gloss_in_uniform_light_has_the_albedo_of_its_table_in_every_pixel) {
     for (int i = 0; i < 3; i++) {
         struct stage s;
         stage_begin(&s, 1);
-        s.sky.colour = vec3_all(1);
+        s.sky.colour = colour_all(1);
         render_gloss(&s, &layers, samples[i]);
         const double step = 2 * tan(7 * M_PI / 180) / BALL_SIZE;
         for (int p = 0; p < BALL_SIZE * BALL_SIZE; p++) {
@@ -522,7 +523,7 @@ TEST(gloss_in_uniform_light_has_the_albedo_of_its_table_in_every_pixel) {
                 continue;
             const double cosine = sqrt(discriminant);
             const struct bsdf bsdf = seen(&layers, cosine, true);
-            CHECK_NEAR(stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).x, bsdf.facets[0].reflected,
+            CHECK_NEAR(stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).r, bsdf.facets[0].reflected,
                        1e-6);
         }
         stage_end(&s);
@@ -541,7 +542,7 @@ TEST(gloss_of_few_rays_has_the_light_of_many) {
         s.sky = (struct sky){.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
         render_gloss(&s, &layers, samples[i]);
         for (int p = 0; p < BALL_SIZE * BALL_SIZE; p++)
-            mean[i] += stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).x / (BALL_SIZE * BALL_SIZE);
+            mean[i] += stage_pixel(&s, (uint32_t)p % BALL_SIZE, (uint32_t)p / BALL_SIZE).r / (BALL_SIZE * BALL_SIZE);
         stage_end(&s);
     }
     CHECK(mean[0] > 0.02);
@@ -562,7 +563,7 @@ TEST(a_texture_replaces_every_number_of_a_layered_material) {
         struct layers with, without;
         layers_init(&without);
         make_all(&without);
-        without.material.phong.kd = vec3_make(0.5, 0.6, 0.7);
+        without.material.phong.kd = colour_make(0.5, 0.6, 0.7);
         without.material.phong.roughness = 0.4;
         without.numbers.specular_anisotropy = without.numbers.coat_anisotropy = 0.2;
         with = without;
@@ -573,8 +574,8 @@ TEST(a_texture_replaces_every_number_of_a_layered_material) {
         for (int k = 0; k < 50; k++) {
             struct vec3 wi = vec3_normalize(vec3_make(sin(k), cos(3 * k), 0.3 + (k % 5) * (k & 1 ? -1 : 1)));
             struct vec3 wo = view_of(0.6, true);
-            change += vec3_length(vec3_sub(bsdf_eval(&a, BSDF_ALL, BSDF_RADIANCE, wo, wi),
-                                           bsdf_eval(&b, BSDF_ALL, BSDF_RADIANCE, wo, wi)));
+            change += colour_length(colour_sub(bsdf_eval(&a, BSDF_ALL, BSDF_RADIANCE, wo, wi),
+                                               bsdf_eval(&b, BSDF_ALL, BSDF_RADIANCE, wo, wi)));
         }
         if (!(change > 1e-6))
             test_fail(__FILE__, __LINE__, "input %d has no effect", (int)inputs[i]);

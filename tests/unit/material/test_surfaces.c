@@ -7,7 +7,7 @@
 
 static double centre_of(struct stage *s, uint32_t size) {
     CHECK(stage_render(s, size, size));
-    return stage_pixel(s, size / 2, size / 2).x;
+    return stage_pixel(s, size / 2, size / 2).r;
 }
 
 TEST(light_decays_exponentially_with_the_distance_inside_glass) {
@@ -17,11 +17,11 @@ TEST(light_decays_exponentially_with_the_distance_inside_glass) {
             struct stage s;
             stage_begin(&s, 1);
             struct material *glass = stage_glass(&s, 0, 1, 1.5);
-            glass->phong.absorption = vec3_make(0.7, 0.1, 0);
+            glass->phong.absorption = colour_make(0.7, 0.1, 0);
             struct node *slab = stage_cube(&s, s.root, glass);
             stage_move(&s, slab, -0.5, -0.5, -1);
             stage_scale(&s, slab, 100, 100, thickness[i]);
-            s.sky.colour = vec3_all(1);
+            s.sky.colour = colour_all(1);
             s.settings.samples = 1;
             s.camera.fov = 0.01;
             double route = thickness[i];
@@ -30,8 +30,8 @@ TEST(light_decays_exponentially_with_the_distance_inside_glass) {
                 route *= 0.75;
             }
             CHECK_NEAR(centre_of(&s, 1), exp(-0.7 * route), 1e-6);
-            CHECK_NEAR(stage_pixel(&s, 0, 0).y, exp(-0.1 * route), 1e-6);
-            CHECK_NEAR(stage_pixel(&s, 0, 0).z, 1, 1e-6);
+            CHECK_NEAR(stage_pixel(&s, 0, 0).g, exp(-0.1 * route), 1e-6);
+            CHECK_NEAR(stage_pixel(&s, 0, 0).b, 1, 1e-6);
             stage_end(&s);
         }
     }
@@ -65,7 +65,7 @@ TEST(a_rough_mirror_loses_in_uniform_light_what_its_facets_mask) {
         enum { SIZE = 25 };
         s.camera.fov = 14;
         s.settings.samples = 1;
-        s.sky.colour = vec3_all(1);
+        s.sky.colour = colour_all(1);
         CHECK(stage_render(&s, SIZE, SIZE));
         double alpha = 0.0625 * i * i, step = 2 * tan(7 * M_PI / 180) / SIZE, worst = 0, off = 0;
         int met = 0;
@@ -73,7 +73,7 @@ TEST(a_rough_mirror_loses_in_uniform_light_what_its_facets_mask) {
             double x = (p % SIZE - SIZE / 2) * step, y = (p / SIZE - SIZE / 2) * step;
             struct vec3 d = vec3_normalize(vec3_make(x, y, -1));
             double b = -10 * d.z, discriminant = b * b - 99,
-                   seen = stage_pixel(&s, (uint32_t)p % SIZE, (uint32_t)p / SIZE).x;
+                   seen = stage_pixel(&s, (uint32_t)p % SIZE, (uint32_t)p / SIZE).r;
             double cosine = discriminant > 0 ? sqrt(discriminant) : 0; /* of a ball of radius 1 */
             CHECK(seen < 1 + 1e-6);
             if (i == 0 || discriminant <= 0)
@@ -104,11 +104,11 @@ TEST(glass_in_uniform_light_loses_what_its_facets_mask) {
         s.camera.fov = 14;
         s.settings.samples = 1;
         s.settings.reflect_limit = s.settings.refract_limit = 100;
-        s.sky.colour = vec3_all(1);
+        s.sky.colour = colour_all(1);
         CHECK(stage_render(&s, 12, 12));
         double sum = 0;
         for (uint32_t p = 0; p < 12 * 12; p++)
-            sum += stage_pixel(&s, p % 12, p / 12).x / 144;
+            sum += stage_pixel(&s, p % 12, p / 12).r / 144;
         CHECK_NEAR(sum, left[i],
                    i ? 0.01 : 1e-3); /* the light missing from 1 is reflected inside more than 100 times */
         stage_end(&s);
@@ -137,7 +137,7 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
                                      .emissive = true,
                                      .visible = true};
         s.light_count = 1;
-        metal->phong.ks = vec3_make(1, 0, 0);
+        metal->phong.ks = colour_make(1, 0, 0);
         s.camera = (struct camera){{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, 1e-3};
         s.settings.area_samples = 1;
         s.settings.samples = 1;
@@ -170,19 +170,19 @@ TEST(facets_are_seen_from_the_view_and_have_the_mean_of_the_normal) {
 TEST(an_unlit_surface_shows_kd_and_emission_adds) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *material = stage_phong(&s, vec3_make(0.3, 0.4, 0.5), vec3_all(1), 10);
+    struct material *material = stage_phong(&s, colour_make(0.3, 0.4, 0.5), colour_all(1), 10);
     (void)stage_sphere(&s, s.root, material);
-    stage_point_light(&s, vec3_make(0, 0, 20), vec3_all(1));
-    s.ambient = vec3_all(0.7);
+    stage_point_light(&s, vec3_make(0, 0, 20), colour_all(1));
+    s.ambient = colour_all(0.7);
     s.camera.fov = 5;
     material->phong.unlit = true;
     CHECK_NEAR(centre_of(&s, 3), 0.3, 1e-7);
-    material->phong.emission = vec3_make(2, 0, 0);
+    material->phong.emission = colour_make(2, 0, 0);
     CHECK_NEAR(centre_of(&s, 3), 2.3, 1e-6);
     CHECK_EQ_INT(s.statistics.shadow_rays, 0);
     material->phong.unlit = false;
     double lit = centre_of(&s, 3);
-    material->phong.emission = vec3_all(0);
+    material->phong.emission = colour_all(0);
     CHECK_NEAR(lit - centre_of(&s, 3), 2, 1e-6);
     stage_end(&s);
 }
@@ -193,10 +193,10 @@ TEST(blinn_of_a_material_is_blinn_of_the_picture) {
         for (int picture = 0; picture < 2; picture++) {
             struct stage s;
             stage_begin(&s, 1);
-            struct material *material = stage_phong(&s, vec3_all(0), vec3_all(1), 20);
+            struct material *material = stage_phong(&s, colour_all(0), colour_all(1), 20);
             material->phong.highlight = (enum material_highlight)highlight;
             (void)stage_sphere(&s, s.root, material);
-            stage_point_light(&s, vec3_make(9, 3, 9), vec3_all(1));
+            stage_point_light(&s, vec3_make(9, 3, 9), colour_all(1));
             s.settings.specular = picture ? SPECULAR_BLINN : SPECULAR_PHONG;
             s.camera.fov = 5;
             (picture ? of_picture : of_material)[highlight] = centre_of(&s, 3);

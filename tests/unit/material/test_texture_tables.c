@@ -35,7 +35,7 @@ static struct texture any_over_any(struct authored_materials *a, struct test_ran
     struct texture_image image = {.image = a->image, .mapping = MAPPING_UV};
     const struct texture *first = any_texture(a, random), *second = any_texture(a, random);
     double x = test_uniform(random, 0.1, 1);
-    const struct texture some[] = {texture_constant(vec3_make(x, 0.5, 1 - x)),
+    const struct texture some[] = {texture_constant(colour_make(x, 0.5, 1 - x)),
                                    *texture_parameter(INPUT_KS),
                                    texture_vertex_colour(),
                                    texture_image(&image, NULL),
@@ -64,7 +64,7 @@ static void make_materials(struct authored_materials *a, struct test_random *ran
     for (int i = 0; i < MATERIALS; i++) {
         bool derived = i > 0 && i % 2;
         struct material *m = derived ? scene_material(&s->scene, MATERIAL_BUMP, a->materials[i - 1], &s->error)
-                                     : stage_phong(s, vec3_make(0.25, 0.5, 0.75), vec3_all(0.125), 9);
+                                     : stage_phong(s, colour_make(0.25, 0.5, 0.75), colour_all(0.125), 9);
         CHECK(material_multiply(m, (enum material_input)(i % INPUT_COUNT), any_texture(a, random), arena, &s->error));
         struct bump bump = {
             .kind = i % 3 ? MATERIAL_BUMP : MATERIAL_NORMAL, .height = 0.25, .texture = any_texture(a, random)};
@@ -98,16 +98,16 @@ static struct hit random_hit(struct test_random *random) {
 }
 
 static bool same_inputs(const struct surface_inputs *a, const struct surface_inputs *b) {
-    const double left[] = {a->kd.x,      a->kd.y,       a->kd.z,       a->ks.x,      a->ks.y,    a->ks.z,
+    const double left[] = {a->kd.r,      a->kd.g,       a->kd.b,       a->ks.r,      a->ks.g,    a->ks.b,
                            a->normal.x,  a->normal.y,   a->normal.z,   a->shininess, a->reflect, a->refract,
-                           a->roughness, a->emission.x, a->emission.y, a->opacity};
-    const double right[] = {b->kd.x,      b->kd.y,       b->kd.z,       b->ks.x,      b->ks.y,    b->ks.z,
+                           a->roughness, a->emission.r, a->emission.g, a->opacity};
+    const double right[] = {b->kd.r,      b->kd.g,       b->kd.b,       b->ks.r,      b->ks.g,    b->ks.b,
                             b->normal.x,  b->normal.y,   b->normal.z,   b->shininess, b->reflect, b->refract,
-                            b->roughness, b->emission.x, b->emission.y, b->opacity};
+                            b->roughness, b->emission.r, b->emission.g, b->opacity};
     return memcmp(left, right, sizeof left) == 0;
 }
 
-static bool same_colour(struct vec3 a, struct vec3 b) {
+static bool same_colour(struct colour a, struct colour b) {
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
@@ -119,10 +119,10 @@ static void check_input(const struct material *authored, enum material_input inp
         return;
     const struct phong *numbers = &material_origin(authored)->phong;
     /* Each input is its number times a texture. */
-    struct vec3 number = input == INPUT_KD ? numbers->kd : numbers->ks, value = input == INPUT_KD ? got->kd : got->ks;
+    struct colour number = input == INPUT_KD ? numbers->kd : numbers->ks, value = input == INPUT_KD ? got->kd : got->ks;
     if (texture->operation.kind == TEXTURE_MULTIPLY && texture->parts[PART_B]->size == 1 &&
         texture->parts[PART_B]->operation.kind != TEXTURE_PARAMETER)
-        CHECK(same_colour(value, vec3_mul(number, texture_colour_at(texture->parts[PART_B], hit))));
+        CHECK(same_colour(value, colour_mul(number, texture_colour_at(texture->parts[PART_B], hit))));
 }
 
 static void check_as_authored(const struct world *world, struct test_random *random) {
@@ -158,7 +158,7 @@ TEST(materials_of_a_world_read_from_its_tables_what_the_authored_ones_read_from_
     CHECK_EQ_INT(world->surfaces.bump_count, MATERIALS / 2);
     check_as_authored(world, &random);
     for (int i = 0; i < MATERIALS; i += 2) /* colours change, the kinds of inputs do not */
-        a.materials[i]->phong.kd = vec3_make(0.5, 0.25, 1);
+        a.materials[i]->phong.kd = colour_make(0.5, 0.25, 1);
     world_update_materials(world);
     check_as_authored(world, &random);
     stage_end(&a.stage);
@@ -210,14 +210,15 @@ static const struct texture *any_number(struct deep *deep) {
     return kept(deep, texture_number(test_uniform(&deep->random, 0.99, 1.01)));
 }
 
-static struct vec3 by_recursion(const struct texture *texture) {
+static struct colour by_recursion(const struct texture *texture) {
     const struct texture *const *parts = texture->parts;
     if (texture->operation.kind == TEXTURE_CONSTANT)
         return texture->operation.constant.colour;
     if (texture->operation.kind == TEXTURE_MULTIPLY)
-        return vec3_mul(by_recursion(parts[PART_A]), by_recursion(parts[PART_B]));
-    double ratio = by_recursion(parts[PART_RATIO]).x;
-    return vec3_add(vec3_scale(by_recursion(parts[PART_A]), ratio), vec3_scale(by_recursion(parts[PART_B]), 1 - ratio));
+        return colour_mul(by_recursion(parts[PART_A]), by_recursion(parts[PART_B]));
+    double ratio = by_recursion(parts[PART_RATIO]).r;
+    return colour_add(colour_scale(by_recursion(parts[PART_A]), ratio),
+                      colour_scale(by_recursion(parts[PART_B]), 1 - ratio));
 }
 
 /* The smallest tree that needs so many values: 1 + 2 S(d - 1), or 1 + 3 S(d - 2) textures. */
@@ -234,10 +235,10 @@ static const struct texture *smallest(struct deep *deep, int depth) {
 
 static void check_value(const struct texture *texture) {
     struct hit hit = {.u = 0};
-    struct vec3 wanted = by_recursion(texture);
-    CHECK(texture->depth <= TEXTURE_DEPTH && isfinite(wanted.x));
+    struct colour wanted = by_recursion(texture);
+    CHECK(texture->depth <= TEXTURE_DEPTH && isfinite(wanted.r));
     CHECK(same_colour(texture_colour_at(texture, &hit), wanted));
-    CHECK(texture_number_at(texture, &hit) == wanted.x);
+    CHECK(texture_number_at(texture, &hit) == wanted.r);
 }
 
 TEST(chains_of_textures_on_each_side_need_two_or_three_values_at_a_time) {

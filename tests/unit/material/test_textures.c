@@ -7,6 +7,7 @@
 #include "math/noise.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "tests/unit/colour_length.h"
 #include "tests/unit/surface_makers.h"
 
 #include <math.h>
@@ -46,7 +47,7 @@ static const struct texture *number(struct palette *p, double x) {
 }
 
 static const struct texture *colour(struct palette *p, double r, double g, double b) {
-    return keep(p, texture_constant(vec3_make(r, g, b)));
+    return keep(p, texture_constant(colour_make(r, g, b)));
 }
 
 static struct texture_image picture(const struct palette *p, enum texture_alpha alpha) {
@@ -79,6 +80,10 @@ static bool same(struct vec3 a, struct vec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+static bool same_colour(struct colour a, struct colour b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
 /* --- every kind --- */
 
 /* {0.5 + 0.1 * p.x, s.v, s.normal.z} */
@@ -95,42 +100,42 @@ static const struct expr_program *program(struct palette *p) {
 
 /* One texture of the kind, and its value at the hit by definition. */
 static const struct texture *make(struct palette *p, enum texture_kind kind, const struct hit *hit,
-                                  struct vec3 *wanted) {
+                                  struct colour *wanted) {
     struct vec3 at = hit->pattern_point;
     struct texture_image image = picture(p, ALPHA_COVERS);
     double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
     switch (kind) {
     case TEXTURE_CONSTANT:
-        *wanted = vec3_make(0.1, 0.2, 0.7);
+        *wanted = colour_make(0.1, 0.2, 0.7);
         return colour(p, 0.1, 0.2, 0.7);
     case TEXTURE_PARAMETER: /* there is no material */
-        *wanted = vec3_all(1);
+        *wanted = colour_all(1);
         return texture_parameter(INPUT_KD);
     case TEXTURE_VERTEX_COLOUR:
         *wanted = hit->colour;
         return keep(p, texture_vertex_colour());
     case TEXTURE_IMAGE:
         /* premultiplied by alpha, over white */
-        *wanted = vec3_make(0.4 * 10 / 255 + 0.6, 0.4 * 20 / 255 + 0.6, 0.4 * 30 / 255 + 0.6);
+        *wanted = colour_make(0.4 * 10 / 255 + 0.6, 0.4 * 20 / 255 + 0.6, 0.4 * 30 / 255 + 0.6);
         return keep(p, texture_image(&image, number(p, 1)));
     case TEXTURE_MARBLE:
-        *wanted = vec3_all(noise_marble(at, 2, 3, 4, 0));
+        *wanted = colour_all(noise_marble(at, 2, 3, 4, 0));
         return keep(p, texture_marble(2, 3, 4, 0));
     case TEXTURE_WOOD:
-        *wanted = vec3_all(ratio);
+        *wanted = colour_all(ratio);
         return keep(p, texture_wood(3, 5, 1));
     case TEXTURE_MIX:
-        *wanted = vec3_make(ratio * 0.5, ratio * 0.25 + (1 - ratio), ratio);
+        *wanted = colour_make(ratio * 0.5, ratio * 0.25 + (1 - ratio), ratio);
         return keep(p, texture_mix(colour(p, 0.5, 0.25, 1), colour(p, 0, 1, 0), keep(p, texture_wood(3, 5, 1))));
     case TEXTURE_MULTIPLY:
-        *wanted = vec3_make(0.5 * ratio, 0.25 * ratio, ratio);
+        *wanted = colour_make(0.5 * ratio, 0.25 * ratio, ratio);
         return keep(p, texture_multiply(colour(p, 0.5, 0.25, 1), keep(p, texture_wood(3, 5, 1))));
     case TEXTURE_MAP:
-        *wanted = vec3_make(0.9, 0.8, 0.3);
+        *wanted = colour_make(0.9, 0.8, 0.3);
         return keep(p, texture_map(colour(p, 0.1, 0.2, 0.7), FUNCTION_COMPLEMENT, 0));
     case TEXTURE_FUNCTION:
-        *wanted = vec3_make(0.5 + 0.1 * at.x, hit->v, hit->normal.z);
-        return keep(p, texture_function(program(p), true, vec3_all(0.5), vec3_all(1)));
+        *wanted = colour_make(0.5 + 0.1 * at.x, hit->v, hit->normal.z);
+        return keep(p, texture_function(program(p), true, colour_all(0.5), colour_all(1)));
     }
     return NULL;
 }
@@ -142,11 +147,11 @@ TEST(every_kind_of_texture_is_what_its_definition_says) {
     for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++)
         for (int i = 0; i < 50; i++) {
             struct hit hit = random_hit(&random);
-            struct vec3 wanted;
+            struct colour wanted;
             const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &wanted);
             CHECK(texture && texture->operation.kind == (enum texture_kind)kind);
-            CHECK_NEAR(vec3_length(vec3_sub(texture_colour_at(texture, &hit), wanted)), 0, 1e-14);
-            CHECK_NEAR(texture_number_at(texture, &hit), (wanted.x + wanted.y + wanted.z) / 3, 1e-14);
+            CHECK_NEAR(colour_length(colour_sub(texture_colour_at(texture, &hit), wanted)), 0, 1e-14);
+            CHECK_NEAR(texture_number_at(texture, &hit), (wanted.r + wanted.g + wanted.b) / 3, 1e-14);
         }
     palette_destroy(&p);
 }
@@ -158,17 +163,17 @@ TEST(a_mix_of_any_two_kinds_lies_where_its_ratio_says_and_products_commute) {
     for (int a = 0; a < TEXTURE_KIND_COUNT; a++)
         for (int b = 0; b < TEXTURE_KIND_COUNT; b++) {
             struct hit hit = random_hit(&random);
-            struct vec3 va, vb;
+            struct colour va, vb;
             const struct texture *ta = make(&p, (enum texture_kind)a, &hit, &va);
             const struct texture *tb = make(&p, (enum texture_kind)b, &hit, &vb);
             struct texture only_a = texture_mix(ta, tb, number(&p, 1)), only_b = texture_mix(ta, tb, number(&p, 0));
             struct texture middle = texture_mix(ta, tb, number(&p, 0.5));
-            struct vec3 half = vec3_scale(vec3_add(va, vb), 0.5);
-            CHECK(same(texture_colour_at(&only_a, &hit), texture_colour_at(ta, &hit)));
-            CHECK(same(texture_colour_at(&only_b, &hit), texture_colour_at(tb, &hit)));
-            CHECK_NEAR(vec3_length(vec3_sub(texture_colour_at(&middle, &hit), half)), 0, 1e-14);
+            struct colour half = colour_scale(colour_add(va, vb), 0.5);
+            CHECK(same_colour(texture_colour_at(&only_a, &hit), texture_colour_at(ta, &hit)));
+            CHECK(same_colour(texture_colour_at(&only_b, &hit), texture_colour_at(tb, &hit)));
+            CHECK_NEAR(colour_length(colour_sub(texture_colour_at(&middle, &hit), half)), 0, 1e-14);
             struct texture ab = texture_multiply(ta, tb), ba = texture_multiply(tb, ta);
-            CHECK(same(texture_colour_at(&ab, &hit), texture_colour_at(&ba, &hit)));
+            CHECK(same_colour(texture_colour_at(&ab, &hit), texture_colour_at(&ba, &hit)));
             CHECK_NEAR(texture_number_at(&ab, &hit), texture_number_at(ta, &hit) * texture_number_at(tb, &hit), 1e-15);
         }
     palette_destroy(&p);
@@ -180,7 +185,7 @@ TEST(a_shared_texture_gives_the_values_of_a_single_one) {
     palette_init(&p);
     for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++) {
         struct hit hit = random_hit(&random);
-        struct vec3 ignored;
+        struct colour ignored;
         struct texture shared = *make(&p, (enum texture_kind)kind, &hit, &ignored);
         shared.shared = true;
         struct texture_builder builder = {.count = 0};
@@ -192,8 +197,8 @@ TEST(a_shared_texture_gives_the_values_of_a_single_one) {
               texture_builder_finish(&builder, &p.arena, &tables));
         texture_reader_init(&reader, &hit, &tables, NULL);
         for (int i = 0; i < 2; i++) {
-            CHECK(same(texture_read(as_colour, &reader), texture_colour_at(&shared, &hit)));
-            CHECK(texture_read(as_number, &reader).x == texture_number_at(&shared, &hit));
+            CHECK(same_colour(texture_read(as_colour, &reader), texture_colour_at(&shared, &hit)));
+            CHECK(texture_read(as_number, &reader).r == texture_number_at(&shared, &hit));
         }
         CHECK_EQ_INT(reader.count, 2); /* the colour and the number */
         texture_builder_destroy(&builder);
@@ -208,16 +213,16 @@ TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
     for (int kind = 0; kind < TEXTURE_KIND_COUNT; kind++)
         for (int i = 0; i < 100; i++) {
             struct hit hit = random_hit(&random);
-            struct vec3 ignored;
+            struct colour ignored;
             const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &ignored);
-            struct vec3 value = texture_colour_at(texture, &hit);
-            struct vec3 bound = texture_estimate(texture, NULL, TEXTURE_LARGEST);
-            struct vec3 average = texture_estimate(texture, NULL, TEXTURE_AVERAGE);
-            CHECK(value.x <= bound.x + 1e-15 && value.y <= bound.y + 1e-15 && value.z <= bound.z + 1e-15);
-            CHECK(average.x <= bound.x + 1e-15 && average.y <= bound.y + 1e-15 && average.z <= bound.z + 1e-15);
+            struct colour value = texture_colour_at(texture, &hit);
+            struct colour bound = texture_estimate(texture, NULL, TEXTURE_LARGEST);
+            struct colour average = texture_estimate(texture, NULL, TEXTURE_AVERAGE);
+            CHECK(value.r <= bound.r + 1e-15 && value.g <= bound.g + 1e-15 && value.b <= bound.b + 1e-15);
+            CHECK(average.r <= bound.r + 1e-15 && average.g <= bound.g + 1e-15 && average.b <= bound.b + 1e-15);
             if (texture->operation.kind == TEXTURE_CONSTANT ||
                 texture->operation.kind == TEXTURE_IMAGE) /* the image is uniform */
-                CHECK_NEAR(vec3_length(vec3_sub(average, value)), 0, 1e-14);
+                CHECK_NEAR(colour_length(colour_sub(average, value)), 0, 1e-14);
         }
     palette_destroy(&p);
 }
@@ -229,8 +234,8 @@ TEST(the_number_of_a_colour_is_its_mean_and_that_of_a_number_is_exact) {
     struct test_random random = {11};
     for (int i = 0; i < 1000; i++) {
         double x = test_uniform(&random, -5, 5), y = test_uniform(&random, -5, 5), z = test_uniform(&random, -5, 5);
-        struct texture exact = texture_number(x), mixed = texture_constant(vec3_make(x, y, z));
-        CHECK(texture_number_at(&exact, &hit) == x && same(texture_colour_at(&exact, &hit), vec3_all(x)));
+        struct texture exact = texture_number(x), mixed = texture_constant(colour_make(x, y, z));
+        CHECK(texture_number_at(&exact, &hit) == x && same_colour(texture_colour_at(&exact, &hit), colour_all(x)));
         CHECK(texture_number_at(&mixed, &hit) == (x + y + z) / 3);
     }
 }
@@ -244,10 +249,10 @@ TEST(alpha_of_an_image_covers_is_ignored_darkens_is_undone_or_is_read_alone) {
     for (int alpha = ALPHA_COVERS; alpha <= ALPHA_ONLY; alpha++) {
         struct texture_image image = picture(&p, (enum texture_alpha)alpha);
         struct texture over = texture_image(&image, white);
-        CHECK_NEAR(texture_colour_at(&over, &hit).x, wanted[alpha], 1e-15);
+        CHECK_NEAR(texture_colour_at(&over, &hit).r, wanted[alpha], 1e-15);
         struct hit bare = hit;
         bare.has_uv = false; /* the surface has no coordinates: the texture below is used */
-        CHECK(same(texture_colour_at(&over, &bare), vec3_all(1)));
+        CHECK(same_colour(texture_colour_at(&over, &bare), colour_all(1)));
     }
     palette_destroy(&p);
 }
@@ -282,7 +287,7 @@ TEST(functions_of_textures_follow_their_formulas) {
                 wanted = x >= amount;
                 break;
             }
-            CHECK_NEAR(texture_colour_at(&map, &hit).x, wanted, 1e-9);
+            CHECK_NEAR(texture_colour_at(&map, &hit).r, wanted, 1e-9);
         }
     palette_destroy(&p);
 }
@@ -396,7 +401,7 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     palette_init(&p);
     struct material base = base_material(), image, wood, marble;
     struct texture_image even = picture(&p, ALPHA_COVERS);
-    struct vec3 brown = {0.3, 0.2, 0.1}, blue = {0, 0.1, 0.9};
+    struct colour brown = {0.3, 0.2, 0.1}, blue = {0, 0.1, 0.9};
     material_derive(&image, MATERIAL_IMAGE, &base);
     CHECK(material_cover(&image, INPUT_KD, &even, &p.arena, &p.error));
     material_derive(&wood, MATERIAL_WOOD, &image);
@@ -405,18 +410,19 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     CHECK(material_mix_kd(&marble, texture_marble(2, 3, 4, 1), texture_constant(blue), &p.arena, &p.error));
     for (int i = 0; i < 1000; i++) {
         struct hit hit = random_hit(&random);
-        struct vec3 at = hit.pattern_point, kd = base.phong.kd;
+        struct vec3 at = hit.pattern_point;
+        struct colour kd = base.phong.kd;
         struct surface_inputs inputs;
         struct rgba texel = image_lookup(p.image, (struct image_point){0.5, 0.5, 0, 0},
                                          (struct image_sampling){IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP});
-        kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(kd, 1 - texel.a));
+        kd = colour_add(colour_make(texel.r, texel.g, texel.b), colour_scale(kd, 1 - texel.a));
         double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
-        kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
+        kd = colour_add(colour_scale(kd, ratio), colour_scale(brown, 1 - ratio));
         ratio = noise_marble(at, 2, 3, 4, 1);
-        kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
+        kd = colour_add(colour_scale(kd, ratio), colour_scale(blue, 1 - ratio));
         surface_inputs_of(&marble, &hit, &inputs);
-        CHECK(same(inputs.kd, kd));
-        CHECK(same(inputs.ks, base.phong.ks) && inputs.shininess == 7 && inputs.opacity == 1);
+        CHECK(same_colour(inputs.kd, kd));
+        CHECK(same_colour(inputs.ks, base.phong.ks) && inputs.shininess == 7 && inputs.opacity == 1);
     }
     palette_destroy(&p);
 }
@@ -430,12 +436,13 @@ TEST(a_thousand_decorators_are_evaluated_in_order) {
     chain[0] = base_material();
     for (int i = 1; i < MATERIAL_DEPTH; i++) {
         material_derive(&chain[i], MATERIAL_WOOD, &chain[i - 1]);
-        CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), texture_constant(vec3_all(i % 2)), &p.arena, &p.error));
+        CHECK(
+            material_mix_kd(&chain[i], texture_wood(3, 5, 1), texture_constant(colour_all(i % 2)), &p.arena, &p.error));
         kd = kd * ratio + (i % 2) * (1 - ratio);
     }
     struct surface_inputs inputs;
     surface_inputs_of(&chain[MATERIAL_DEPTH - 1], &hit, &inputs);
-    CHECK(inputs.kd.x == kd);
+    CHECK(inputs.kd.r == kd);
     CHECK_EQ_INT(chain[MATERIAL_DEPTH - 1].depth, MATERIAL_DEPTH);
     palette_destroy(&p);
 }
@@ -451,8 +458,8 @@ TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
         material_derive(&metal, MATERIAL_PHONG, &base);
         CHECK(material_mix_metal(&metal, number(&p, m), &p.arena, &p.error));
         surface_inputs_of(&metal, &hit, &inputs);
-        CHECK_NEAR(inputs.kd.x, 0.1 * (1 - m), 1e-16);
-        CHECK_NEAR(inputs.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
+        CHECK_NEAR(inputs.kd.r, 0.1 * (1 - m), 1e-16);
+        CHECK_NEAR(inputs.ks.r, 0.1 * m + 0.4 * (1 - m), 1e-16);
         CHECK(inputs.shininess == 7 && inputs.reflect == 0.8);
     }
     palette_destroy(&p);
@@ -644,10 +651,10 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     surface_inputs_of(&covered, &ball, &bare);
     surface_inputs_of(on->base, &ball, &shown);
     surface_inputs_of(&covered, &square, &flat);
-    CHECK(!same(bare.kd, shown.kd) && same(shown.kd, flat.kd));
-    base.phong.kd = vec3_scale(base.phong.kd, 2); /* later changes of the base reach copies */
+    CHECK(!same_colour(bare.kd, shown.kd) && same_colour(shown.kd, flat.kd));
+    base.phong.kd = colour_scale(base.phong.kd, 2); /* later changes of the base reach copies */
     surface_inputs_of(on->base, &ball, &bare);
-    CHECK(same(bare.kd, vec3_scale(shown.kd, 2)));
+    CHECK(same_colour(bare.kd, colour_scale(shown.kd, 2)));
     palette_destroy(&p);
 }
 
@@ -658,7 +665,7 @@ TEST(a_material_on_shapes_of_several_layouts_has_one_number_and_an_index_for_eac
     stage_begin(&s, 1);
     struct texture_image lookup = picture(&p, ALPHA_COVERS);
     lookup.mapping = MAPPING_BY_SHAPE;
-    struct material *plain = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    struct material *plain = stage_phong(&s, colour_all(1), colour_all(0), 1);
     struct material *m = scene_material(&s.scene, MATERIAL_IMAGE, plain, &s.error);
     CHECK(material_cover(m, INPUT_KD, &lookup, &s.scene.arena, &s.error));
     for (int i = 0; i < 6; i++) {

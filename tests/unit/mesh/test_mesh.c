@@ -139,7 +139,7 @@ TEST(mesh_colours_of_faces_are_those_of_their_triangles_also_when_some_are_dropp
         struct ray ray = test_ray(vec3_make(0, 0, 9), vec3_make(0, 0, -1));
         struct surface surface;
         mesh_describe(mesh, &ray, &crossing, &surface);
-        CHECK(surface.has_colour && surface.colour.x == (t < 2) && surface.colour.z == (t == 2));
+        CHECK(surface.has_colour && surface.colour.r == (t < 2) && surface.colour.b == (t == 2));
     }
     mesh_release(mesh);
     maker_free(&m);

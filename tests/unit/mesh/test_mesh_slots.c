@@ -45,7 +45,7 @@ static const struct material *seen(const struct stage *s, struct vec3 from, stru
 
 static void make_slots(struct stage *s, const struct material *slots[6]) {
     for (int i = 0; i < 6; i++)
-        slots[i] = stage_phong(s, vec3_all(i), vec3_all(0), 1);
+        slots[i] = stage_phong(s, colour_all(i), colour_all(0), 1);
 }
 
 static const struct vec3 from[6] = {{0.4, 0.6, -5}, {0.4, 0.6, 5},  {0.4, -5, 0.6},
@@ -70,7 +70,7 @@ TEST(mesh_faces_have_the_material_of_their_slot) {
     CHECK(s.warnings > 0);
     for (int i = 0; i < 6; i++) {
         const struct material *m = seen(&s, from[i], along[i], NULL);
-        CHECK(i == 4 ? m->phong.kd.x == 0.5 : m == slots[i]);
+        CHECK(i == 4 ? m->phong.kd.r == 0.5 : m == slots[i]);
     }
     /* One material for the whole mesh overrides the slots. */
     world_destroy(&s.world);
@@ -86,7 +86,7 @@ TEST(mesh_faces_keep_their_materials_as_operands_of_csg) {
     stage_begin(&s, 1);
     const struct material *slots[6];
     make_slots(&s, slots);
-    const struct material *red = stage_phong(&s, vec3_make(9, 0, 0), vec3_all(0), 1);
+    const struct material *red = stage_phong(&s, colour_make(9, 0, 0), colour_all(0), 1);
     struct node *ball = stage_sphere(&s, scene_node(&s.scene, NODE_GROUP, "aside", &s.error), red);
     stage_scale(&s, ball, 0.3, 0.3, 0.3);
     struct node *csg =
@@ -197,7 +197,7 @@ static void print_slots(struct listener *listener, const struct render_request *
     char *out = listener->said;
     size_t size = sizeof listener->said;
     for (uint32_t i = 0; i < node->slot_count; i++)
-        (void)snprintf(out + strlen(out), size - strlen(out), "%g ", node->slots[i] ? node->slots[i]->phong.kd.x : -1);
+        (void)snprintf(out + strlen(out), size - strlen(out), "%g ", node->slots[i] ? node->slots[i]->phong.kd.r : -1);
     for (uint32_t f = 0; f < mesh_triangle_count(node->shape.mesh); f++) {
         struct crossing crossing = {.part = f, .u = 0.25, .v = 0.25};
         struct ray ray = test_ray(vec3_make(0, 0, 1), vec3_make(0, 0, -1));

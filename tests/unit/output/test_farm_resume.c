@@ -80,15 +80,15 @@ static void begin(struct stage *s) {
     s->settings.max_depth = 5;
     s->settings.noise = 0.16;
     s->camera = (struct camera){{0, 0, 3.5}, {0, 0, -1}, {0, 1, 0}, 50};
-    struct material *white = stage_phong(s, vec3_make(0.7, 0.6, 0.5), vec3_all(0), 1);
+    struct material *white = stage_phong(s, colour_make(0.7, 0.6, 0.5), colour_all(0), 1);
     white->phong.two_sided = true;
     stage_scale(s, stage_sphere(s, s->root, white), 4, 4, 4);
-    struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    glowing->phong.emission = vec3_all(20);
+    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    glowing->phong.emission = colour_all(20);
     struct node *lamp = stage_sphere(s, s->root, glowing);
     stage_scale(s, lamp, 0.4, 0.4, 0.4);
     stage_move(s, lamp, 1, 2.2, 0.5);
-    stage_move(s, stage_sphere(s, s->root, stage_phong(s, vec3_all(0.3), vec3_all(0), 1)), -1, -1, -1);
+    stage_move(s, stage_sphere(s, s->root, stage_phong(s, colour_all(0.3), colour_all(0), 1)), -1, -1, -1);
 }
 
 static struct film new_film(struct film_record record) {

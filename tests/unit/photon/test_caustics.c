@@ -26,13 +26,13 @@ static struct vec3 unpacked(uint32_t packed) {
 static const double pi = 3.14159265358979323846;
 
 static struct material *white(struct stage *s) {
-    struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    struct material *material = stage_phong(s, colour_all(1), colour_all(0), 1);
     material->phong.two_sided = true;
     return material;
 }
 
 static struct material *mirror(struct stage *s) {
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(1), 1);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(1), 1);
     material->phong.reflect = 1;
     return material;
 }
@@ -85,28 +85,28 @@ static struct vec3 photon_position(const struct photon_map *map, uint32_t i) {
     return vec3_add_scaled(map->origin, vec3_make((double)at[0], (double)at[1], (double)at[2]), map->unit);
 }
 
-static struct vec3 photon_power(const struct photon_map *map, uint32_t i) {
+static struct colour photon_power(const struct photon_map *map, uint32_t i) {
     const float *power = map->lights[i].power;
-    return vec3_scale(vec3_make((double)power[0], (double)power[1], (double)power[2]), map->power_unit);
+    return colour_scale(colour_make((double)power[0], (double)power[1], (double)power[2]), map->power_unit);
 }
 
-static struct vec3 all_power(const struct photon_map *map) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour all_power(const struct photon_map *map) {
+    struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < map->count; i++)
-        sum = vec3_add(sum, photon_power(map, i));
+        sum = colour_add(sum, photon_power(map, i));
     return sum;
 }
 
 /* --- the unit of light --- */
 
 /* The mean light on a piece of white floor. */
-static struct vec3 floor_light(struct stage *s, int photons) {
+static struct colour floor_light(struct stage *s, int photons) {
     s->settings.caustics.photons = photons;
     CHECK(stage_render(s, 16, 16));
-    struct vec3 sum = {0, 0, 0};
+    struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < 256; i++)
-        sum = vec3_add(sum, stage_pixel(s, i % 16, i / 16));
-    return vec3_scale(sum, 1.0 / 256);
+        sum = colour_add(sum, stage_pixel(s, i % 16, i / 16));
+    return colour_scale(sum, 1.0 / 256);
 }
 
 /* A square mesh of side 0.6 above the floor, not part of the scene. */
@@ -119,7 +119,7 @@ static const struct node *mesh_above(struct stage *s) {
     struct mesh_input input = maker_input(&maker);
     struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "mesh", &s->error);
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
-    node->material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    node->material = stage_phong(s, colour_all(0), colour_all(0), 1);
     maker_free(&maker);
     return node;
 }
@@ -132,21 +132,21 @@ static void pane_gives_back(const char *what, struct light light, double toleran
     s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
     s.settings.lens.view_height = 1;
     s.settings.area_samples = 16;
-    light.colour = vec3_make(0.5, 1, 2);
+    light.colour = colour_make(0.5, 1, 2);
     add_light(&s, light);
     s.authored[0].node = light.kind == LIGHT_MESH ? mesh_above(&s) : NULL;
     box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
-    struct vec3 open = floor_light(&s, 0);
+    struct colour open = floor_light(&s, 0);
     struct material *pane = stage_glass(&s, 0, 1, 1);
     if (light.kind == LIGHT_SKY) /* no path around it */
         ball(&s, vec3_make(0, 0, 0), 1.5, pane);
     else
         box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), pane);
-    struct vec3 dark = floor_light(&s, 0), back = floor_light(&s, 20000);
-    CHECK(open.z > 0);
-    if (!(fabs(back.x / open.x - 1) < tolerance && fabs(back.z / open.z - 1) < tolerance && dark.y == 0))
+    struct colour dark = floor_light(&s, 0), back = floor_light(&s, 20000);
+    CHECK(open.b > 0);
+    if (!(fabs(back.r / open.r - 1) < tolerance && fabs(back.b / open.b - 1) < tolerance && dark.g == 0))
         test_fail(__FILE__, __LINE__, "%s: %g %g %g without the pane, %g %g %g with it, %g without photons", what,
-                  open.x, open.y, open.z, back.x, back.y, back.z, dark.y);
+                  open.r, open.g, open.b, back.r, back.g, back.b, dark.g);
     stage_end(&s);
 }
 
@@ -212,7 +212,7 @@ TEST(a_ball_of_index_1_gives_back_the_light_of_skies) {
     static const double stops[3][4] = {{-1, 9, 9, 9}, {0, 0.2, 0.5, 1}, {1, 2, 1.5, 0.5}};
     struct sky skies[3] = {{.kind = SKY_CONSTANT, .colour = {0.5, 0.75, 1}},
                            {.kind = SKY_STOPS, .stops = stops, .stop_count = 3}};
-    sky_make_clear(vec3_normalize(vec3_make(1, 0.7, 0.4)), 3, vec3_all(0.3), &skies[2]);
+    sky_make_clear(vec3_normalize(vec3_make(1, 0.7, 0.4)), 3, colour_all(0.3), &skies[2]);
     const char *const names[3] = {"constant sky", "graded sky", "clear sky"};
     for (int i = 0; i < 3; i++)
         pane_gives_back(names[i], (struct light){.kind = LIGHT_SKY, .emissive = true, .sky = &skies[i], .samples = 16},
@@ -243,12 +243,12 @@ TEST(photons_shade_highlights_and_interpolated_sides_like_direct_light) {
     add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL,
                                  .direction = vec3_normalize(vec3_make(0.1, -1, 0.8)),
                                  .colour = {1, 1, 1}});
-    box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(&s, vec3_all(0.2), vec3_all(0.7), 3));
-    struct vec3 open = floor_light(&s, 0);
+    box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(&s, colour_all(0.2), colour_all(0.7), 3));
+    struct colour open = floor_light(&s, 0);
     box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), stage_glass(&s, 0, 1, 1));
-    struct vec3 back = floor_light(&s, 40000);
-    CHECK(open.x > 0.2 * 0.8 + 0.05); /* there is a highlight */
-    CHECK_NEAR(back.x / open.x, 1, 0.02);
+    struct colour back = floor_light(&s, 40000);
+    CHECK(open.r > 0.2 * 0.8 + 0.05); /* there is a highlight */
+    CHECK_NEAR(back.r / open.r, 1, 0.02);
     stage_end(&s);
 }
 
@@ -259,7 +259,7 @@ static void arrives(const char *what, struct stage *s, double sent, double toler
     struct photon_map map;
     ball(s, vec3_make(0, 0, 0), 10, white(s));
     (void)send(s, 60000, &map);
-    double arrived = all_power(&map).y;
+    double arrived = all_power(&map).g;
     if (!(fabs(arrived / sent - 1) < tolerance))
         test_fail(__FILE__, __LINE__, "%s: %.6g sent, %.6g arrived", what, sent, arrived);
     photon_map_destroy(&map);
@@ -330,27 +330,27 @@ TEST(coloured_glass_and_absorption_colour_the_light_exactly) {
         add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {1, 1, 1}});
         box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
         struct material *glass = stage_glass(&s, 0, 1, 1.5);
-        struct vec3 expect = {0.04, 1, 0.25};
+        struct colour expect = {0.04, 1, 0.25};
         if (absorbs) {
-            glass->phong.absorption = vec3_make(1, 0, 3);
-            expect = vec3_make(4 * el_exp(-0.5), 4, 4 * el_exp(-1.5));
+            glass->phong.absorption = colour_make(1, 0, 3);
+            expect = colour_make(4 * el_exp(-0.5), 4, 4 * el_exp(-1.5));
         } else {
-            glass->phong.ks = vec3_make(0.2, 1, 0.5);
-            expect = vec3_make(4 * 0.04, 4, 4 * 0.25);
+            glass->phong.ks = colour_make(0.2, 1, 0.5);
+            expect = colour_make(4 * 0.04, 4, 4 * 0.25);
         }
         box(&s, vec3_make(-1, 1, -1), vec3_make(1, 1.5, 1), glass);
         (void)send(&s, 20000, &map);
-        struct vec3 sum = all_power(&map);
-        CHECK_NEAR(sum.x, expect.x, 0.01 * 4);
-        CHECK_NEAR(sum.y, expect.y, 0.01 * 4);
-        CHECK_NEAR(sum.z / sum.y, expect.z / expect.y, 0.01);
+        struct colour sum = all_power(&map);
+        CHECK_NEAR(sum.r, expect.r, 0.01 * 4);
+        CHECK_NEAR(sum.g, expect.g, 0.01 * 4);
+        CHECK_NEAR(sum.b / sum.g, expect.b / expect.g, 0.01);
         photon_map_destroy(&map);
         stage_end(&s);
     }
 }
 
 TEST(the_light_of_two_lights_is_the_sum) {
-    struct vec3 light[3];
+    struct colour light[3];
     for (int which = 0; which < 3; which++) {
         struct stage s;
         stage_begin(&s, 2);
@@ -360,15 +360,15 @@ TEST(the_light_of_two_lights_is_the_sum) {
         box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
         ball(&s, vec3_make(0, 2, 0), 1, fresnel_glass(&s, 1.5));
         if (which != 1)
-            inverse_square(&s, vec3_make(2, 6, 0), 20)->colour = vec3_make(1, 0, 0.5);
+            inverse_square(&s, vec3_make(2, 6, 0), 20)->colour = colour_make(1, 0, 0.5);
         if (which != 0)
             add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {0, 1, 0.5}});
-        light[which] = vec3_sub(floor_light(&s, 60000), floor_light(&s, 0));
+        light[which] = colour_sub(floor_light(&s, 60000), floor_light(&s, 0));
         stage_end(&s);
     }
-    CHECK_NEAR(light[2].x / light[0].x, 1, 0.03);
-    CHECK_NEAR(light[2].y / light[1].y, 1, 0.03);
-    CHECK_NEAR(light[2].z / (light[0].z + light[1].z), 1, 0.03);
+    CHECK_NEAR(light[2].r / light[0].r, 1, 0.03);
+    CHECK_NEAR(light[2].g / light[1].g, 1, 0.03);
+    CHECK_NEAR(light[2].b / (light[0].b + light[1].b), 1, 0.03);
 }
 
 /* --- where light gathers --- */
@@ -392,7 +392,7 @@ static double brightest(const struct photon_map *map, double z, double low, doub
         struct vec3 p = photon_position(map, i);
         double bin = (p.x - low) / width;
         if (fabs(p.z - z) < 0.005 && bin >= 0 && bin < BINS)
-            bins[(int)bin] += photon_power(map, i).x;
+            bins[(int)bin] += photon_power(map, i).r;
     }
     int best = 0;
     for (int i = 1; i < BINS; i++)
@@ -472,7 +472,7 @@ TEST(the_focus_of_a_ball_lens_lies_at_n_r_over_2_n_minus_2) {
 static void busy_scene(struct stage *s, int threads) {
     stage_begin(s, threads);
     s->camera = (struct camera){{0, 3, 6}, {0, -0.4, -1}, {0, 1, 0}, 50};
-    box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(s, vec3_all(0.8), vec3_all(0.2), 10));
+    box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), stage_phong(s, colour_all(0.8), colour_all(0.2), 10));
     ball(s, vec3_make(0, 1, 0), 1, fresnel_glass(s, 1.5));
     ball(s, vec3_make(-2, 1, 1), 0.75, mirror(s));
     struct material *rough = stage_glass(s, 0.25, 0.75, 1.25);
@@ -552,17 +552,17 @@ TEST(the_map_gives_the_sum_over_all_discs) {
     for (int i = 0; i < 300; i++) {
         struct hit hit = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .front = true, .view = {0, 1, 0}};
         hit.point = vec3_make(test_uniform(&random, -3, 3), 0, test_uniform(&random, -3, 3));
-        struct vec3 light = photon_map_light(&map, &s.world, &hit, &bsdf, BSDF_ALL);
+        struct colour light = photon_map_light(&map, &s.world, &hit, &bsdf, BSDF_ALL);
         double sum = 0;
         for (uint32_t k = 0; k < map.count; k++) {
             struct vec3 d = vec3_sub(photon_position(&map, k), hit.point);
             double radius = (double)map.spots[k].radius * map.unit;
             double squared = vec3_dot(d, d) + 15 * d.y * d.y, share = 1 - squared / (radius * radius);
             if (share > 0 && unpacked(map.lights[k].from).y > 0)
-                sum += photon_power(&map, k).x * 2 * share / (pi * radius * radius);
+                sum += photon_power(&map, k).r * 2 * share / (pi * radius * radius);
         }
         lit += sum > 0;
-        CHECK_NEAR(light.x, sum, 1e-4 * sum + 1e-9);
+        CHECK_NEAR(light.r, sum, 1e-4 * sum + 1e-9);
     }
     CHECK(lit > 100);
     photon_map_destroy(&map);
@@ -660,7 +660,7 @@ TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
         struct texture half = texture_number(0.5);
         struct material *lacquer = white(&s);
         lacquer->kind = MATERIAL_OPENPBR;
-        lacquer->phong.ks = vec3_all(1);
+        lacquer->phong.ks = colour_all(1);
         lacquer->openpbr = &layers;
         layers.specular_weight = kind == 1;
         layers.coat_weight = kind == 2;
@@ -678,7 +678,7 @@ TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
 
 /* The mean picture of a white floor under a ball of glass under a lamp; walls send light on to both. alpha: roughness
  * of the ball, of which a part scatters diffusely. */
-static struct vec3 light_under_lens(int photons, int samples, double alpha, uint64_t seed) {
+static struct colour light_under_lens(int photons, int samples, double alpha, uint64_t seed) {
     struct stage s;
     stage_begin(&s, 2);
     s.settings.integrator = INTEGRATOR_PATH;
@@ -689,12 +689,12 @@ static struct vec3 light_under_lens(int photons, int samples, double alpha, uint
     s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
     s.settings.lens.view_height = 3;
     struct material *grey = white(&s);
-    grey->phong.kd = vec3_make(0.5, 0.4, 0.3);
+    grey->phong.kd = colour_make(0.5, 0.4, 0.3);
     box(&s, vec3_make(-3, -1, -3), vec3_make(3, 0, 3), grey);
     box(&s, vec3_make(-3.2, 0, -3), vec3_make(-3, 5, 3), grey);
     struct material *glass = stage_glass(&s, 0, 0.9, 1.5);
     if (alpha > 0) {
-        glass->phong.kd = vec3_all(0.2);
+        glass->phong.kd = colour_all(0.2);
         glass->phong.reflect = 0.1;
         glass->phong.refract = 0.7;
         glass->phong.roughness = alpha;
@@ -707,16 +707,17 @@ static struct vec3 light_under_lens(int photons, int samples, double alpha, uint
                                  .colour = {3, 4, 5},
                                  .emissive = true,
                                  .one_sided = true});
-    struct vec3 mean = floor_light(&s, photons);
+    struct colour mean = floor_light(&s, photons);
     stage_end(&s);
     return mean;
 }
 
 static void check_energy(double alpha, int samples) {
-    struct vec3 paths = light_under_lens(0, samples, alpha, 1), both = light_under_lens(300000, samples / 4, alpha, 2);
-    CHECK_NEAR(both.x, paths.x, 0.01 * paths.x);
-    CHECK_NEAR(both.y, paths.y, 0.01 * paths.y);
-    CHECK_NEAR(both.z, paths.z, 0.01 * paths.z);
+    struct colour paths = light_under_lens(0, samples, alpha, 1),
+                  both = light_under_lens(300000, samples / 4, alpha, 2);
+    CHECK_NEAR(both.r, paths.r, 0.01 * paths.r);
+    CHECK_NEAR(both.g, paths.g, 0.01 * paths.g);
+    CHECK_NEAR(both.b, paths.b, 0.01 * paths.b);
 }
 
 TEST(paths_with_photons_show_the_caustic_of_a_lamp_through_a_lens_once) {
@@ -732,7 +733,7 @@ static struct estimate lens_estimate(int photons, int samples, double alpha, uin
     enum { RUNS = 16 };
     double sum = 0, squares = 0;
     for (uint64_t run = 0; run < RUNS; run++) {
-        double light = light_under_lens(photons, samples, alpha, random_combine(seed, run)).y;
+        double light = light_under_lens(photons, samples, alpha, random_combine(seed, run)).g;
         sum += light / RUNS;
         squares += light * light / RUNS;
     }
@@ -767,7 +768,7 @@ TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
         begin_floor_from_above(&s, 64, -3);
         ball(&s, vec3_make(0, 1.6, 0), 1, stage_glass(&s, 0, 1, 1.5));
         inverse_square(&s, vec3_make(0, 5, 0), 25);
-        double light = floor_light(&s, photons).x;
+        double light = floor_light(&s, photons).r;
         CHECK(photons == 0 ? light == 0 : light > 1);
         stage_end(&s);
     }
@@ -777,13 +778,13 @@ TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
  * same light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror
  * image. */
 TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_lights_without_body) {
-    struct vec3 light[2];
+    struct colour light[2];
     for (int mirrored = 0; mirrored < 2; mirrored++) {
         struct stage s;
         begin_floor_from_above(&s, 256, -1);
         inverse_square(&s, vec3_make(0, 1, 0), 1);
         if (mirrored) {
-            struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(0.9), 1);
+            struct material *mirror = stage_phong(&s, colour_all(0), colour_all(0.9), 1);
             mirror->phong.reflect = 1;
             box(&s, vec3_make(-1.2, -1, -3), vec3_make(-1, 3, 3), mirror);
         } else {
@@ -792,5 +793,5 @@ TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_light
         light[mirrored] = floor_light(&s, 100000 * mirrored);
         stage_end(&s);
     }
-    CHECK_NEAR(light[1].y, light[0].y, 0.01 * light[0].y);
+    CHECK_NEAR(light[1].g, light[0].g, 0.01 * light[0].g);
 }

@@ -31,9 +31,9 @@ TEST(layers_of_a_ball_are_their_closed_forms) {
     enum { SIZE = 41 };
     struct stage s;
     stage_begin(&s, 2);
-    stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.2, 0.4, 0.6), vec3_all(0), 1));
-    stage_point_light(&s, vec3_make(0, 0, 20), vec3_all(1));
-    stage_point_light(&s, vec3_make(0, 0, -20), vec3_all(1));
+    stage_sphere(&s, s.root, stage_phong(&s, colour_make(0.2, 0.4, 0.6), colour_all(0), 1));
+    stage_point_light(&s, vec3_make(0, 0, 20), colour_all(1));
+    stage_point_light(&s, vec3_make(0, 0, -20), colour_all(1));
     s.settings.aov = AOV_ALL;
     CHECK(stage_render(&s, SIZE, SIZE));
     double step = 2 * tan(25 * M_PI / 180) / SIZE, worst = 0;
@@ -135,8 +135,8 @@ TEST(an_exr_picture_has_its_layers_in_itself_with_every_value) {
     int width, height;
     const char *path = test_path("out.exr");
     stage_begin(&s, 2);
-    stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.2, 0.4, 0.6), vec3_all(0), 1));
-    stage_point_light(&s, vec3_make(0, 5, 20), vec3_all(1));
+    stage_sphere(&s, s.root, stage_phong(&s, colour_make(0.2, 0.4, 0.6), colour_all(0), 1));
+    stage_point_light(&s, vec3_make(0, 5, 20), colour_all(1));
     s.settings.aov = AOV_ALL;
     CHECK(stage_render(&s, 53, 37));
     CHECK(layers_write_exr(FILE_AT(path), &s.film, NULL, &s.error));
@@ -166,8 +166,8 @@ TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
         struct stage s;
         stage_begin(&s, 2);
         stage_sphere(&s, s.root, stage_glass(&s, 0.4, 0.6, 1.5));
-        stage_move(&s, stage_cube(&s, s.root, stage_phong(&s, vec3_all(0.7), vec3_all(0.2), 9)), -2, -1, -2);
-        stage_point_light(&s, vec3_make(4, 6, 8), vec3_all(1));
+        stage_move(&s, stage_cube(&s, s.root, stage_phong(&s, colour_all(0.7), colour_all(0.2), 9)), -2, -1, -2);
+        stage_point_light(&s, vec3_make(4, 6, 8), colour_all(1));
         s.settings.aov = i ? AOV_ALL : 0;
         CHECK(stage_render(&s, 60, 50));
         if (i)
@@ -186,7 +186,7 @@ TEST(the_cost_of_a_ray_that_tests_everything_is_the_number_of_primitives) {
     struct stage s;
     stage_begin(&s, 1);
     for (int i = 0; i < OBJECTS; i++)
-        stage_move(&s, stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1)), 3 * i, 0, 30);
+        stage_move(&s, stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1)), 3 * i, 0, 30);
     s.settings.accel = ACCEL_NONE;
     s.settings.aov = UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES;
     CHECK(stage_render(&s, 20, 10));
@@ -199,13 +199,14 @@ TEST(the_cost_of_a_ray_that_tests_everything_is_the_number_of_primitives) {
 }
 
 static void crowd(struct stage *s) {
-    struct material *shiny = stage_glass(s, 0.3, 0.5, 1.3), *plain = stage_phong(s, vec3_all(0.8), vec3_all(0.1), 5);
+    struct material *shiny = stage_glass(s, 0.3, 0.5, 1.3),
+                    *plain = stage_phong(s, colour_all(0.8), colour_all(0.1), 5);
     for (int i = 0; i < 40; i++) {
         struct node *ball = stage_sphere(s, s->root, i % 3 ? plain : shiny);
         stage_scale(s, ball, 0.4, 0.4, 0.4);
         stage_move(s, ball, i % 8 - 3.5, i / 8 - 2, -(i % 5));
     }
-    stage_point_light(s, vec3_make(4, 6, 8), vec3_all(1));
+    stage_point_light(s, vec3_make(4, 6, 8), colour_all(1));
 }
 
 /* Rays outside packets are measured while they are traced, so the parts add up to the total. */

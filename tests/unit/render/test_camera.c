@@ -12,7 +12,7 @@ static const double pi = 3.14159265358979323846;
 /* Only a small bright ball at the given position. */
 static void dot_stage(struct stage *s, struct vec3 at, double radius) {
     stage_begin(s, 2);
-    struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    struct material *material = stage_phong(s, colour_all(1), colour_all(0), 1);
     material->phong.unlit = true;
     struct node *ball = stage_sphere(s, s->root, material);
     stage_scale(s, ball, radius, radius, radius);
@@ -31,7 +31,7 @@ static struct moments moments_of(const struct stage *s, uint32_t x0, uint32_t x1
     struct moments m = {0};
     for (uint32_t y = 0; y < s->film.height; y++) {
         for (uint32_t x = x0; x < x1; x++) {
-            double c = vec3_get(stage_pixel(s, x, y), channel);
+            double c = colour_get(stage_pixel(s, x, y), channel);
             m.sum += c;
             m.x += c * (x + 0.5);
             m.y += c * (y + 0.5);
@@ -134,9 +134,9 @@ TEST(fisheye_radius_is_proportional_to_the_angle) {
         struct moments m = moments_of(&s, 0, 200, 0);
         CHECK_NEAR(m.x, 100 + 80 * angle / pi, 0.2);
         CHECK_NEAR(m.y, 80, 0.05);
-        s.sky.colour = vec3_all(1);
+        s.sky.colour = colour_all(1);
         CHECK(stage_render(&s, 200, 160));
-        CHECK_NEAR(stage_pixel(&s, 2, 2).x, 0, 0); /* outside of the circle */
+        CHECK_NEAR(stage_pixel(&s, 2, 2).r, 0, 0); /* outside of the circle */
         stage_end(&s);
     }
 }
@@ -170,7 +170,7 @@ TEST(an_off_centre_window_shows_that_part_of_the_larger_picture) {
     int wrong = 0;
     for (uint32_t y = 4; y < 64; y++) {
         for (uint32_t x = 0; x < 56; x++)
-            wrong += stage_pixel(&b, x, y).x != stage_pixel(&a, x + 8, y - 4).x;
+            wrong += stage_pixel(&b, x, y).r != stage_pixel(&a, x + 8, y - 4).r;
     }
     CHECK_EQ_INT(wrong, 0);
     stage_end(&a);
@@ -232,17 +232,17 @@ TEST(an_orthographic_ray_that_starts_inside_glass_carries_the_glass) {
     struct stage s;
     stage_begin(&s, 1);
     struct material *glass = stage_glass(&s, 0, 1, 1.5);
-    glass->phong.absorption = vec3_all(1);
+    glass->phong.absorption = colour_all(1);
     struct node *slab = stage_cube(&s, s.root, glass); /* x from 0 to 1: half of the picture */
     stage_scale(&s, slab, 1, 2, 1);
     stage_move(&s, slab, 0, -1, -0.5);
-    s.sky.colour = vec3_all(1);
+    s.sky.colour = colour_all(1);
     s.camera = (struct camera){{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 40};
     s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
     s.settings.lens.view_height = 1;
     CHECK(stage_render(&s, 4, 4));
-    CHECK_NEAR(stage_pixel(&s, 0, 1).x, 1, 1e-9);
-    CHECK_NEAR(stage_pixel(&s, 3, 1).x, exp(-0.5), 1e-6);
+    CHECK_NEAR(stage_pixel(&s, 0, 1).r, 1, 1e-9);
+    CHECK_NEAR(stage_pixel(&s, 3, 1).r, exp(-0.5), 1e-6);
     stage_end(&s);
 }
 
@@ -262,7 +262,7 @@ TEST(glass_that_the_lens_cuts_through_is_known_to_each_ray) {
         s.settings.lens.aperture = i == 0 ? 0.5 : 0;
         s.settings.lens.focus = 1e9;
         CHECK(stage_render(&s, 1, 1));
-        *(i == 0 ? &lens : &pinhole[i - 1]) = stage_pixel(&s, 0, 0).z;
+        *(i == 0 ? &lens : &pinhole[i - 1]) = stage_pixel(&s, 0, 0).b;
         stage_end(&s);
     }
     CHECK(pinhole[0] > pinhole[1] + 0.05); /* glass bends the view upwards */

@@ -83,8 +83,8 @@ TEST(the_middle_of_the_square_is_the_centre_of_every_filter) {
 /* The right half of the picture glows; nothing is in the left one. */
 static void begin_edge(struct stage *s, enum integrator_kind integrator, enum filter_kind filter) {
     stage_begin(s, 2);
-    struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    glowing->phong.emission = vec3_all(1);
+    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    glowing->phong.emission = colour_all(1);
     glowing->phong.two_sided = true;
     struct node *cube = stage_cube(s, s->root, glowing);
     stage_move(s, cube, 0, -0.5, -1);
@@ -113,7 +113,7 @@ TEST(an_edge_has_the_profile_of_the_filter_s_integral_with_every_integrator) {
             CHECK(stage_render(&s, SIDE, SIDE));
             for (uint32_t x = 0; x < 8; x++) {
                 double edge = 8 - (x + 4.5), want = share_of((enum filter_kind)kind, edge, 10, false);
-                CHECK_NEAR(stage_pixel(&s, x, 0).x, want, 0.02);
+                CHECK_NEAR(stage_pixel(&s, x, 0).r, want, 0.02);
             }
             stage_end(&s);
         }

@@ -9,12 +9,12 @@
 
 enum { SIZE = 43 }; /* no multiple of a packet; the middle pixel looks along the view */
 
-static const struct vec3 kd = {0.8, 0.4, 0.2};
+static const struct colour kd = {0.8, 0.4, 0.2};
 
 /* A sphere of radius 1 at the origin before a sky. */
 static void begin(struct stage *s) {
     stage_begin(s, 2);
-    (void)stage_sphere(s, s->root, stage_phong(s, kd, vec3_all(0), 1));
+    (void)stage_sphere(s, s->root, stage_phong(s, kd, colour_all(0), 1));
     s->sky = (struct sky){.kind = SKY_CONSTANT, .colour = {0.1, 0.2, 0.3}};
     s->camera.fov = 20;
 }
@@ -50,8 +50,8 @@ TEST(headlight_shades_a_sphere_by_the_cosine_to_the_eye) {
     for (uint32_t y = 0; y < SIZE; y++) {
         for (uint32_t x = 0; x < SIZE; x++) {
             double cosine = cosine_at(x, y), light = 0.25 + 0.75 * cosine;
-            struct vec3 want = cosine < 0 ? s.sky.colour : vec3_scale(kd, light), got = stage_pixel(&s, x, y);
-            CHECK(vec3_max_abs(vec3_sub(got, want)) < 1e-5);
+            struct colour want = cosine < 0 ? s.sky.colour : colour_scale(kd, light), got = stage_pixel(&s, x, y);
+            CHECK(colour_max_abs(colour_sub(got, want)) < 1e-5);
         }
     }
     stage_end(&s);
@@ -62,12 +62,12 @@ TEST(headlight_is_as_bright_with_any_exposure) {
     begin(&s);
     s.settings.tone.exposure = -3;
     light_up(&s);
-    CHECK(vec3_max_abs(vec3_sub(vec3_scale(stage_pixel(&s, SIZE / 2, SIZE / 2), 0.125), kd)) < 1e-5);
+    CHECK(colour_max_abs(colour_sub(colour_scale(stage_pixel(&s, SIZE / 2, SIZE / 2), 0.125), kd)) < 1e-5);
     stage_end(&s);
 }
 
 TEST(headlight_of_packets_is_that_of_single_rays) {
-    static struct vec3 packets[SIZE * SIZE];
+    static struct colour packets[SIZE * SIZE];
     struct stage s;
     for (int single = 0; single < 2; single++) {
         begin(&s);
@@ -75,8 +75,8 @@ TEST(headlight_of_packets_is_that_of_single_rays) {
         s.settings.lens.shift_x = single ? 1e-13 : 0; /* a lens that has no packets */
         light_up(&s);
         for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-            struct vec3 colour = stage_pixel(&s, i % SIZE, i / SIZE);
-            CHECK(!single || vec3_max_abs(vec3_sub(colour, packets[i])) < 1e-5);
+            struct colour colour = stage_pixel(&s, i % SIZE, i / SIZE);
+            CHECK(!single || colour_max_abs(colour_sub(colour, packets[i])) < 1e-5);
             packets[i] = colour;
         }
         stage_end(&s);

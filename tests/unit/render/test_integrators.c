@@ -16,10 +16,10 @@ static void begin(struct stage *s, int threads, enum integrator_kind integrator)
     s->settings.integrator = integrator;
     s->camera = (struct camera){{0, 1, 6}, {0, -0.1, -1}, {0, 1, 0}, 40};
     stage_sphere(s, s->root, stage_glass(s, 0.5, 0.5, 1.5));
-    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_make(0.8, 0.3, 0.2), vec3_all(0.4), 20));
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, colour_make(0.8, 0.3, 0.2), colour_all(0.4), 20));
     stage_move(s, ball, 1.6, 0, -1);
-    stage_point_light(s, vec3_make(2, 5, 4), vec3_all(0.9));
-    s->ambient = vec3_all(0.2);
+    stage_point_light(s, vec3_make(2, 5, 4), colour_all(0.9));
+    s->ambient = colour_all(0.2);
 }
 
 static size_t film_bytes(const struct film *film) {
@@ -88,11 +88,11 @@ TEST(every_integrator_goes_on_where_a_film_has_stopped) {
 /* Observers get the final colour of the pixel, and its samples with one ray each. */
 static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     const struct stage *s = context;
-    struct vec3 want = stage_pixel(s, pixel_trace->x, pixel_trace->y);
+    struct colour want = stage_pixel(s, pixel_trace->x, pixel_trace->y);
     int samples = 0;
     (void)error;
-    CHECK(pixel_trace->rgb[0] == (float)want.x && pixel_trace->rgb[1] == (float)want.y &&
-          pixel_trace->rgb[2] == (float)want.z);
+    CHECK(pixel_trace->rgb[0] == (float)want.r && pixel_trace->rgb[1] == (float)want.g &&
+          pixel_trace->rgb[2] == (float)want.b);
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next, samples++)
         CHECK(sample->first && sample->first->begun && sample->first->kind == RAY_CAMERA);
     CHECK(samples > 0);
@@ -111,26 +111,26 @@ TEST(every_integrator_shows_observers_the_pixels_that_it_makes) {
     }
 }
 
-static bool near(struct vec3 a, struct vec3 b) {
-    return vec3_max_abs(vec3_sub(a, b)) <= 1e-9 * (1 + vec3_max_abs(a));
+static bool near(struct colour a, struct colour b) {
+    return colour_max_abs(colour_sub(a, b)) <= 1e-9 * (1 + colour_max_abs(a));
 }
 
 /* The ray brings what its hit sends, reduced on the way, and the light on the way. The hit sends its emission, direct
  * light, and the weighted light of the next ray. Returns the number of rays. */
 static int check_sums(const struct pixel_trace_ray *ray, int ends[PATH_IN_TOO_MANY_HOLES + 1]) {
     const struct observed_vertex *vertex = &ray->vertex;
-    struct vec3 seen = vec3_add(vertex->emission, vertex->direct), lights = vertex->photons;
+    struct colour seen = colour_add(vertex->emission, vertex->direct), lights = vertex->photons;
     int count = 1;
     CHECK(ray->begun && ray->is_vertex);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
-        lights = vec3_add(lights, light->colour);
+        lights = colour_add(lights, light->colour);
     CHECK(near(lights, vertex->direct));
     for (const struct pixel_trace_ray *next = ray->first; next; next = next->next) {
-        seen = vec3_add(seen, vec3_mul(next->weight, next->brings));
+        seen = colour_add(seen, colour_mul(next->weight, next->brings));
         count += check_sums(next, ends);
     }
     CHECK(near(ray->seen, seen));
-    CHECK(near(ray->brings, vec3_add(vec3_mul(ray->left, ray->seen), ray->in_scattered)));
+    CHECK(near(ray->brings, colour_add(colour_mul(ray->left, ray->seen), ray->in_scattered)));
     CHECK((vertex->end == PATH_GOES_ON) == (ray->first != NULL));
     ends[vertex->end]++;
     return count;
@@ -158,11 +158,11 @@ TEST(the_terms_of_every_vertex_of_a_path_add_up_for_observers) {
     s.settings.path_samples = 64;
     s.settings.max_depth = 4;
     s.settings.roulette_depth = 1;
-    struct material *lamp = stage_phong(&s, vec3_make(0.8, 0.8, 0.3), vec3_all(0), 1);
-    lamp->phong.emission = vec3_make(3, 2, 1);
+    struct material *lamp = stage_phong(&s, colour_make(0.8, 0.8, 0.3), colour_all(0), 1);
+    lamp->phong.emission = colour_make(3, 2, 1);
     stage_move(&s, stage_sphere(&s, s.root, lamp), -2.5, 0.5, -2);
     struct material *amber = stage_glass(&s, 0.2, 0.8, 1.4);
-    amber->phong.absorption = vec3_make(0.1, 0.4, 1);
+    amber->phong.absorption = colour_make(0.1, 0.4, 1);
     stage_move(&s, stage_sphere(&s, s.root, amber), 0.8, -1.5, 1);
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);

@@ -41,7 +41,7 @@ TEST(the_box_of_a_ball_is_drawn_where_its_edges_are_and_faintly_behind_it) {
     static struct film_pixel before[SIZE * SIZE];
     struct stage s;
     stage_begin(&s, 2);
-    struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct material *material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
     material->phong.unlit = true;
     struct node *ball = stage_sphere(&s, s.root, material);
     (void)ball;
@@ -85,7 +85,7 @@ TEST(a_pair_of_pictures_has_the_lines_of_each_eye_in_its_half) {
     enum { WIDTH = 120, HEIGHT = 60 };
     struct stage s;
     stage_begin(&s, 1);
-    struct material *material = stage_phong(&s, vec3_make(0.5, 0, 0), vec3_all(0), 1);
+    struct material *material = stage_phong(&s, colour_make(0.5, 0, 0), colour_all(0), 1);
     material->phong.unlit = true;
     struct node *cube = stage_cube(&s, s.root, material);
     stage_move(&s, cube, -0.5, -0.5, -0.5);
@@ -173,7 +173,7 @@ TEST(lines_over_a_picture_are_the_same_for_any_number_of_threads) {
     for (int threads = 1; threads <= 3; threads++) {
         struct stage s;
         stage_begin(&s, threads);
-        struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+        struct material *material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
         for (int i = 0; i < 40; i++)
             stage_move(&s, stage_sphere(&s, s.root, material), i % 7 - 3, i % 5 - 2, -i % 11);
         s.camera = (struct camera){{0.4, 0.7, 5}, {0, 0, -1}, {0, 1, 0}, 60};

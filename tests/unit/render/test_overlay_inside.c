@@ -45,7 +45,7 @@ static bool near_marked(const uint8_t *marked, int x, int y) {
 
 static void prepare(struct stage *s, struct test_random *random) {
     stage_begin(s, 2);
-    struct material *material = stage_phong(s, vec3_all(0.5), vec3_all(0), 1);
+    struct material *material = stage_phong(s, colour_all(0.5), colour_all(0), 1);
     for (int i = 0; i < CUBES; i++) {
         struct node *cube = stage_cube(s, s->root, material);
         struct vec3 p = random_vec3(random, 2);

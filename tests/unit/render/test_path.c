@@ -11,8 +11,8 @@
 #include <string.h>
 
 static struct material *glowing(struct stage *s, double emission, double kd, double ks) {
-    struct material *material = stage_phong(s, vec3_all(kd), vec3_all(ks), 1);
-    material->phong.emission = vec3_all(emission);
+    struct material *material = stage_phong(s, colour_all(kd), colour_all(ks), 1);
+    material->phong.emission = colour_all(emission);
     material->phong.two_sided = true;
     material->phong.reflect = ks > 0 ? 1 : 0;
     return material;
@@ -163,7 +163,7 @@ static void check_lit_sphere(double albedo, struct vec3 at, struct effort effort
     struct node *room = stage_sphere(&s, s.root, glowing(&s, 0, albedo, 0));
     stage_scale(&s, room, RADIUS, RADIUS, RADIUS);
     s.camera = (struct camera){{0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 60};
-    stage_point_light(&s, at, vec3_all(1));
+    stage_point_light(&s, at, colour_all(1));
     s.lights[0].attenuation = ATTENUATION_INVERSE_SQUARE;
     s.lights[0].intensity = 64;
     for (int seed = 1; seed <= effort.seeds; seed++) {
@@ -278,8 +278,8 @@ static void check_pane(struct effort effort) {
     stage_begin(&s, 1);
     struct material *glass = stage_glass(&s, 0, 0, 1.5), *behind = glowing(&s, 0, 0, 0), *before = glowing(&s, 0, 0, 0);
     glass->fresnel = true;
-    before->phong.emission = vec3_make(1, 0, 0);
-    behind->phong.emission = vec3_make(0, 1, 0);
+    before->phong.emission = colour_make(1, 0, 0);
+    behind->phong.emission = colour_make(0, 1, 0);
     struct node *pane = stage_cube(&s, s.root, glass);
     stage_move(&s, pane, -0.5, -0.5, -0.5);
     stage_scale(&s, pane, 10, 10, 1);
@@ -310,7 +310,7 @@ TEST(rough_glass_of_index_1_is_invisible) {
         stage_begin(s, 1);
         struct material *stripes = glowing(s, 0.25, 0, 0);
         (void)add_rectangle(s, stripes, vec3_make(-2, -2, -3), vec3_make(2, 0, 0), vec3_make(0, 4, 0));
-        s->sky.colour = vec3_all(0.75);
+        s->sky.colour = colour_all(0.75);
         if (i) {
             struct material *glass = stage_glass(s, 0, 0, 1);
             glass->fresnel = true;

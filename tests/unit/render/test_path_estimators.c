@@ -13,13 +13,13 @@
 static const double pi = 3.14159265358979323846;
 
 static struct material *glowing(struct stage *s, double emission) {
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    material->phong.emission = vec3_all(emission);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
+    material->phong.emission = colour_all(emission);
     return material;
 }
 
 static struct material *rough_metal(struct stage *s, double roughness) {
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0.9), 1);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(0.9), 1);
     material->phong.reflect = 1;
     material->phong.roughness = roughness;
     return material;
@@ -83,8 +83,8 @@ TEST_LONG(sampling_lights_and_bsdfs_and_both_agree_on_the_plates_for_every_seed)
 /* A sky, emitting surfaces of several kinds, and surfaces that are matt, rough metal and rough glass. */
 static void begin_mixed_scene(struct stage *s) {
     stage_begin(s, 1);
-    s->sky.colour = vec3_make(0.3, 0.3, 0.3);
-    struct node *floor = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.7), vec3_all(0), 1));
+    s->sky.colour = colour_make(0.3, 0.3, 0.3);
+    struct node *floor = stage_sphere(s, s->root, stage_phong(s, colour_all(0.7), colour_all(0), 1));
     floor->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), -1)};
     (void)ball(s, rough_metal(s, 0.7), vec3_make(-1.2, 0, 0), 1);
     struct material *glass = stage_glass(s, 0, 1, 2.5); /* of a low index would have brighter and rarer directions */
@@ -95,8 +95,8 @@ static void begin_mixed_scene(struct stage *s) {
     struct node *box = stage_cube(s, s->root, glowing(s, 1)); /* without a sampler of its own */
     stage_scale(s, box, 0.8, 1.6, 0.8);
     stage_move(s, box, -3, -1, 0.6);
-    struct material *both = stage_phong(s, vec3_all(0.5), vec3_all(0), 1); /* emits and scatters */
-    both->phong.emission = vec3_all(0.4);
+    struct material *both = stage_phong(s, colour_all(0.5), colour_all(0), 1); /* emits and scatters */
+    both->phong.emission = colour_all(0.4);
     both->phong.two_sided = true;
     struct node *sheet = stage_sphere(s, s->root, both);
     sheet->shape = (struct shape){
@@ -139,9 +139,9 @@ static double brute_force(const struct stage *s, struct world_scratch *scratch, 
     ray.media = &media;
     for (int i = 0; weight > 0; i++) {
         if (!world_nearest(&s->world, &ray, scratch, &hit))
-            return sum + weight * s->sky.colour.x;
+            return sum + weight * s->sky.colour.r;
         material_eval(&s->world.surfaces, &hit, ray.media, &context, &bsdf);
-        sum += weight * bsdf.emission.x;
+        sum += weight * bsdf.emission.r;
         if (i == depth)
             break;
         uint32_t transmit = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
@@ -150,7 +150,7 @@ static double brute_force(const struct stage *s, struct world_scratch *scratch, 
         uint32_t lobes = through ? transmit : BSDF_ALL;
         lobes &= ~bsdf_lobes_with(&bsdf, BSDF_EXPONENT); /* highlights stand for what the rough mirror shows */
         double angle = transmit ? 4 * pi : 2 * pi;
-        weight *= lobes ? bsdf_eval(&bsdf, lobes, BSDF_RADIANCE, hit.view, wi).x * angle : 0;
+        weight *= lobes ? bsdf_eval(&bsdf, lobes, BSDF_RADIANCE, hit.view, wi).r * angle : 0;
         ray = hit_ray(&hit, &ray, wi, &media);
         if (through)
             medium_stack_cross(&media, &bsdf.boundary);
@@ -288,7 +288,7 @@ static void begin_corridor(struct stage *s, enum light_choice choice, bool mesh)
         (void)ball(s, bright, bright_centre(i), 0.04);
     if (mesh)
         add_bright_mesh(s, bright);
-    struct material *grey = stage_phong(s, vec3_all(0.6), vec3_all(0), 1);
+    struct material *grey = stage_phong(s, colour_all(0.6), colour_all(0), 1);
     grey->phong.two_sided = true;
     struct node *walls = stage_cube(s, s->root, grey);
     stage_scale(s, walls, 3, 3, 202);

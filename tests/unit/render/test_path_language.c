@@ -46,12 +46,12 @@ static struct node *add_planar(struct stage *s, const struct material *material,
 static struct node *begin_floor(struct stage *s) {
     stage_begin(s, 1);
     s->camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
-    return add_planar(s, stage_phong(s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
+    return add_planar(s, stage_phong(s, colour_all(1), colour_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
 }
 
 static struct light *add_light(struct stage *s, enum light_kind kind) {
     struct light *light = &s->lights[s->light_count++];
-    *light = (struct light){.kind = kind, .position = {0.5, 3, 0}, .colour = vec3_all(0.8), .falloff = {1, 0, 0}};
+    *light = (struct light){.kind = kind, .position = {0.5, 3, 0}, .colour = colour_all(0.8), .falloff = {1, 0, 0}};
     light->direction = vec3_make(0, -1, 0);
     light->radius = 0.5;
     light->corner = vec3_make(-0.5, 3, -0.5);
@@ -65,12 +65,12 @@ static struct light *add_light(struct stage *s, enum light_kind kind) {
 /* A ball casts a shadow on the floor. */
 static void begin_shadow(struct stage *s, enum light_kind kind, bool emissive) {
     (void)begin_floor(s);
-    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_make(0.5, 0.5, 0.5), vec3_all(0), 1));
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, colour_make(0.5, 0.5, 0.5), colour_all(0), 1));
     stage_scale(s, ball, 0.4, 0.4, 0.4);
     stage_move(s, ball, 0, 1, 0);
     struct light *light = add_light(s, kind);
     light->emissive = emissive;
-    light->colour = vec3_all(emissive ? 4 : 0.8);
+    light->colour = colour_all(emissive ? 4 : 0.8);
 }
 
 static void check_light_as_whitted(enum light_kind kind, bool emissive, double tolerance) {
@@ -128,12 +128,12 @@ TEST(highlights_of_lights_without_body_are_those_of_whitted) {
     struct stage s;
     stage_begin(&s, 1);
     for (int mirrors = 0; mirrors < 2; mirrors++) {
-        struct material *material = stage_phong(&s, vec3_all(0.3), vec3_all(0.5), 12);
+        struct material *material = stage_phong(&s, colour_all(0.3), colour_all(0.5), 12);
         material->phong.reflect = mirrors; /* of the black sky */
         (void)stage_sphere(&s, s.root, material);
     }
     s.camera = (struct camera){{0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 35};
-    stage_point_light(&s, vec3_make(2, 3, 5), vec3_all(0.9));
+    stage_point_light(&s, vec3_make(2, 3, 5), colour_all(0.9));
     double want = whitted_mean(&s, 8, 8);
     CHECK_NEAR(path_mean(&s, 256, 1), want, 0.002 * want);
     stage_end(&s);
@@ -209,13 +209,13 @@ TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
     struct light *light = add_light(&s, LIGHT_SKY);
     light->sky = &blue;
     light->emissive = true;
-    light->colour = vec3_all(1);
-    s.sky.colour = vec3_all(0.75);
+    light->colour = colour_all(1);
+    s.sky.colour = colour_all(0.75);
     CHECK_NEAR(path_mean(&s, 256, 1), 0.25, 0.001); /* a white floor below the sky light */
     s.camera.view = vec3_make(0, 1, 0.1);
     CHECK_NEAR(path_mean(&s, 4, 1), 0.75, 1e-6);
     /* In a mirror, too. */
-    struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+    struct material *mirror = stage_phong(&s, colour_all(0), colour_all(1), 1);
     mirror->phong.reflect = 1;
     (void)add_planar(&s, mirror, planar_plane(vec3_make(0, 1, 0), 0.5));
     s.camera.view = vec3_make(0, -1, 0);
@@ -233,13 +233,13 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
         struct light *area_light = add_light(&s, LIGHT_SPHERE);
         area_light->emissive = true;
         area_light->visible = visible;
-        area_light->colour = vec3_all(4);
+        area_light->colour = colour_all(4);
         area_light->position = vec3_make(6, 3, 0);
         light[visible] = path_mean(&s, 256, 4);
         s.camera.view = vec3_make(6, -1, 0);
         s.camera.fov = 3;
         seen[visible] = path_mean(&s, 4, 4);
-        struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+        struct material *mirror = stage_phong(&s, colour_all(0), colour_all(1), 1);
         mirror->phong.reflect = 1;
         floor->material = mirror;
         s.camera.view = vec3_make(6, -7, 0);
@@ -263,13 +263,13 @@ TEST(half_a_pixel_of_bright_light_beside_black_is_white_after_exposure_with_reso
     s.settings.integrator = INTEGRATOR_PATH;
     s.settings.path_samples = 1024;
     CHECK(stage_render(&s, 1, 1));
-    CHECK_NEAR(stage_pixel(&s, 0, 0).x, 500, 5);
+    CHECK_NEAR(stage_pixel(&s, 0, 0).r, 500, 5);
     s.settings.resolve = RESOLVE_BRIGHT;
     for (double exposure = 0; exposure > -20; exposure -= 5) {
         s.settings.tone.exposure = exposure;
         double white = pow(2, -exposure), mapped = 0.5 * 1000 / (white + 1000);
         CHECK(stage_render(&s, 1, 1));
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x / (white * mapped / (1 - mapped)), 1, 0.02);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).r / (white * mapped / (1 - mapped)), 1, 0.02);
     }
     stage_end(&s);
 }
@@ -280,13 +280,13 @@ TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_sha
     for (int with_disc = 0; with_disc < 2; with_disc++) {
         struct stage s;
         (void)begin_floor(&s);
-        s.sky.colour = vec3_all(1);
+        s.sky.colour = colour_all(1);
         if (with_disc) {
             struct light *light = add_light(&s, LIGHT_DISC);
             light->emissive = light->visible = light->one_sided = true;
             light->direction = vec3_make(0, 1, 0); /* shines upwards */
             light->radius = 2;
-            light->colour = vec3_all(0.25);
+            light->colour = colour_all(0.25);
         }
         s.camera.eye.y = 2;
         lit[with_disc] = path_mean(&s, 256, 1);
@@ -314,15 +314,15 @@ TEST(a_mesh_light_over_an_emitting_material_only_says_how_it_is_sampled) {
     for (int kind = 0; kind < 3; kind++) {
         struct stage s;
         (void)begin_floor(&s);
-        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-        glow->phong.emission = vec3_all(1);
+        struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+        glow->phong.emission = colour_all(1);
         struct node *square = stage_sphere(&s, s.root, glow);
         square->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
         s.camera.eye.y = 2;
         if (kind > 0) {
             s.lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
             s.lights[0].has_emission = kind == 2;
-            s.lights[0].emission = vec3_all(3);
+            s.lights[0].emission = colour_all(3);
             s.authored[0].node = square;
             s.light_count = 1;
         }
@@ -344,7 +344,7 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
             continue;
         struct stage s;
         stage_begin(&s, 1);
-        const struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+        const struct material *white = stage_phong(&s, colour_all(1), colour_all(0), 1);
         (void)add_planar(&s, white, planar_parallelogram(vec3_make(0, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
         const struct node *dark =
             add_planar(&s, white, planar_parallelogram(vec3_make(-5, 0, 5), vec3_make(5, 0, 0), vec3_make(0, 0, -10)));
@@ -359,7 +359,7 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
         (void)path_mean(&s, 64, 1);
         for (uint32_t y = 0; y < SIZE; y++) {
             for (uint32_t x = 0; x < SIZE; x++)
-                CHECK((stage_pixel(&s, x, y).x > 0.01) == (x >= SIZE / 2));
+                CHECK((stage_pixel(&s, x, y).r > 0.01) == (x >= SIZE / 2));
         }
         stage_end(&s);
     }
@@ -379,7 +379,7 @@ static struct node *add_unseen_square(struct stage *s) {
     square->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
     struct light *light = add_light(s, LIGHT_MESH);
     light->emissive = light->has_emission = true;
-    light->colour = light->emission = vec3_all(1);
+    light->colour = light->emission = colour_all(1);
     s->authored[s->light_count - 1].node = square;
     return square;
 }
@@ -401,7 +401,7 @@ TEST_TIMES(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_
         light->kind = LIGHT_SPHERE;
         light->emissive = true;
         light->radius = 0.8;
-        light->colour = vec3_all(4);
+        light->colour = colour_all(4);
         area_light[pane] = path_mean(&s, 512 * times, 8);
         s.light_count = 0;
         stage_move(&s, add_unseen_square(&s), 0, 2, 0);
@@ -427,7 +427,7 @@ TEST_TIMES(scattered_rays_meet_a_mesh_light_that_is_not_in_the_scene, 3) {
         for (int photons = 0; photons < 2; photons++) {
             struct stage s;
             (void)begin_floor(&s);
-            struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+            struct material *mirror = stage_phong(&s, colour_all(0), colour_all(1), 1);
             mirror->phong.reflect = 1;
             (void)add_planar(&s, mirror,
                              planar_parallelogram(vec3_make(2, 0, -50), vec3_make(0, 50, 0), vec3_make(0, 0, 100)));
@@ -458,8 +458,8 @@ TEST(materials_that_emit_light_the_scene_from_both_sides) {
     for (int turned = 0; turned < 2; turned++) {
         struct stage s;
         (void)begin_floor(&s);
-        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-        glow->phong.emission = vec3_all(1);
+        struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+        glow->phong.emission = colour_all(1);
         (void)add_planar(&s, glow, planar_plane(vec3_make(0, turned ? 1 : -1, 0), turned ? 6 : -6));
         CHECK_NEAR(path_mean(&s, 64, 1), 1, 0.001);
         stage_end(&s);
@@ -471,10 +471,10 @@ TEST(materials_that_emit_light_the_scene_from_both_sides) {
 TEST(paths_pass_holes_as_often_as_their_opacity_leaves) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *sheet = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+    struct material *sheet = stage_phong(&s, colour_all(0), colour_all(0), 1);
     sheet->inputs[INPUT_OPACITY] = texture_keep(&s.scene.arena, texture_number(0.25), &s.error);
     (void)add_planar(&s, sheet, planar_plane(vec3_make(0, 0, 1), 0));
-    s.sky.colour = vec3_all(1);
+    s.sky.colour = colour_all(1);
     CHECK_NEAR(path_mean(&s, 1024, 1), 0.75, 0.004);
     s.camera.eye.z = 1e6; /* of any number of sheets */
     (void)add_planar(&s, sheet, planar_plane(vec3_make(0, 0, 1), -1));
@@ -492,8 +492,8 @@ TEST(total_reflection_is_total_whatever_use_tir_says) {
         stage_move(&s, block, -0.5, -0.5, 0);
         stage_scale(&s, block, 100, 100, 10);
         stage_move(&s, block, 0, 0, -1);
-        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-        glow->phong.emission = vec3_all(0.7);
+        struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+        glow->phong.emission = colour_all(0.7);
         (void)add_planar(&s, glow, planar_plane(vec3_make(0, 0, -1), -2));
         s.camera = (struct camera){{0, 0, 0}, {2, 0, -1}, {0, 1, 0}, 5};
         CHECK_NEAR(path_mean(&s, 4, 4), 0.7, 1e-6);
@@ -506,8 +506,8 @@ TEST(total_reflection_is_total_whatever_use_tir_says) {
 TEST(negative_colours_are_kept) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *material = stage_phong(&s, vec3_all(-0.5), vec3_all(0), 1);
-    material->phong.emission = vec3_all(1);
+    struct material *material = stage_phong(&s, colour_all(-0.5), colour_all(0), 1);
+    material->phong.emission = colour_all(1);
     material->phong.two_sided = true;
     (void)stage_sphere(&s, s.root, material);
     s.camera.eye = vec3_all(0);
@@ -528,8 +528,8 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     test_free_result(&result);
     struct stage s;
     stage_begin(&s, 1);
-    struct material *material = stage_phong(&s, vec3_all(2), vec3_all(0), 1);
-    material->phong.emission = vec3_all(1);
+    struct material *material = stage_phong(&s, colour_all(2), colour_all(0), 1);
+    material->phong.emission = colour_all(1);
     material->phong.two_sided = true;
     (void)stage_sphere(&s, s.root, material);
     s.camera.eye = vec3_all(0);
@@ -584,12 +584,12 @@ TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
     const struct fog fog = {.kind = FOG_EXPONENTIAL, .colour = {0.2, 0.2, 0.2}, .density = 0.1};
     struct stage s;
     (void)begin_floor(&s);
-    struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(0.9), 1);
+    struct material *mirror = stage_phong(&s, colour_all(0), colour_all(0.9), 1);
     mirror->phong.reflect = 1;
     struct node *ball = stage_sphere(&s, s.root, mirror);
     stage_move(&s, ball, 0.5, 1, 0);
     (void)add_light(&s, LIGHT_POINT);
-    s.sky.colour = vec3_all(0); /* that does not light anything */
+    s.sky.colour = colour_all(0); /* that does not light anything */
     s.fog = &fog;
     s.settings.reflect_limit = 1;
     double want = whitted_mean(&s, 8, 8);
@@ -600,9 +600,9 @@ TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
 TEST(glass_absorbs_along_paths) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *glass = stage_glass(&s, 0, 1, 1), *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-    glass->phong.absorption = vec3_all(0.7);
-    glow->phong.emission = vec3_all(1);
+    struct material *glass = stage_glass(&s, 0, 1, 1), *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+    glass->phong.absorption = colour_all(0.7);
+    glow->phong.emission = colour_all(1);
     struct node *pane = stage_cube(&s, s.root, glass);
     stage_move(&s, pane, -0.5, -0.5, -0.5);
     stage_scale(&s, pane, 100, 100, 2);
@@ -621,8 +621,8 @@ TEST(a_clear_ball_on_a_white_floor_is_invisible_in_even_light_also_at_its_rim) {
     stage_begin(&s, 2);
     struct material *glass = scene_material(&s.scene, MATERIAL_FRESNEL, stage_glass(&s, 0, 1, 1.5), &s.error);
     stage_move(&s, stage_sphere(&s, s.root, glass), 0, 1, 0);
-    (void)add_planar(&s, stage_phong(&s, vec3_all(1), vec3_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
-    s.sky.colour = vec3_all(1);
+    (void)add_planar(&s, stage_phong(&s, colour_all(1), colour_all(0), 1), planar_plane(vec3_make(0, 1, 0), 0));
+    s.sky.colour = colour_all(1);
     s.camera = (struct camera){{0, 1, 8}, {0, 0, -1}, {0, 1, 0}, 15};
     s.settings.integrator = INTEGRATOR_PATH;
     s.settings.path_samples = 64;
@@ -633,7 +633,7 @@ TEST(a_clear_ball_on_a_white_floor_is_invisible_in_even_light_also_at_its_rim) {
     for (uint32_t i = 0; i < WIDTH * WIDTH; i++) {
         double from = hypot(i % WIDTH + 0.5 - WIDTH / 2, i / WIDTH + 0.5 - WIDTH / 2) / radius;
         int ring = from < 1 ? (int)(RINGS * from * from * from * from) : RINGS; /* thin at the rim */
-        double value = stage_pixel(&s, i % WIDTH, i / WIDTH).x;
+        double value = stage_pixel(&s, i % WIDTH, i / WIDTH).r;
         CHECK(value > 0.85 && value < 1.15);
         sums[ring] += value;
         counts[ring]++;

@@ -16,16 +16,16 @@ static void begin(struct stage *s, int threads) {
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.max_depth = 5;
     s->camera = (struct camera){{0, 0, 3.5}, {0, 0, -1}, {0, 1, 0}, 50};
-    struct material *white = stage_phong(s, vec3_make(0.7, 0.6, 0.5), vec3_all(0), 1);
+    struct material *white = stage_phong(s, colour_make(0.7, 0.6, 0.5), colour_all(0), 1);
     white->phong.two_sided = true;
     struct node *room = stage_sphere(s, s->root, white);
     stage_scale(s, room, 4, 4, 4);
-    struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    glowing->phong.emission = vec3_all(20);
+    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    glowing->phong.emission = colour_all(20);
     struct node *area_light = stage_sphere(s, s->root, glowing);
     stage_scale(s, area_light, 0.4, 0.4, 0.4);
     stage_move(s, area_light, 1, 2.2, 0.5);
-    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.3), vec3_all(0), 1));
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, colour_all(0.3), colour_all(0), 1));
     stage_move(s, ball, -1, -1, -1);
 }
 
@@ -53,7 +53,7 @@ TEST(a_picture_of_passes_has_the_bytes_of_one_whose_tiles_get_all_samples_in_one
     CHECK_EQ_INT(s.statistics.passes_samples, 23);
     CHECK(memcmp(whole, s.film.pixels, film_bytes(&s.film)) == 0);
     CHECK_EQ_INT(film_tiles_in(&s.film, FILM_TILE_DONE), film_tile_count(&s.film));
-    CHECK(stage_pixel(&s, 5, 5).x > 0 && stage_pixel(&s, WIDTH - 5, 5).y > 0);
+    CHECK(stage_pixel(&s, 5, 5).r > 0 && stage_pixel(&s, WIDTH - 5, 5).g > 0);
     free(whole);
     stage_end(&s);
 }
@@ -285,16 +285,16 @@ static void begin_rare(struct stage *s, bool glass) {
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.max_depth = 6;
     s->camera = (struct camera){{0, 3, 6}, {0, -0.45, -1}, {0, 1, 0}, 50};
-    struct material *white = stage_phong(s, vec3_all(0.7), vec3_all(0), 1);
+    struct material *white = stage_phong(s, colour_all(0.7), colour_all(0), 1);
     struct node *floor = stage_cube(s, s->root, white);
     stage_scale(s, floor, 8, 0.2, 8);
     stage_move(s, floor, -4, -0.2, -4);
-    struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-    glowing->phong.emission = vec3_all(120);
+    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    glowing->phong.emission = colour_all(120);
     struct node *lamp = stage_sphere(s, s->root, glowing);
     stage_scale(s, lamp, 0.1, 0.1, 0.1);
     stage_move(s, lamp, 1.5, 3, 0);
-    struct material *mirror = stage_phong(s, vec3_all(0), vec3_all(0.9), 1);
+    struct material *mirror = stage_phong(s, colour_all(0), colour_all(0.9), 1);
     mirror->phong.reflect = 1;
     struct node *ball = stage_sphere(s, s->root, glass ? stage_glass(s, 0.1, 0.9, 1.5) : mirror);
     stage_scale(s, ball, 0.8, 0.8, 0.8);

@@ -81,7 +81,7 @@ static double irradiance(const struct sky *sky, const struct sun *sun) {
             double turn = 2 * pi * (k + 0.5) / SPOKES;
             struct vec3 out = vec3_add(vec3_scale(side, cos(turn)), vec3_scale(up, sin(turn)));
             struct vec3 d = vec3_add(vec3_scale(sun->middle, cos(angle)), vec3_scale(out, sin(angle)));
-            ring += fmax(d.y, 0) * sky_colour(sky, d, 0).x;
+            ring += fmax(d.y, 0) * sky_colour(sky, d, 0).r;
         }
         sum += ring / SPOKES * 2 * pi * sin(angle) * rim / RINGS;
     }
@@ -93,7 +93,7 @@ static void check_floor(const struct sky *sky, const struct sun *sun, double exp
     struct stage s;
     stage_begin(&s, 1);
     s.camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
-    struct node *floor = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    struct node *floor = stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     floor->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), 0)};
     s.lights[s.light_count++] = (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = sky};
     s.settings.integrator = INTEGRATOR_PATH;
@@ -104,7 +104,7 @@ static void check_floor(const struct sky *sky, const struct sun *sun, double exp
         s.settings.seed = (uint64_t)seed;
         CHECK(stage_render(&s, 9, 8));
         for (uint32_t i = 0; i < 72; i++) {
-            double value = stage_pixel(&s, i % 9, i / 9).x / expected;
+            double value = stage_pixel(&s, i % 9, i / 9).r / expected;
             sum += value / 72;
             worst = fmax(worst, fabs(value - 1));
         }

@@ -67,7 +67,7 @@ TEST(the_order_of_tiles_changes_no_byte) {
     struct stage s;
     stage_begin(&s, 3);
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
-    stage_point_light(&s, vec3_make(3, 4, 5), vec3_all(0.8));
+    stage_point_light(&s, vec3_make(3, 4, 5), colour_all(0.8));
     s.sky = (struct sky){.kind = SKY_GRADIENT};
     for (int kind = TILE_ORDER_SPREAD; kind <= TILE_ORDER_ROWS; kind++) {
         s.settings.tile_order = (enum tile_order)kind;
@@ -89,7 +89,7 @@ static bool run_job(struct stage *s, struct film *film, struct progress_estimate
                              .settings = s->settings,
                              .width = film->width,
                              .height = film->height,
-                             .ambient = vec3_all(0.3),
+                             .ambient = colour_all(0.3),
                              .film = film,
                              .progress_estimate = progress_estimate,
                              .drain = drain};

@@ -20,13 +20,13 @@ TEST(sphere_covers_the_area_its_silhouette_encloses) {
     stage_begin(&s, 2);
     s.settings.full = true;
     s.settings.samples = 8;
-    s.ambient = vec3_all(1);
-    (void)stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    s.ambient = colour_all(1);
+    (void)stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     CHECK(stage_render(&s, 200, 200));
     double sum = 0;
     for (uint32_t y = 0; y < 200; y++) {
         for (uint32_t x = 0; x < 200; x++)
-            sum += stage_pixel(&s, x, y).x;
+            sum += stage_pixel(&s, x, y).r;
     }
     /* A sphere of radius 1 at distance 10 shows a disc of angle asin(1/10). */
     double pixel = 2 * tan(25 * pi / 180) / 200, radius = tan(asin(0.1)) / pixel;
@@ -39,8 +39,8 @@ TEST(rotated_scaled_cube_has_its_projected_outline) {
     stage_begin(&s, 1);
     s.settings.full = true;
     s.settings.samples = 8;
-    s.ambient = vec3_all(1);
-    struct node *cube = stage_cube(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    s.ambient = colour_all(1);
+    struct node *cube = stage_cube(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     stage_move(&s, cube, -0.5, -0.5, -0.5);
     stage_scale(&s, cube, 3, 2, 1e-6); /* flat: its outline is one rectangle */
     stage_rotate(&s, cube, 2, 30);
@@ -48,7 +48,7 @@ TEST(rotated_scaled_cube_has_its_projected_outline) {
     double sum = 0, sum_x = 0, sum_y = 0;
     for (uint32_t y = 0; y < 200; y++) {
         for (uint32_t x = 0; x < 200; x++) {
-            double c = stage_pixel(&s, x, y).x;
+            double c = stage_pixel(&s, x, y).r;
             sum += c;
             sum_x += c * (x + 0.5);
             sum_y += c * (y + 0.5);
@@ -64,7 +64,7 @@ TEST(rotated_scaled_cube_has_its_projected_outline) {
     while (first_row < 200) {
         double row = 0;
         for (uint32_t x = 0; x < 200; x++)
-            row += stage_pixel(&s, x, first_row).x;
+            row += stage_pixel(&s, x, first_row).r;
         if (row > 0.01)
             break;
         first_row++;
@@ -76,12 +76,12 @@ TEST(rotated_scaled_cube_has_its_projected_outline) {
 TEST(phong_value_at_computed_points) {
     struct stage s;
     stage_begin(&s, 1);
-    struct vec3 kd = {0.7, 0.5, 0.3}, ks = {0.2, 0.4, 0.6};
+    struct colour kd = {0.7, 0.5, 0.3}, ks = {0.2, 0.4, 0.6};
     (void)stage_sphere(&s, s.root, stage_phong(&s, kd, ks, 7));
-    stage_point_light(&s, vec3_make(3, 4, 9), vec3_make(0.9, 0.8, 1.1));
+    stage_point_light(&s, vec3_make(3, 4, 9), colour_make(0.9, 0.8, 1.1));
     s.lights[0].falloff[1] = 0.05;
     s.lights[0].falloff[2] = 0.01;
-    s.ambient = vec3_make(0.1, 0.2, 0.3);
+    s.ambient = colour_make(0.1, 0.2, 0.3);
     s.settings.samples = 1;
     CHECK(stage_render(&s, 101, 101));
     for (uint32_t at = 30; at < 70; at += 7) {
@@ -89,7 +89,7 @@ TEST(phong_value_at_computed_points) {
         double half = tan(25 * pi / 180);
         struct vec3 d = {((at + 0.5) / 50.5 - 1) * half, (1 - (at + 3.5) / 50.5) * half, -1}, o = {0, 0, 10};
         double a = vec3_dot(d, d), b = vec3_dot(o, d), c = vec3_dot(o, o) - 1, root = b * b - a * c;
-        struct vec3 expected = {0, 0, 0};
+        struct colour expected = {0, 0, 0};
         if (root > 0) {
             struct vec3 n = vec3_add_scaled(o, d, (-b - sqrt(root)) / a), v = vec3_normalize(vec3_negate(d));
             struct vec3 to = vec3_sub(s.lights[0].position, n), l = vec3_normalize(to);
@@ -97,13 +97,13 @@ TEST(phong_value_at_computed_points) {
             struct vec3 r = vec3_sub(vec3_scale(n, 2 * n_l), l);
             double h = n_l > 0 && vec3_dot(r, v) > 0 ? pow(vec3_dot(r, v), 7) : 0;
             double fall = 1 / (1 + 0.05 * distance + 0.01 * distance * distance);
-            struct vec3 sum = vec3_add(vec3_scale(kd, n_l > 0 ? n_l : 0), vec3_scale(ks, h));
-            expected = vec3_add(vec3_mul(s.ambient, kd), vec3_scale(vec3_mul(s.lights[0].colour, sum), fall));
+            struct colour sum = colour_add(colour_scale(kd, n_l > 0 ? n_l : 0), colour_scale(ks, h));
+            expected = colour_add(colour_mul(s.ambient, kd), colour_scale(colour_mul(s.lights[0].colour, sum), fall));
         }
-        struct vec3 got = stage_pixel(&s, at, at + 3);
-        CHECK_NEAR(got.x, expected.x, 1e-6);
-        CHECK_NEAR(got.y, expected.y, 1e-6);
-        CHECK_NEAR(got.z, expected.z, 1e-6);
+        struct colour got = stage_pixel(&s, at, at + 3);
+        CHECK_NEAR(got.r, expected.r, 1e-6);
+        CHECK_NEAR(got.g, expected.g, 1e-6);
+        CHECK_NEAR(got.b, expected.b, 1e-6);
     }
     stage_end(&s);
 }
@@ -111,24 +111,24 @@ TEST(phong_value_at_computed_points) {
 TEST(shininess_zero_gives_one_on_the_lit_side_only) {
     struct stage s;
     stage_begin(&s, 1);
-    (void)stage_sphere(&s, s.root, stage_phong(&s, vec3_all(0), vec3_all(0.25), 0));
-    stage_point_light(&s, vec3_make(100, 0, 10), vec3_all(1));
+    (void)stage_sphere(&s, s.root, stage_phong(&s, colour_all(0), colour_all(0.25), 0));
+    stage_point_light(&s, vec3_make(100, 0, 10), colour_all(1));
     CHECK(stage_render(&s, 41, 41));
-    CHECK_NEAR(stage_pixel(&s, 22, 20).x, 0.25, 1e-6);
-    CHECK_NEAR(stage_pixel(&s, 17, 20).x, 0, 1e-9);
+    CHECK_NEAR(stage_pixel(&s, 22, 20).r, 0.25, 1e-6);
+    CHECK_NEAR(stage_pixel(&s, 17, 20).r, 0, 1e-9);
     stage_end(&s);
 }
 
 TEST(shadow_of_a_sphere_ends_where_geometry_says) {
     struct stage s;
     stage_begin(&s, 1);
-    struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+    struct material *white = stage_phong(&s, colour_all(1), colour_all(0), 1);
     struct node *floor_node = stage_cube(&s, s.root, white);
     stage_move(&s, floor_node, -0.5, -1, -0.5);
     stage_scale(&s, floor_node, 100, 1, 100);
     struct node *ball = stage_sphere(&s, s.root, white);
     stage_move(&s, ball, 0, 3, 0);
-    stage_point_light(&s, vec3_make(0, 8, 0), vec3_all(1));
+    stage_point_light(&s, vec3_make(0, 8, 0), colour_all(1));
     /* A view from above through the light: 1 unit is a known number of pixels. */
     s.camera = (struct camera){{0, 6, 0}, {0, -1, 0}, {0, 0, -1}, 90};
     s.camera.eye.y = 60;
@@ -141,7 +141,7 @@ TEST(shadow_of_a_sphere_ends_where_geometry_says) {
     /* From the outside in: the ball itself hides the middle. */
     double edge = 0;
     for (uint32_t x = 239; x > 120; x--) {
-        if (stage_pixel(&s, x, 120).x < 1e-9) {
+        if (stage_pixel(&s, x, 120).r < 1e-9) {
             edge = (x + 1 - 120) / 20.0;
             break;
         }
@@ -154,7 +154,7 @@ TEST(a_face_seen_from_behind_gets_no_light_unless_two_sided) {
     for (int two_sided = 0; two_sided < 2; two_sided++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *white = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
+        struct material *white = stage_phong(&s, colour_all(1), colour_all(0), 1);
         white->phong.two_sided = two_sided;
         static const double vertices[3][3] = {{-2, -2, 0}, {0, 2, 0}, {2, -2, 0}}; /* normal -z */
         static const uint32_t starts[2] = {0, 3}, indices[3] = {0, 1, 2};
@@ -166,9 +166,9 @@ TEST(a_face_seen_from_behind_gets_no_light_unless_two_sided) {
                                    .vertex_index = indices};
         struct node *writer = stage_cube(&s, s.root, white);
         writer->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
-        stage_point_light(&s, vec3_make(0, 0, 5), vec3_all(1));
+        stage_point_light(&s, vec3_make(0, 0, 5), colour_all(1));
         CHECK(stage_render(&s, 21, 21));
-        CHECK_NEAR(stage_pixel(&s, 10, 10).x, two_sided, 1e-2);
+        CHECK_NEAR(stage_pixel(&s, 10, 10).r, two_sided, 1e-2);
         stage_end(&s);
     }
 }
@@ -179,9 +179,9 @@ TEST(a_face_seen_from_behind_gets_no_light_unless_two_sided) {
 static void busy_scene(struct stage *s, double unit, bool mirrored) {
     struct node *top = stage_group(s, s->root);
     struct material *glass = stage_glass(s, 0.3, 0.8, 1.5);
-    struct material *shiny = stage_phong(s, vec3_make(0.8, 0.3, 0.2), vec3_all(0.5), 20);
+    struct material *shiny = stage_phong(s, colour_make(0.8, 0.3, 0.2), colour_all(0.5), 20);
     struct material *marble = scene_material(&s->scene, MATERIAL_MARBLE, shiny, &s->error);
-    CHECK(material_mix_kd(marble, texture_marble(2, 3, 4, 0), texture_constant(vec3_make(0.1, 0.2, 0.9)),
+    CHECK(material_mix_kd(marble, texture_marble(2, 3, 4, 0), texture_constant(colour_make(0.1, 0.2, 0.9)),
                           &s->scene.arena, &s->error));
     struct material *chrome = stage_glass(s, 0.9, 0, 1);
     struct material *dielectric = scene_material(&s->scene, MATERIAL_FRESNEL, glass, &s->error);
@@ -194,14 +194,14 @@ static void busy_scene(struct stage *s, double unit, bool mirrored) {
     struct node *mirror = stage_sphere(s, top, chrome);
     stage_scale(s, mirror, 1.2, 0.8, 1);
     stage_move(s, mirror, 2, 1.4, -1.5);
-    struct node *floor_node = stage_cube(s, top, stage_phong(s, vec3_make(0.5, 0.6, 0.5), vec3_all(0.1), 5));
+    struct node *floor_node = stage_cube(s, top, stage_phong(s, colour_make(0.5, 0.6, 0.5), colour_all(0.1), 5));
     stage_move(s, floor_node, -0.5, -1, -0.5);
     stage_scale(s, floor_node, 20, 0.3, 20);
     stage_move(s, floor_node, 0, -1, 0);
     stage_scale(s, top, mirrored ? -unit : unit, unit, unit);
     double side = mirrored ? -unit : unit;
-    s->ambient = vec3_all(0.1);
-    stage_point_light(s, vec3_make(4 * side, 6 * unit, 5 * unit), vec3_all(0.7));
+    s->ambient = colour_all(0.1);
+    stage_point_light(s, vec3_make(4 * side, 6 * unit, 5 * unit), colour_all(0.7));
     s->lights[1] = (struct light){.kind = LIGHT_PARALLELOGRAM,
                                   .corner = {-6 * side, 5 * unit, 2 * unit},
                                   .edge1 = {2 * side, 0, 0},
@@ -371,9 +371,9 @@ TEST(mirrored_scene_gives_the_mirrored_picture) {
     int off = 0;
     for (uint32_t y = 0; y < 80; y++) {
         for (uint32_t x = 0; x < 120; x++) {
-            struct vec3 d = vec3_sub(stage_pixel(&a, x, y), stage_pixel(&b, 119 - x, y));
-            worst = fmax(worst, vec3_max_abs(d));
-            off += vec3_max_abs(d) > 1e-5;
+            struct colour d = colour_sub(stage_pixel(&a, x, y), stage_pixel(&b, 119 - x, y));
+            worst = fmax(worst, colour_max_abs(d));
+            off += colour_max_abs(d) > 1e-5;
         }
     }
     CHECK(off <= 1);
@@ -386,20 +386,20 @@ TEST(two_lights_together_are_the_sum_of_both) {
     for (int i = 0; i < 3; i++) {
         stage_begin(&s[i], 2);
         busy_scene(&s[i], 1, false);
-        s[i].ambient = vec3_all(0);
+        s[i].ambient = colour_all(0);
         s[i].sky = (struct sky){.kind = SKY_CONSTANT};
         s[i].settings.full = true;
         if (i == 0)
-            s[i].lights[1].colour = vec3_all(0);
+            s[i].lights[1].colour = colour_all(0);
         if (i == 1)
-            s[i].lights[0].colour = vec3_all(0);
+            s[i].lights[0].colour = colour_all(0);
         CHECK(stage_render(&s[i], 90, 60));
     }
     double worst = 0;
     for (uint32_t y = 0; y < 60; y++) {
         for (uint32_t x = 0; x < 90; x++) {
-            struct vec3 sum = vec3_add(stage_pixel(&s[0], x, y), stage_pixel(&s[1], x, y));
-            worst = fmax(worst, vec3_max_abs(vec3_sub(sum, stage_pixel(&s[2], x, y))));
+            struct colour sum = colour_add(stage_pixel(&s[0], x, y), stage_pixel(&s[1], x, y));
+            worst = fmax(worst, colour_max_abs(colour_sub(sum, stage_pixel(&s[2], x, y))));
         }
     }
     CHECK(worst < 1e-5);
@@ -415,7 +415,7 @@ static double leaving_y(struct stage *s) {
     s->settings.refract_limit = 10;
     s->sky.kind = SKY_GRADIENT;
     CHECK(stage_render(s, 1, 1));
-    return 2 * stage_pixel(s, 0, 0).z - 1;
+    return 2 * stage_pixel(s, 0, 0).b - 1;
 }
 
 static struct vec3 refract_by_hand(struct vec3 d, struct vec3 n, double from, double to) {
@@ -521,7 +521,7 @@ TEST(total_internal_reflection_is_lost_without_use_tir_and_kept_with_it) {
         CHECK(stage_render(&s, 1, 1));
         /* With a limit of one reflection the path ends inside: the second wall reflects it totally again, so it is
          * black. */
-        CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0, 0);
+        CHECK_NEAR(stage_pixel(&s, 0, 0).r, 0, 0);
         CHECK_EQ_INT(s.statistics.reflected_rays, use_tir);
         stage_end(&s);
     }
@@ -531,14 +531,14 @@ TEST(filter_colour_lets_only_its_light_through) {
     struct stage s;
     stage_begin(&s, 1);
     struct material *blue = stage_glass(&s, 0, 1, 1);
-    blue->phong.ks = vec3_make(0, 0, 1);
+    blue->phong.ks = colour_make(0, 0, 1);
     s.camera.fov = 5;
     (void)stage_sphere(&s, s.root, blue);
     s.sky = (struct sky){.kind = SKY_CONSTANT, .colour = {0.9, 0.8, 0.7}};
     CHECK(stage_render(&s, 3, 3));
-    struct vec3 c = stage_pixel(&s, 1, 1);
-    CHECK(c.x == 0 && c.y == 0);
-    CHECK_NEAR(c.z, 0.7, 1e-6);
+    struct colour c = stage_pixel(&s, 1, 1);
+    CHECK(c.r == 0 && c.g == 0);
+    CHECK_NEAR(c.b, 0.7, 1e-6);
     stage_end(&s);
 }
 
@@ -551,10 +551,10 @@ TEST(limits_count_reflections_and_refractions_apart) {
     s.settings.reflect_limit = 0;
     s.settings.refract_limit = 2;
     CHECK(stage_render(&s, 3, 3));
-    CHECK_NEAR(stage_pixel(&s, 1, 1).x, 1, 1e-6);
+    CHECK_NEAR(stage_pixel(&s, 1, 1).r, 1, 1e-6);
     s.settings.refract_limit = 1;
     CHECK(stage_render(&s, 3, 3));
-    CHECK_NEAR(stage_pixel(&s, 1, 1).x, 0, 0);
+    CHECK_NEAR(stage_pixel(&s, 1, 1).r, 0, 0);
     stage_end(&s);
 }
 

@@ -8,7 +8,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static struct medium medium_of(struct vec3 absorption, struct vec3 scattering, double g) {
+static struct medium medium_of(struct colour absorption, struct colour scattering, double g) {
     return medium_scattering(&(struct medium_input){
         .absorption = absorption, .scattering = scattering, .phase = {PHASE_HENYEY_GREENSTEIN, g}});
 }
@@ -16,7 +16,7 @@ static struct medium medium_of(struct vec3 absorption, struct vec3 scattering, d
 /* A room with a ball of radius 1 as its only wall, seen from the middle. */
 static struct material *begin_room(struct stage *s, const struct medium *medium) {
     stage_begin(s, 2);
-    struct material *wall = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    struct material *wall = stage_phong(s, colour_all(0), colour_all(0), 1);
     (void)stage_sphere(s, s->root, wall);
     s->camera.eye = vec3_all(0);
     s->medium = medium;
@@ -24,24 +24,24 @@ static struct material *begin_room(struct stage *s, const struct medium *medium)
     return wall;
 }
 
-static struct vec3 mean_of(struct stage *s, uint32_t side, int samples, int depth) {
-    struct vec3 sum = {0, 0, 0};
+static struct colour mean_of(struct stage *s, uint32_t side, int samples, int depth) {
+    struct colour sum = {0, 0, 0};
     s->settings.path_samples = samples;
     s->settings.max_depth = depth;
     CHECK(stage_render(s, side, side));
     for (uint32_t i = 0; i < side * side; i++)
-        sum = vec3_add(sum, stage_pixel(s, i % side, i / side));
-    return vec3_scale(sum, 1.0 / (side * side));
+        sum = colour_add(sum, stage_pixel(s, i % side, i / side));
+    return colour_scale(sum, 1.0 / (side * side));
 }
 
 TEST(what_is_not_scattered_is_beers_law_of_absorption_and_scattering) {
-    const struct medium medium = medium_of(vec3_make(0.1, 0.5, 0), vec3_make(0.3, 0.5, 2), 0.4);
+    const struct medium medium = medium_of(colour_make(0.1, 0.5, 0), colour_make(0.3, 0.5, 2), 0.4);
     struct stage s;
-    begin_room(&s, &medium)->phong.emission = vec3_all(1);
-    struct vec3 mean = mean_of(&s, 8, 1024, 0);
-    CHECK_NEAR(mean.x, exp(-0.4), 4e-3);
-    CHECK_NEAR(mean.y, exp(-1), 4e-3);
-    CHECK_NEAR(mean.z, exp(-2), 4e-3);
+    begin_room(&s, &medium)->phong.emission = colour_all(1);
+    struct colour mean = mean_of(&s, 8, 1024, 0);
+    CHECK_NEAR(mean.r, exp(-0.4), 4e-3);
+    CHECK_NEAR(mean.g, exp(-1), 4e-3);
+    CHECK_NEAR(mean.b, exp(-2), 4e-3);
     stage_end(&s);
 }
 
@@ -49,16 +49,16 @@ TEST(what_is_not_scattered_is_beers_law_of_absorption_and_scattering) {
 TEST(white_media_are_invisible_in_uniform_light) {
     const double g[] = {0, 0.75, -0.5};
     for (int i = 0; i < 3; i++) {
-        const struct medium medium = medium_of(vec3_all(0), vec3_make(0.1, 1, 10), g[i]);
+        const struct medium medium = medium_of(colour_all(0), colour_make(0.1, 1, 10), g[i]);
         for (int strategy = PATH_STRATEGY_MIS; strategy <= PATH_STRATEGY_BSDF; strategy += 2) {
             struct stage s;
-            begin_room(&s, &medium)->phong.emission = vec3_all(1);
+            begin_room(&s, &medium)->phong.emission = colour_all(1);
             s.settings.path_strategy = (enum path_strategy)strategy;
-            struct vec3 mean = mean_of(&s, 4, 1024, 1000);
-            CHECK_NEAR(mean.x, 1, 0.015);
-            CHECK_NEAR(mean.y, 1, 0.015);
-            CHECK_NEAR(mean.z, 1, 0.03);
-            CHECK_NEAR((mean.x + mean.y + mean.z) / 3, 1, 0.01);
+            struct colour mean = mean_of(&s, 4, 1024, 1000);
+            CHECK_NEAR(mean.r, 1, 0.015);
+            CHECK_NEAR(mean.g, 1, 0.015);
+            CHECK_NEAR(mean.b, 1, 0.03);
+            CHECK_NEAR((mean.r + mean.g + mean.b) / 3, 1, 0.01);
             stage_end(&s);
         }
     }
@@ -68,7 +68,7 @@ TEST(white_media_are_invisible_in_uniform_light) {
 TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_sight) {
     const double g[] = {0, 0.7, -0.6};
     for (int i = 0; i < 3; i++) {
-        const struct medium medium = medium_of(vec3_all(0.2), vec3_make(0.5, 0.25, 1.5), g[i]);
+        const struct medium medium = medium_of(colour_all(0.2), colour_make(0.5, 0.25, 1.5), g[i]);
         struct stage s;
         (void)begin_room(&s, &medium);
         struct vec3 lamp = {0.3, 0, -0.4};
@@ -78,30 +78,30 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                                                    .attenuation = ATTENUATION_INVERSE_SQUARE,
                                                    .intensity = 1};
         s.camera.fov = 0.01;
-        struct vec3 mean = mean_of(&s, 4, 8192, 1);
+        struct colour mean = mean_of(&s, 4, 8192, 1);
         enum { STEPS = 20000 };
         for (int axis = 0; axis < 3; axis++) {
-            double sum = 0, e = vec3_get(medium.extinction, axis), scattering = vec3_get(medium.scattering, axis);
+            double sum = 0, e = colour_get(medium.extinction, axis), scattering = colour_get(medium.scattering, axis);
             for (int k = 0; k < STEPS; k++) {
                 double t = (k + 0.5) / STEPS, z = -t, r2 = lamp.x * lamp.x + (lamp.z - z) * (lamp.z - z), r = sqrt(r2);
                 double cosine = -(lamp.z - z) / r, q = 1 + g[i] * g[i] - 2 * g[i] * cosine;
                 double phase = (1 - g[i] * g[i]) / (4 * pi * q * sqrt(q));
                 sum += scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
             }
-            CHECK_NEAR(vec3_get(mean, axis) / pi, sum, 0.015 * sum);
+            CHECK_NEAR(colour_get(mean, axis) / pi, sum, 0.015 * sum);
         }
         stage_end(&s);
     }
 }
 
 TEST(samples_of_lights_and_of_phase_functions_find_the_same_light) {
-    const struct medium medium = medium_of(vec3_make(0.1, 0.3, 0), vec3_make(1, 0.5, 2), 0.5);
-    struct vec3 means[3];
+    const struct medium medium = medium_of(colour_make(0.1, 0.3, 0), colour_make(1, 0.5, 2), 0.5);
+    struct colour means[3];
     for (int strategy = PATH_STRATEGY_MIS; strategy <= PATH_STRATEGY_BSDF; strategy++) {
         struct stage s;
         (void)begin_room(&s, &medium);
-        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-        glow->phong.emission = vec3_make(4, 5, 6);
+        struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+        glow->phong.emission = colour_make(4, 5, 6);
         struct node *ball = stage_sphere(&s, s.root, glow);
         stage_move(&s, ball, 0.5, 0.2, -0.3);
         stage_scale(&s, ball, 0.3, 0.3, 0.3);
@@ -110,25 +110,25 @@ TEST(samples_of_lights_and_of_phase_functions_find_the_same_light) {
         stage_end(&s);
     }
     for (int i = 1; i < 3; i++) {
-        CHECK_NEAR(means[i].x, means[0].x, 0.02 * means[0].x);
-        CHECK_NEAR(means[i].y, means[0].y, 0.02 * means[0].y);
-        CHECK_NEAR(means[i].z, means[0].z, 0.02 * means[0].z);
+        CHECK_NEAR(means[i].r, means[0].r, 0.02 * means[0].r);
+        CHECK_NEAR(means[i].g, means[0].g, 0.02 * means[0].g);
+        CHECK_NEAR(means[i].b, means[0].b, 0.02 * means[0].b);
     }
 }
 
 /* e / s (1 - exp(-s d)), by both integrators; the room is black. */
 TEST(the_emission_of_a_medium_is_seen_by_both_integrators) {
-    struct medium medium = medium_of(vec3_all(1), vec3_all(0), 0);
-    medium.emission = vec3_make(1, 0.5, 0);
+    struct medium medium = medium_of(colour_all(1), colour_all(0), 0);
+    medium.emission = colour_make(1, 0.5, 0);
     for (int scatters = 0; scatters < 2; scatters++) {
         struct stage s;
         (void)begin_room(&s, &medium);
         for (int i = 0; i < 2; i++) {
             s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
-            struct vec3 mean = mean_of(&s, 2, 64, 0);
-            CHECK_NEAR(mean.x, 0.632121, 1e-6);
-            CHECK_NEAR(mean.y, 0.632121 / 2, 1e-6);
-            CHECK_NEAR(mean.z, 0, 0);
+            struct colour mean = mean_of(&s, 2, 64, 0);
+            CHECK_NEAR(mean.r, 0.632121, 1e-6);
+            CHECK_NEAR(mean.g, 0.632121 / 2, 1e-6);
+            CHECK_NEAR(mean.b, 0, 0);
         }
         stage_end(&s);
         medium.scatters = true;
@@ -138,7 +138,7 @@ TEST(the_emission_of_a_medium_is_seen_by_both_integrators) {
 /* --- media that fill solids --- */
 
 static struct medium filling_of(double absorption, double scattering, double g) {
-    struct medium medium = medium_of(vec3_all(absorption), vec3_all(scattering), g);
+    struct medium medium = medium_of(colour_all(absorption), colour_all(scattering), g);
     medium.fills = true;
     return medium;
 }
@@ -146,7 +146,7 @@ static struct medium filling_of(double absorption, double scattering, double g) 
 static struct material *filled(struct stage *s, const struct medium *medium) {
     static struct texture hole;
     hole = texture_number(0);
-    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
     material->medium = medium;
     material->inputs[INPUT_OPACITY] = &hole;
     return material;
@@ -167,10 +167,10 @@ TEST(white_media_in_solids_are_invisible_in_uniform_light) {
             struct stage s;
             stage_begin(&s, 2);
             (void)(cube ? stage_cube(&s, s.root, filled(&s, &medium)) : stage_sphere(&s, s.root, filled(&s, &medium)));
-            s.sky.colour = vec3_all(1);
+            s.sky.colour = colour_all(1);
             s.camera.eye = inside ? vec3_make(0.4, 0.3, 0.5) : vec3_make(0, 0, 3);
             s.settings.integrator = INTEGRATOR_PATH;
-            CHECK_NEAR(mean_of(&s, 16, 256, 1000).y, 1, 0.003);
+            CHECK_NEAR(mean_of(&s, 16, 256, 1000).g, 1, 0.003);
             stage_end(&s);
         }
     }
@@ -182,8 +182,8 @@ TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     const struct medium thin = filling_of(0.3, 0, 0), dense = filling_of(1.1, 0, 0);
     struct stage s;
     stage_begin(&s, 1);
-    struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-    glow->phong.emission = vec3_all(1);
+    struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+    glow->phong.emission = colour_all(1);
     add_slab(&s, glow, -6, -5);
     add_slab(&s, filled(&s, &thin), -1, 1);
     add_slab(&s, filled(&s, &dense), -0.25, 0.25);
@@ -196,7 +196,7 @@ TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
         for (int i = 0; i < 2; i++) {
             s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
             s.settings.reflect_limit = s.settings.refract_limit = 0;
-            CHECK_NEAR(mean_of(&s, 2, 16, 0).y, exp(-depth), 1e-6);
+            CHECK_NEAR(mean_of(&s, 2, 16, 0).g, exp(-depth), 1e-6);
         }
     }
     stage_end(&s);
@@ -218,7 +218,7 @@ TEST(shadow_rays_are_dimmed_by_the_media_that_they_pass) {
         s.camera.up = vec3_make(0, 0, 1);
         s.camera.fov = 0.01;
         s.settings.integrator = INTEGRATOR_PATH;
-        light[filling] = mean_of(&s, 2, 16, 1).y;
+        light[filling] = mean_of(&s, 2, 16, 1).g;
         stage_end(&s);
     }
     CHECK(light[0] > 0.01);
@@ -253,8 +253,8 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
         for (int behind = 0; behind < 2; behind++) {
             struct stage s;
             stage_begin(&s, 2);
-            struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
-            glow->phong.emission = vec3_all(1);
+            struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+            glow->phong.emission = colour_all(1);
             glow->phong.two_sided = true;
             struct node *wall = stage_sphere(&s, s.root, glow);
             wall->shape =
@@ -264,7 +264,7 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
             stage_scale(&s, slab, 400, 400, 1);
             s.camera.fov = 0.01;
             s.settings.integrator = INTEGRATOR_PATH;
-            double seen = mean_of(&s, 4, samples, 1000).y, want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            double seen = mean_of(&s, 4, samples, 1000).g, want = behind ? slabs[i].transmitted : slabs[i].reflected;
             CHECK_NEAR(seen, want, 4 * 0.48 / sqrt(16.0 * samples) + 0.0002);
             stage_end(&s);
         }

@@ -11,11 +11,11 @@
 #include <math.h>
 
 enum { SIDE = 16 };
-static const struct vec3 tint = {0.5, 0.7, 0.9};
+static const struct colour tint = {0.5, 0.7, 0.9};
 
 static void begin(struct stage *s) {
     stage_begin(s, 1);
-    s->sky.colour = vec3_all(1);
+    s->sky.colour = colour_all(1);
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.path_samples = 4;
 }
@@ -44,13 +44,13 @@ static struct material *layered_glass(struct stage *s, double roughness) {
     return material;
 }
 
-static void check_sky(const char *what, struct stage *s, struct vec3 value) {
+static void check_sky(const char *what, struct stage *s, struct colour value) {
     CHECK(stage_render(s, SIDE, SIDE));
     for (uint32_t i = 0; i < SIDE * SIDE; i++)
         for (int c = 0; c < 3; c++) {
-            double found = vec3_get(stage_pixel(s, i % SIDE, i / SIDE), c);
-            if (!(fabs(found - vec3_get(value, c)) < 1e-6)) {
-                test_fail(__FILE__, __LINE__, "%s: %.9g, not %.9g", what, found, vec3_get(value, c));
+            double found = colour_get(stage_pixel(s, i % SIDE, i / SIDE), c);
+            if (!(fabs(found - colour_get(value, c)) < 1e-6)) {
+                test_fail(__FILE__, __LINE__, "%s: %.9g, not %.9g", what, found, colour_get(value, c));
                 return;
             }
         }
@@ -62,13 +62,13 @@ TEST(an_open_pane_before_a_white_sky_shows_its_tint_once) {
         begin(&s);
         struct material *glass = stage_glass(&s, 0, 1, 1.5), *deep = stage_glass(&s, 0, 1, 1.5);
         glass->phong.ks = tint;
-        deep->phong.absorption = vec3_all(3);
+        deep->phong.absorption = colour_all(3);
         struct node *pane = add_pane(&s, glass);
         if (side)
             stage_rotate(&s, pane, 1, 180);
         check_sky("tinted", &s, tint);
         pane->material = deep;
-        check_sky("with absorption inside", &s, vec3_all(1));
+        check_sky("with absorption inside", &s, colour_all(1));
         stage_end(&s);
     }
 }
@@ -77,9 +77,9 @@ TEST(open_panes_of_clear_glass_are_invisible_in_a_white_furnace) {
     struct stage s;
     begin(&s);
     struct node *pane = add_pane(&s, fresnel_glass(&s));
-    check_sky("classic, by Fresnel's equations", &s, vec3_all(1));
+    check_sky("classic, by Fresnel's equations", &s, colour_all(1));
     pane->material = layered_glass(&s, 0);
-    check_sky("layered, smooth", &s, vec3_all(1));
+    check_sky("layered, smooth", &s, colour_all(1));
     const struct effort effort = {SIDE, 256, 1};
     pane->material = layered_glass(&s, 0.4);
     estimate_check_mean("a rough open pane in a furnace", 1, &s, &effort, 100);
@@ -102,9 +102,9 @@ TEST(a_rough_open_pane_passes_light_as_it_would_mirror_it) {
         surface_eval(&pane, &hit, NULL, &(struct material_context){.total_reflection = true, .thin = true}, &passes);
         surface_eval(&mirror, &hit, NULL, &(struct material_context){.total_reflection = true}, &mirrors);
         uint32_t traced = bsdf_lobes_with(&passes, BSDF_TRACED), other = bsdf_lobes_with(&mirrors, BSDF_TRACED);
-        struct vec3 a = bsdf_eval(&passes, traced, BSDF_RADIANCE, wo, behind),
-                    b = bsdf_eval(&mirrors, other, BSDF_RADIANCE, wo, wi);
-        CHECK(vec3_max_abs(vec3_sub(a, b)) <= 1e-9 * (1 + vec3_max_abs(b)));
+        struct colour a = bsdf_eval(&passes, traced, BSDF_RADIANCE, wo, behind),
+                      b = bsdf_eval(&mirrors, other, BSDF_RADIANCE, wo, wi);
+        CHECK(colour_max_abs(colour_sub(a, b)) <= 1e-9 * (1 + colour_max_abs(b)));
         CHECK_NEAR(bsdf_pdf(&passes, traced, wo, behind), bsdf_pdf(&mirrors, other, wo, wi), 1e-9);
     }
 }
@@ -126,7 +126,7 @@ TEST(a_pane_flush_on_a_solid_of_glass_is_invisible_in_a_white_furnace) {
 
 /* Whether the picture of a glowing ball is the same as without the object before it. */
 static bool shows_the_same(struct stage *s, struct node *object, enum node_walls walls) {
-    struct vec3 bare[SIDE * SIDE];
+    struct colour bare[SIDE * SIDE];
     double largest = 0;
     object->walls = walls;
     object->singular = true;
@@ -136,16 +136,16 @@ static bool shows_the_same(struct stage *s, struct node *object, enum node_walls
     object->singular = false;
     CHECK(stage_render(s, SIDE, SIDE));
     for (uint32_t i = 0; i < SIDE * SIDE; i++)
-        largest = fmax(largest, vec3_max_abs(vec3_sub(stage_pixel(s, i % SIDE, i / SIDE), bare[i])));
+        largest = fmax(largest, colour_max_abs(colour_sub(stage_pixel(s, i % SIDE, i / SIDE), bare[i])));
     return largest < 1e-6;
 }
 
 static void begin_ball(struct stage *s) {
     begin(s);
-    struct material *glowing = stage_phong(s, vec3_make(1, 0.5, 0), vec3_all(0), 1);
+    struct material *glowing = stage_phong(s, colour_make(1, 0.5, 0), colour_all(0), 1);
     glowing->phong.unlit = true;
     stage_move(s, stage_sphere(s, s->root, glowing), 0.4, 0.3, -6);
-    s->sky.colour = vec3_make(0, 0, 0.2);
+    s->sky.colour = colour_make(0, 0, 0.2);
 }
 
 TEST(thin_walled_of_a_node_decides_whether_an_open_surface_refracts) {
@@ -222,16 +222,16 @@ TEST(photons_pass_an_open_surface_straight_on_with_its_tint_once) {
     disc->shape =
         (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_make(0, 2, 0), vec3_make(0, 1, 0), 1, 0)};
     ground->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), 0)};
-    ground->material = stage_phong(&s, vec3_all(1), vec3_all(0), 1);
-    stage_point_light(&s, vec3_make(0, 4, 0), vec3_all(1));
+    ground->material = stage_phong(&s, colour_all(1), colour_all(0), 1);
+    stage_point_light(&s, vec3_make(0, 4, 0), colour_all(1));
     s.lights[0].attenuation = ATTENUATION_INVERSE_SQUARE;
     s.lights[0].intensity = 1;
     struct photon_map maps[2];
     double farthest = 0;
-    struct vec3 sums[2] = {{0, 0, 0}, {0, 0, 0}};
+    struct colour sums[2] = {{0, 0, 0}, {0, 0, 0}};
     for (int clear = 0; clear < 2; clear++) {
         struct photon_statistics statistics = {0};
-        glass->phong.ks = clear ? vec3_all(1) : tint;
+        glass->phong.ks = clear ? colour_all(1) : tint;
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         const struct photon_scene scene = {.world = &s.world, .settings = &s.settings};
         CHECK(photons_make(&maps[clear], &scene, s.pool, &statistics, &s.error));
@@ -240,13 +240,13 @@ TEST(photons_pass_an_open_surface_straight_on_with_its_tint_once) {
             struct vec3 position = vec3_add_scaled(
                 maps[clear].origin, vec3_make((double)at[0], (double)at[1], (double)at[2]), maps[clear].unit);
             farthest = fmax(farthest, hypot(position.x, position.z));
-            sums[clear] = vec3_add_scaled(sums[clear], vec3_make((double)power[0], (double)power[1], (double)power[2]),
-                                          maps[clear].power_unit);
+            sums[clear] = colour_add_scaled(
+                sums[clear], colour_make((double)power[0], (double)power[1], (double)power[2]), maps[clear].power_unit);
         }
         photon_map_destroy(&maps[clear]);
     }
     CHECK(farthest > 1.99 && farthest < 2.0001);
     for (int c = 0; c < 3; c++)
-        CHECK_NEAR(vec3_get(sums[0], c) / vec3_get(sums[1], c), vec3_get(tint, c), 0.01);
+        CHECK_NEAR(colour_get(sums[0], c) / colour_get(sums[1], c), colour_get(tint, c), 0.01);
     stage_end(&s);
 }

@@ -78,7 +78,7 @@ TEST(render_request_holds_what_the_script_said) {
     CHECK_EQ_INT(r->width, 20);
     CHECK_EQ_INT(r->height, 10);
     CHECK(r->camera.eye.z == 3 && r->camera.view.x == 4 && r->camera.up.z == 1 && r->camera.fov == 30);
-    CHECK(r->ambient.y == 0.2 && r->sky.kind == SKY_CONSTANT && r->sky.colour.z == 3);
+    CHECK(r->ambient.g == 0.2 && r->sky.kind == SKY_CONSTANT && r->sky.colour.b == 3);
     const struct settings *s = &r->settings;
     CHECK(s->samples == 5 && s->full && s->area_samples == 7 && s->reflect_limit == 8 && s->refract_limit == 9);
     CHECK(s->seed == 11 && s->side_tolerance == 0.25 && s->corner_tolerance == 0.5 && s->use_tir);

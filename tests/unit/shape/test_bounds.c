@@ -127,7 +127,7 @@ TEST(boxes_of_transformed_meshes_and_patches_are_those_of_their_corners) {
         struct stage s;
         stage_begin(&s, 1);
         const struct mesh_input *input = i % 2 ? &ball_input : &patch_input;
-        struct node *node = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+        struct node *node = stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
         node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, input, &s.error)};
         node->parent_from_node = random_transform(&random);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));

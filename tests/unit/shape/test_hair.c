@@ -25,8 +25,8 @@ static void hairy_begin(struct hairy *h, double unit) {
     h->arena = (struct arena){0};
     h->random = (struct test_random){7};
     for (int i = 0; i < STRIPES; i++) {
-        struct material *glow = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-        glow->phong.emission = vec3_make(test_uniform(&h->random, 0, 1), i % 2, test_uniform(&h->random, 0, 1));
+        struct material *glow = stage_phong(s, colour_all(0), colour_all(0), 1);
+        glow->phong.emission = colour_make(test_uniform(&h->random, 0, 1), i % 2, test_uniform(&h->random, 0, 1));
         glow->phong.two_sided = true;
         double width = 20.0 / STRIPES * unit;
         struct node *node = stage_sphere(s, s->root, glow);
@@ -48,7 +48,7 @@ static void hairy_end(struct hairy *h) {
 }
 
 static struct material *hairy_holes(struct hairy *h, double opacity) {
-    struct material *holes = stage_phong(&h->stage, vec3_all(0), vec3_all(0), 1);
+    struct material *holes = stage_phong(&h->stage, colour_all(0), colour_all(0), 1);
     holes->inputs[INPUT_OPACITY] = texture_keep(&h->stage.scene.arena, texture_number(opacity), &h->stage.error);
     return holes;
 }
@@ -82,16 +82,16 @@ static void hairy_fill(struct hairy *h, const struct material *material, bool fl
 /* --- pictures --- */
 
 /* Pixels that differ from those of the scene without hair by more than rounding. */
-static int hairy_changes(struct hairy *h, const struct vec3 *bare) {
+static int hairy_changes(struct hairy *h, const struct colour *bare) {
     int changed = 0;
     CHECK(stage_render(&h->stage, SIZE, SIZE));
     for (uint32_t i = 0; i < SIZE * SIZE; i++)
-        changed += !(vec3_max_abs(vec3_sub(stage_pixel(&h->stage, i % SIZE, i / SIZE), bare[i])) < 1e-5);
+        changed += !(colour_max_abs(colour_sub(stage_pixel(&h->stage, i % SIZE, i / SIZE), bare[i])) < 1e-5);
     return changed;
 }
 
 static void check_invisible(bool flat, bool glass, enum integrator_kind integrator) {
-    static struct vec3 bare[SIZE * SIZE];
+    static struct colour bare[SIZE * SIZE];
     struct hairy h;
     hairy_begin(&h, 1);
     h.stage.settings.integrator = integrator;
@@ -187,7 +187,7 @@ TEST(light_leaves_a_straight_hair_without_meeting_it_again) {
         stage_begin(&h.stage, 1);
         h.arena = (struct arena){0};
         h.random = (struct test_random){(uint64_t)i};
-        struct node *node = hairy_add(&h, stage_phong(&h.stage, vec3_all(0), vec3_all(0), 1), i % 2, true, 1);
+        struct node *node = hairy_add(&h, stage_phong(&h.stage, colour_all(0), colour_all(0), 1), i % 2, true, 1);
         double stretch = i % 3 == 0 ? exp(test_uniform(&h.random, -4, 4)) : 1;
         stage_scale(&h.stage, node, 1, 1, stretch);
         CHECK(stage_build(&h.stage, h.stage.root, ACCEL_AUTO) && world_scratch_init(&scratch, &h.stage.world));

@@ -112,17 +112,17 @@ static void count_warning(void *context, const char *text) {
 TEST(a_kept_world_has_changed_colours_once_its_materials_are_updated) {
     static struct stage s;
     stage_begin(&s, 1);
-    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    struct material *red = stage_phong(&s, colour_make(1, 0, 0), colour_all(0), 1);
     struct material *coated = scene_material(&s.scene, MATERIAL_FRESNEL, red, &s.error);
     stage_sphere(&s, s.root, coated);
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     const struct surface_material *material = &s.world.surfaces.materials[0];
     CHECK(s.world.authored.materials[0] == coated && coated->base == red);
-    CHECK(material->fresnel && material->phong.kd.x == 1);
-    red->phong.kd = vec3_make(0, 0, 1);
-    CHECK(material->phong.kd.x == 1);
+    CHECK(material->fresnel && material->phong.kd.r == 1);
+    red->phong.kd = colour_make(0, 0, 1);
+    CHECK(material->phong.kd.r == 1);
     world_update_materials(&s.world);
-    CHECK(material->phong.kd.x == 0 && material->phong.kd.z == 1);
+    CHECK(material->phong.kd.r == 0 && material->phong.kd.b == 1);
     stage_end(&s);
 }
 
@@ -132,10 +132,10 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     struct error error;
     int warnings = 0;
     stage_begin(&s, 1);
-    struct material *red = stage_phong(&s, vec3_make(1, 0, 0), vec3_all(0), 1);
+    struct material *red = stage_phong(&s, colour_make(1, 0, 0), colour_all(0), 1);
     struct node *group = stage_group(&s, s.root), *ball = stage_sphere(&s, group, red);
     stage_move(&s, ball, 1, 2, 3);
-    stage_point_light(&s, vec3_make(1, 2, 3), vec3_all(1));
+    stage_point_light(&s, vec3_make(1, 2, 3), colour_all(1));
     struct transform before = ball->parent_from_node;
     uint32_t nodes = s.scene.node_count, materials = s.scene.material_count;
     const struct change changes[] = {
@@ -164,14 +164,14 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
         CHECK(ball->singular);
         struct vec3 centre = affine_point(&ball->parent_from_node.forward, vec3_make(0, 0, 0));
         CHECK(centre.x == -2 && centre.y == 1 && centre.z == 10);
-        CHECK(red->phong.kd.y == 1 && red->phong.kd.x == 0);
+        CHECK(red->phong.kd.g == 1 && red->phong.kd.r == 0);
         CHECK(changed.light_count == 2 && changed.lights[0].light.position.z == 4 &&
-              changed.lights[0].light.colour.x == 2);
-        CHECK(changed.lights[1].light.position.x == 9 && changed.lights[1].light.colour.x == 0);
+              changed.lights[0].light.colour.r == 2);
+        CHECK(changed.lights[1].light.position.x == 9 && changed.lights[1].light.colour.r == 0);
         changes_remove(&changed);
         CHECK(memcmp(&before, &ball->parent_from_node, sizeof before) == 0);
         CHECK(!ball->singular && group->child_count == 1 && group->last_child->node == ball);
-        CHECK(group->last_child->next == NULL && red->phong.kd.x == 1 && s.lights[0].colour.x == 1);
+        CHECK(group->last_child->next == NULL && red->phong.kd.r == 1 && s.lights[0].colour.r == 1);
         CHECK(s.scene.node_count == nodes && s.scene.material_count == materials);
     }
     CHECK_EQ_INT(warnings, 9);
@@ -184,7 +184,7 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
     struct error error;
     int warnings = 0;
     stage_begin(&s, 1);
-    struct material *gray = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct material *gray = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
     struct node *a = stage_sphere(&s, s.root, gray), *b = stage_sphere(&s, s.root, gray);
     a->name = "left";
     b->name = "right";
@@ -386,7 +386,7 @@ TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     static struct stage s;
     struct picked picked;
     stage_begin(&s, 1);
-    struct material *red = stage_phong(&s, vec3_make(1, 0.5, 0.25), vec3_all(0), 1);
+    struct material *red = stage_phong(&s, colour_make(1, 0.5, 0.25), colour_all(0), 1);
     struct node *group = stage_group(&s, s.root), *ball = stage_sphere(&s, group, red);
     group->name = "group";
     ball->name = "ball";
@@ -430,7 +430,7 @@ TEST(picking_names_the_parts_of_a_material_that_change_nothing) {
             static struct stage s;
             struct picked picked;
             stage_begin(&s, 1);
-            struct material *material = stage_phong(&s, vec3_make(1, 0.5, 0.25), vec3_all(0.125), 9);
+            struct material *material = stage_phong(&s, colour_make(1, 0.5, 0.25), colour_all(0.125), 9);
             material->phong.refract = 0.25 * passes;
             for (int i = 0; i < 3 && is_textured; i++)
                 material->inputs[inputs[i]] = texture_keep(&s.scene.arena, texture_number(0.5), &s.error);
@@ -666,7 +666,7 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
     for (int round = 0; round < 12; round++) {
         stage_begin(&s, 1);
         f = (struct forest){.stage = &s, .random = {(uint64_t)round + 3}};
-        f.material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+        f.material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
         struct node *parts[2] = {grow(&f, 3), grow(&f, 3)};
         struct node *whole = scene_combine(&s.scene, "whole", NODE_UNION, parts, 2, &s.error);
         f.nodes[whole->serial] = whole;

@@ -22,7 +22,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     static uint8_t shows[WIDTH * HEIGHT];
     struct stage s;
     stage_begin(&s, 2);
-    struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct material *material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
     struct node *front = stage_sphere(&s, s.root, material);
     stage_move(&s, front, 0.5, 0, 2);
     struct node *behind = stage_sphere(&s, s.root, material);
@@ -72,7 +72,7 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     static uint8_t shows[WIDTH * HEIGHT];
     struct stage s;
     stage_begin(&s, 2);
-    struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+    struct material *material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
     struct node *shelf = stage_group(&s, s.root);
     struct node *large = stage_sphere(&s, shelf, material), *hollow = stage_sphere(&s, shelf, material);
     struct node *lump = stage_sphere(&s, shelf, material);

@@ -27,16 +27,16 @@ static void scatter(struct scatter *out) {
 /* The instanced node: a ball beside a cube, under a node that moves them. */
 static struct node *object(struct stage *s) {
     struct node *group = scene_node(&s->scene, NODE_GROUP, "thing", &s->error);
-    stage_sphere(s, group, stage_phong(s, vec3_make(0.9, 0.4, 0.2), vec3_all(0.3), 10));
-    struct node *cube = stage_cube(s, group, stage_phong(s, vec3_make(0.2, 0.4, 0.9), vec3_all(0.3), 10));
+    stage_sphere(s, group, stage_phong(s, colour_make(0.9, 0.4, 0.2), colour_all(0.3), 10));
+    struct node *cube = stage_cube(s, group, stage_phong(s, colour_make(0.2, 0.4, 0.9), colour_all(0.3), 10));
     stage_move(s, cube, 0.6, 0.1, 0.2);
     stage_scale(s, group, 1, 0.8, 1);
     return group;
 }
 
 static void finish(struct stage *s) {
-    s->ambient = vec3_all(0.1);
-    stage_point_light(s, vec3_make(4, 6, 5), vec3_all(0.9));
+    s->ambient = colour_all(0.1);
+    stage_point_light(s, vec3_make(4, 6, 5), colour_all(0.9));
 }
 
 /* kind 0: nodes, 1: positions with rotations and sizes, 2: the matrices of the nodes */
@@ -101,10 +101,10 @@ TEST(lists_of_lights_hold_for_every_instance) {
     stage_begin(&s, 1);
     struct node *many = stage_group(&s, s.root);
     many->placements = &placements;
-    stage_sphere(&s, many, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
-    struct node *other = stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_sphere(&s, many, stage_phong(&s, colour_all(1), colour_all(0), 1));
+    struct node *other = stage_sphere(&s, s.root, stage_phong(&s, colour_all(1), colour_all(0), 1));
     stage_move(&s, other, 0, 3, 0);
-    stage_point_light(&s, vec3_make(0, 0, 50), vec3_all(1));
+    stage_point_light(&s, vec3_make(0, 0, 50), colour_all(1));
     const struct node *const list[] = {many};
     s.authored[0].include = list;
     s.authored[0].include_count = 1;
@@ -130,7 +130,7 @@ TEST(a_placement_costs_less_than_two_hundred_bytes_of_the_world) {
     struct placements placements = {.count = SIDE * SIDE, .at = (const double(*)[3])at};
     struct node *many = stage_group(&s, s.root);
     many->placements = &placements;
-    stage_sphere(&s, many, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
+    stage_sphere(&s, many, stage_phong(&s, colour_all(1), colour_all(0), 1));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     CHECK_EQ_INT(s.world.primitive_count, SIDE * SIDE);
     CHECK(s.world.linear_count <= 1);
@@ -157,7 +157,7 @@ TEST(a_dense_heap_costs_as_much_in_a_huge_scene_as_by_itself) {
     for (int kind = 0; kind < 2; kind++) {
         struct stage s;
         stage_begin(&s, 1);
-        struct material *plain = stage_phong(&s, vec3_all(0.7), vec3_all(0), 1);
+        struct material *plain = stage_phong(&s, colour_all(0.7), colour_all(0), 1);
         struct test_random random = {3};
         for (int i = 0; i < 20000; i++) {
             struct node *ball = stage_sphere(&s, s.root, plain);

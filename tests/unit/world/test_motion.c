@@ -203,7 +203,7 @@ TEST(bounds_of_a_motion_hold_every_point_at_every_time) {
 /* --- pictures --- */
 
 static struct material *bright(struct stage *s) {
-    struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
+    struct material *material = stage_phong(s, colour_all(1), colour_all(0), 1);
     material->phong.unlit = true;
     return material;
 }
@@ -237,8 +237,8 @@ TEST(a_moving_edge_is_its_box_filter) {
         }
         double mean = 0;
         for (uint32_t y = 0; y < 8; y++) {
-            CHECK_NEAR(stage_pixel(&s, x, y).x, expected, 3.0 / 64);
-            mean += stage_pixel(&s, x, y).x / 8;
+            CHECK_NEAR(stage_pixel(&s, x, y).r, expected, 3.0 / 64);
+            mean += stage_pixel(&s, x, y).r / 8;
         }
         CHECK_NEAR(mean, expected, 0.015);
     }
@@ -249,7 +249,7 @@ TEST(a_moving_edge_is_its_box_filter) {
  * shadow. */
 static void moving_stage(struct stage *s, int threads, double unit) {
     stage_begin(s, threads);
-    struct material *white = stage_phong(s, vec3_make(0.7, 0.5, 0.3), vec3_all(0), 1);
+    struct material *white = stage_phong(s, colour_make(0.7, 0.5, 0.3), colour_all(0), 1);
     struct material *mirror = stage_glass(s, 0.8, 0, 1);
     struct node *ball = stage_sphere(s, s->root, white);
     stage_scale(s, ball, unit, 1.2 * unit, unit);
@@ -290,8 +290,8 @@ static void moving_stage(struct stage *s, int threads, double unit) {
     struct node *floor = stage_cube(s, s->root, mirror);
     stage_scale(s, floor, 20 * unit, unit, 20 * unit);
     stage_move(s, floor, -10 * unit, -5.5 * unit, -10 * unit);
-    stage_point_light(s, vec3_make(4 * unit, 12 * unit, 8 * unit), vec3_all(1));
-    s->ambient = vec3_all(0.1);
+    stage_point_light(s, vec3_make(4 * unit, 12 * unit, 8 * unit), colour_all(1));
+    s->ambient = colour_all(0.1);
     s->camera = (struct camera){{0, unit, 14 * unit}, {0, -0.1, -1}, {0, 1, 0}, 50};
     s->settings.samples = 4;
 }
@@ -299,7 +299,7 @@ static void moving_stage(struct stage *s, int threads, double unit) {
 /* A blurred picture is the mean of sharp ones. */
 static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, double max_rms) {
     enum { FRAMES = 48 };
-    struct vec3 *mean = calloc((size_t)width * height, sizeof *mean);
+    struct colour *mean = calloc((size_t)width * height, sizeof *mean);
     struct shutter shutter = s->settings.shutter;
     s->settings.samples = 6;
     s->settings.full = true;
@@ -309,16 +309,16 @@ static void compare_with_mean(struct stage *s, uint32_t width, uint32_t height, 
         s->settings.samples = 3;
         CHECK(stage_render(s, width, height));
         for (uint32_t k = 0; k < width * height; k++)
-            mean[k] = vec3_add_scaled(mean[k], stage_pixel(s, k % width, k / width), 1.0 / FRAMES);
+            mean[k] = colour_add_scaled(mean[k], stage_pixel(s, k % width, k / width), 1.0 / FRAMES);
     }
     s->settings.shutter = shutter;
     s->settings.samples = 12;
     CHECK(stage_render(s, width, height));
     double sum = 0, worst = 0;
     for (uint32_t k = 0; k < width * height; k++) {
-        struct vec3 d = vec3_sub(stage_pixel(s, k % width, k / width), mean[k]);
-        sum += vec3_dot(d, d) / 3;
-        worst = fmax(worst, vec3_max_abs(d));
+        struct colour d = colour_sub(stage_pixel(s, k % width, k / width), mean[k]);
+        sum += colour_dot(d, d) / 3;
+        worst = fmax(worst, colour_max_abs(d));
     }
     CHECK_NEAR(sqrt(sum / (width * height)), 0, max_rms);
     CHECK_NEAR(worst, 0, 0.15);
@@ -346,7 +346,7 @@ TEST(a_moving_camera_is_the_mean_of_standing_ones) {
 }
 
 TEST(moving_the_camera_is_moving_everything_in_the_opposite_direction) {
-    struct vec3 *first = calloc(32 * 8, sizeof *first);
+    struct colour *first = calloc(32 * 8, sizeof *first);
     for (int i = 0; i < 2; i++) {
         struct stage s;
         stage_begin(&s, 2);
@@ -362,7 +362,7 @@ TEST(moving_the_camera_is_moving_everything_in_the_opposite_direction) {
         for (uint32_t k = 0; k < 32 * 8; k++) {
             if (i == 0)
                 first[k] = stage_pixel(&s, k % 32, k / 32);
-            CHECK_NEAR(first[k].x, stage_pixel(&s, k % 32, k / 32).x, 1.01 / 64);
+            CHECK_NEAR(first[k].r, stage_pixel(&s, k % 32, k / 32).r, 1.01 / 64);
         }
         stage_end(&s);
     }

@@ -138,7 +138,7 @@ static bool plant(struct forest *f, uint64_t seed) {
     stage_begin(s, 1);
     f->random = (struct test_random){seed};
     f->count = f->expected_count = 0;
-    f->material = stage_phong(s, vec3_all(0.5), vec3_all(0), 1);
+    f->material = stage_phong(s, colour_all(0.5), colour_all(0), 1);
     for (int i = 0; i < 16; i++)
         CHECK(node_add_child(&s->scene, s->root, grow(f, 4), &s->error));
     for (int i = 0; i < 3; i++)

@@ -368,7 +368,7 @@ TEST(small_meshes_that_are_searched_together_have_the_hits_of_each) {
         struct stage s;
         struct mesh *meshes[SMALL_MESHES];
         stage_begin(&s, 1);
-        const struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 0);
+        const struct material *material = stage_phong(&s, colour_all(0.5), colour_all(0), 0);
         struct node *root = scene_node(&s.scene, NODE_GROUP, "root", &s.error);
         for (int i = 0; i < SMALL_MESHES; i++) {
             struct node *node = scene_node(&s.scene, NODE_GEOMETRY, "mesh", &s.error);

@@ -222,7 +222,7 @@ TEST(kept_tables_have_the_bits_of_new_ones_over_a_thousand_random_moves) {
             move_at_random(&s, &cast, &random);
         if (move % 50 == 49) { /* another material, velocity, node or root */
             struct node *ball = add_ball(&s, root, 0.25);
-            ball->material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+            ball->material = stage_phong(&s, colour_all(0.5), colour_all(0), 1);
         }
         if (move % 100 == 60) {
             ((struct node *)cast.nodes[6])->velocity = vec3_make(1, 0, move == 60);

@@ -43,12 +43,12 @@ static void room_end(struct room *r) {
 }
 
 static const struct material *glowing(struct room *r, double red, double green, double blue) {
-    struct material *material = stage_phong(&r->stage, vec3_all(0), vec3_all(0), 1);
-    material->phong.emission = vec3_make(red, green, blue);
+    struct material *material = stage_phong(&r->stage, colour_all(0), colour_all(0), 1);
+    material->phong.emission = colour_make(red, green, blue);
     return material;
 }
 
-static struct vec3 emission_at(const struct room *r, const struct hit *hit) {
+static struct colour emission_at(const struct room *r, const struct hit *hit) {
     struct bsdf bsdf;
     material_eval(&r->stage.world.surfaces, hit, NULL, NULL, &bsdf);
     return bsdf.emission;
@@ -66,14 +66,14 @@ static struct vec3 direction_of(struct sample2 xi) {
 
 /* The light of one sample of the lights, times |cosine|; *density: that of its direction, including the choice of the
  * light. */
-static struct vec3 of_lights(struct room *r, const struct light_receiver *at, uint64_t i, double *density,
-                             bool *is_delta) {
+static struct colour of_lights(struct room *r, const struct light_receiver *at, uint64_t i, double *density,
+                               bool *is_delta) {
     struct world_light_sample sample;
     double pmf;
     struct light_part part =
         light_sampler_sample(&r->lights.sampler, at->point, at->normal, random_unit(random_combine(11, i)), &pmf);
     if (part.light == LIGHT_NONE || !world_lights_sample(&r->lights, at, part, xi_of(12, i), &sample))
-        return vec3_all(0);
+        return colour_all(0);
     struct ray ray = {.origin = at->from,
                       .direction = light_target_from(&sample.target, at->from),
                       .t_max = sample.decided ? INFINITY : light_target_end(&sample.target),
@@ -82,7 +82,7 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
     struct hit hit;
     *density = sample.pdf * pmf;
     *is_delta = sample.is_delta;
-    struct vec3 radiance;
+    struct colour radiance;
     if (sample.decided) {
         double t;
         radiance = world_lights_seen_by(&r->lights, at, &sample, &ray, &r->scratch, &t);
@@ -92,9 +92,9 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
             CHECK_NEAR(world_lights_pdf_of_hit(&r->lights, at, sample.direction, &hit) / *density, 1, 1e-4);
         CHECK(!shows || hit.t == t);
     } else {
-        radiance = vec3_scale(sample.radiance, world_lights_visible(&r->lights, &ray, &r->scratch));
+        radiance = colour_scale(sample.radiance, world_lights_visible(&r->lights, &ray, &r->scratch));
     }
-    return vec3_scale(radiance, fabs(vec3_dot(sample.direction, at->normal)));
+    return colour_scale(radiance, fabs(vec3_dot(sample.direction, at->normal)));
 }
 
 struct estimate {
@@ -120,16 +120,16 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
     for (uint64_t i = 0; i < n; i++) {
         double density = 0, of_scattered = 1 / (4 * pi), sum = 0, met = 0, weighted = 0;
         bool is_delta = false;
-        struct vec3 carried = of_lights(r, at, i, &density, &is_delta);
+        struct colour carried = of_lights(r, at, i, &density, &is_delta);
         if (density > 0 && !is_delta)
-            sum = carried.y / (density + of_scattered);
+            sum = carried.g / (density + of_scattered);
         struct vec3 direction = direction_of(xi_of(13, i));
         struct ray ray = {.origin = at->from, .direction = direction, .t_max = INFINITY, .time = 0.5};
         struct hit hit;
         double cosine = fabs(vec3_dot(direction, at->normal));
         bool found = world_nearest(&r->stage.world, &ray, &r->scratch, &hit);
         if (found) {
-            double shown = world_lights_radiance(&r->lights, at->primitive, &hit, emission_at(r, &hit)).y * cosine;
+            double shown = world_lights_radiance(&r->lights, at->primitive, &hit, emission_at(r, &hit)).g * cosine;
             double pdf = world_lights_pdf_of_hit(&r->lights, at, direction, &hit);
             met += shown / of_scattered;
             weighted += shown / (of_scattered + pdf);
@@ -142,14 +142,14 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
         while (world_lights_met_next(&traversal, &light, &area_light)) {
             if (!world_lights_illuminate(&r->lights, light, at->primitive))
                 continue;
-            double shown = light_emitted(&r->lights.lights[light], &ray, &area_light).y * cosine;
+            double shown = light_emitted(&r->lights.lights[light], &ray, &area_light).g * cosine;
             met += shown / of_scattered;
             weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &area_light));
         }
         for (uint32_t k = 0; k < r->lights.sampler.infinite_count && !found; k++) {
             struct light_hit behind = {.t = INFINITY};
             light = r->lights.sampler.infinite[k];
-            double shown = light_emitted(&r->lights.lights[light], &ray, &behind).y * cosine;
+            double shown = light_emitted(&r->lights.lights[light], &ray, &behind).g * cosine;
             met += shown / of_scattered;
             weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &behind));
         }
@@ -231,7 +231,7 @@ TEST(lamps_and_skies_are_sampled_as_scattered_rays_meet_them) {
         struct node *ball = stage_sphere(&r.stage, r.stage.root, glowing(&r, 3, 3, 3));
         stage_scale(&r.stage, ball, 0.4, 0.4, 0.4);
         stage_move(&r.stage, ball, -1.5, 1, 0);
-        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &r.stage.sky);
+        sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, colour_all(0.15), &r.stage.sky);
         r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_SPHERE, 1, 2, 0);
         r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_DISC, -0.5, 1.5, 0.4);
         r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_PARALLELOGRAM, 0.5, 1.2, -0.6);
@@ -275,7 +275,7 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
             struct world_light_sample sample;
             CHECK(world_lights_sample(&r.lights, &at, (struct light_part){0, 0}, xi_of(3, i), &sample));
             CHECK(sample.is_delta && !sample.decided && sample.pdf == 1);
-            double white = sample.radiance.y * vec3_dot(sample.direction, at.normal) / pi; /* of a white surface */
+            double white = sample.radiance.g * vec3_dot(sample.direction, at.normal) / pi; /* of a white surface */
             CHECK_NEAR(white, 2 * cases[k / 5].factor * 0.8, 1e-12);
         }
         double pmf;
@@ -314,8 +314,8 @@ static double mean_of_samples(struct room *r, const struct light_receiver *at, u
     for (uint64_t i = 0; i < n; i++) {
         double density = 0;
         bool is_delta;
-        struct vec3 carried = of_lights(r, at, i, &density, &is_delta);
-        sum += density > 0 ? carried.y / density / (double)n : 0;
+        struct colour carried = of_lights(r, at, i, &density, &is_delta);
+        sum += density > 0 ? carried.g / density / (double)n : 0;
     }
     return sum;
 }
@@ -330,7 +330,7 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
             r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
             r.stage.authored[k].node = node;
             r.stage.lights[k].has_emission = i == 3;
-            r.stage.lights[k].emission = vec3_make(5, 5, 5);
+            r.stage.lights[k].emission = colour_make(5, 5, 5);
         }
         r.stage.light_count = i == 3 ? 1 : (uint32_t)i;
         room_build(&r, false);
@@ -406,7 +406,7 @@ static struct node *spotted_ceiling(struct room *r) {
                                      .face_start = start,
                                      .vertex_index = index,
                                      .colours = (const float(*)[3])colours};
-    struct material *material = stage_phong(&r->stage, vec3_all(0), vec3_all(0), 1);
+    struct material *material = stage_phong(&r->stage, colour_all(0), colour_all(0), 1);
     material->inputs[INPUT_EMISSION] = texture_keep(&r->stage.scene.arena, texture_vertex_colour(), &r->stage.error);
     struct node *node = stage_sphere(&r->stage, r->stage.root, material);
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&r->stage.assets, &input, &r->stage.error)};
@@ -431,7 +431,7 @@ TEST(triangles_of_a_mesh_are_sampled_by_their_own_part_of_a_texture_of_emission)
         for (uint32_t i = 0; i < mesh->count; i++) {
             double pmf = light_sampler_pmf(&r.lights.sampler, at.point, at.normal, (struct light_part){0, i});
             all += pmf;
-            bright += light_triangle_radiance(&mesh->triangles[i]).y > 1 ? pmf : 0;
+            bright += light_triangle_radiance(&mesh->triangles[i]).g > 1 ? pmf : 0;
         }
         CHECK_NEAR(all, 1, 1e-9);
         CHECK(bright > 0.8);
@@ -456,7 +456,7 @@ TEST(holes_let_through_what_their_opacity_leaves) {
             s->lights[s->light_count++] = area_light_of_kind(LIGHT_DISC, 0, 4, 0);
         }
         if (i % 5 < 4) {
-            struct material *sheet = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+            struct material *sheet = stage_phong(s, colour_all(0), colour_all(0), 1);
             sheet->inputs[INPUT_OPACITY] = texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
             struct node *node = stage_cube(s, s->root, sheet); /* seen through twice */
             stage_scale(s, node, 20, 0.1, 20);
@@ -498,7 +498,7 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
             CHECK(world_lights_sample(&r.lights, &at, (struct light_part){light, 0}, (struct sample2){0.4, 0.4},
                                       &sample) == (primitive == 0) ||
                   (light == 0 && primitive == 0));
-        CHECK((world_lights_radiance(&r.lights, primitive, &hit, vec3_all(1)).y > 0) == (primitive == 0));
+        CHECK((world_lights_radiance(&r.lights, primitive, &hit, colour_all(1)).g > 0) == (primitive == 0));
         CHECK((world_lights_pdf_of_hit(&r.lights, &at, vec3_normalize(up.direction), &hit) > 0) == (primitive == 0));
     }
     room_end(&r);

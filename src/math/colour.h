@@ -1,0 +1,57 @@
+/* A linear RGB colour: light, or what light is multiplied by. Points, directions and normals are struct vec3. By value;
+ * evaluation order is as written, as of vectors. */
+#ifndef GRAY_MATH_COLOUR_H
+#define GRAY_MATH_COLOUR_H
+
+#include <math.h>
+#include <stdbool.h>
+
+struct colour {
+    double r, g, b;
+};
+
+static inline struct colour colour_make(double r, double g, double b) {
+    return (struct colour){r, g, b};
+}
+static inline struct colour colour_all(double value) {
+    return (struct colour){value, value, value};
+}
+static inline struct colour colour_add(struct colour a, struct colour b) {
+    return (struct colour){a.r + b.r, a.g + b.g, a.b + b.b};
+}
+static inline struct colour colour_sub(struct colour a, struct colour b) {
+    return (struct colour){a.r - b.r, a.g - b.g, a.b - b.b};
+}
+static inline struct colour colour_mul(struct colour a, struct colour b) {
+    return (struct colour){a.r * b.r, a.g * b.g, a.b * b.b};
+}
+static inline struct colour colour_scale(struct colour a, double s) {
+    return (struct colour){a.r * s, a.g * s, a.b * s};
+}
+/* a + b * s */
+static inline struct colour colour_add_scaled(struct colour a, struct colour b, double s) {
+    return (struct colour){a.r + b.r * s, a.g + b.g * s, a.b + b.b * s};
+}
+/* The sum of the products: a mean, if one of them has shares that sum to 1. */
+static inline double colour_dot(struct colour a, struct colour b) {
+    return a.r * b.r + a.g * b.g + a.b * b.b;
+}
+static inline double colour_max_abs(struct colour a) {
+    double r = fabs(a.r), g = fabs(a.g), b = fabs(a.b), max = r > g ? r : g;
+    return max > b ? max : b;
+}
+/* By comparison, as of vectors. */
+static inline struct colour colour_min(struct colour a, struct colour b) {
+    return (struct colour){a.r < b.r ? a.r : b.r, a.g < b.g ? a.g : b.g, a.b < b.b ? a.b : b.b};
+}
+static inline struct colour colour_max(struct colour a, struct colour b) {
+    return (struct colour){a.r > b.r ? a.r : b.r, a.g > b.g ? a.g : b.g, a.b > b.b ? a.b : b.b};
+}
+static inline double colour_get(struct colour a, int channel) {
+    return channel == 0 ? a.r : channel == 1 ? a.g : a.b;
+}
+static inline bool colour_finite(struct colour a) {
+    return isfinite(a.r) && isfinite(a.g) && isfinite(a.b);
+}
+
+#endif
