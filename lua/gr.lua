@@ -94,6 +94,7 @@ function gr.joint(name, x, y) end
 ---@field name? string name (a string; default 'sphere'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
 
@@ -108,6 +109,7 @@ function gr.sphere(material) end
 ---@field name? string name (a string; default 'cube'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {0, 0, 0}): The corner with the smallest coordinates.
 ---@field size? number|gr.triple size (a number or a table of 3 numbers, not 0; default 1): Length of the edges, one number or three; a negative length extends in the negative direction.
 
@@ -122,6 +124,7 @@ function gr.cube(material) end
 ---@field name? string name (a string; default 'sphere'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
 
@@ -138,6 +141,7 @@ function gr.nh_sphere(name, centre, radius) end
 ---@field name? string name (a string; default 'cube'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {0, 0, 0}): The corner with the smallest coordinates.
 ---@field size? number|gr.triple size (a number or a table of 3 numbers, not 0; default 1): Length of the edges, one number or three; a negative length extends in the negative direction.
 
@@ -159,6 +163,7 @@ function gr.nh_box(name, corner, size) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -192,6 +197,7 @@ function gr.mesh(material, verts, faces) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -212,6 +218,7 @@ function gr.model(file) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -242,6 +249,7 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -274,6 +282,7 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -493,6 +502,7 @@ function gr.bounded_by(name, object, by) end
 ---@field name? string name (a string; default 'cylinder'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field from? gr.triple from (a point {x, y, z}; default {0, -1, 0}): Centre of one end.
 ---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): Centre of the other end.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
@@ -509,6 +519,7 @@ function gr.cylinder(material) end
 ---@field name? string name (a string; default 'cone'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field from? gr.triple from (a point {x, y, z}; default {0, 0, 0}): The apex, or the centre of the end with from_radius.
 ---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): Centre of the end with radius.
 ---@field from_radius? number from_radius (a number, >= 0; default 0): Radius at from; above 0 it is a frustum.
@@ -526,6 +537,7 @@ function gr.cone(material) end
 ---@field name? string name (a string; default 'torus'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field major? number major (a number, >= 0; default 1): Radius of the centre circle in the plane y = 0.
 ---@field minor? number minor (a number, > 0; default 0.25): Radius of the tube.
 
@@ -542,6 +554,7 @@ function gr.torus(name, major, minor) end
 ---@field name? string name (a string; default 'plane'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field normal? gr.triple normal (a direction {x, y, z}; default none: the square): Normal of an infinite plane; in CSG the plane is a half-space.
 ---@field distance? number distance (a number; default 0): Distance of the plane from the origin along the normal.
 
@@ -556,6 +569,7 @@ function gr.plane(material) end
 ---@field name? string name (a string; default 'square'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 
 ---The square from -0.5 to 0.5 in x and z at y = 0.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -568,6 +582,7 @@ function gr.square(material) end
 ---@field name? string name (a string; default 'box'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field min gr.triple min (a point {x, y, z}): A corner.
 ---@field max gr.triple max (a point {x, y, z}): The opposite corner.
 
@@ -584,6 +599,7 @@ function gr.box(material, min, max) end
 ---@field name? string name (a string; default 'ellipsoid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radii? number|gr.triple radii (a number or a table of 3 numbers; default 1): Radii along x, y and z: one number or three.
 
@@ -599,6 +615,7 @@ function gr.ellipsoid(material, radii) end
 ---@field name? string name (a string; default 'paraboloid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field radius? number radius (a number, > 0; default 1): Radius of the rim.
 ---@field height? number height (a number, > 0; default 1): y of the rim; the apex is at the origin.
 ---@field open? boolean open (true or false; default false): Whether it has no caps; without caps it is not a solid for CSG.
@@ -614,6 +631,7 @@ function gr.paraboloid(material) end
 ---@field name? string name (a string; default 'hyperboloid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field sheets? integer sheets (a whole number, 1 to 2; default 1, with gap 2): 1: one sheet with a waist; 2: two bowls.
 ---@field radius? number radius (a number, > 0; default twice waist, or 1): Radius of both rims.
 ---@field height? number height (a number, > 0; default twice gap, or 1): y of one rim; the other is at -y.
@@ -632,6 +650,7 @@ function gr.hyperboloid(material) end
 ---@field name? string name (a string; default 'quadric'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field xx? number xx (a number; default 0): Coefficient.
 ---@field yy? number yy (a number; default 0): Coefficient.
 ---@field zz? number zz (a number; default 0): Coefficient.
@@ -661,6 +680,7 @@ function gr.quadric(material, xx, yy, zz, constant) end
 ---@field name? string name (a string; default 'superellipsoid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field e? number e (a number, 0.02 to 20; default 1): Exponent of the cross-section: near 0 a square, 1 a circle, 2 a diamond.
 ---@field n? number n (a number, 0.02 to 20; default 1): Exponent of the profile, likewise.
 
@@ -677,6 +697,7 @@ function gr.superellipsoid(material, e, n) end
 ---@field name? string name (a string; default 'rectangle'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {-0.5, 0, 0.5}): Corner where an image has its lower left.
 ---@field along? gr.triple along (a direction {x, y, z}; default {1, 0, 0}): Edge along u of an image.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 0, -1}): Edge along v of an image; not parallel to along.
@@ -695,6 +716,7 @@ function gr.rectangle(material, corner, along, up) end
 ---@field name? string name (a string; default 'disc'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field normal? gr.triple normal (a direction {x, y, z}; default {0, 1, 0}): Normal of the front.
 ---@field radius? number radius (a number, > 0; default 1, or twice inner): Radius.
@@ -711,6 +733,7 @@ function gr.disc(material) end
 ---@field name? string name (a string; default 'triangle'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field a gr.triple a (a point {x, y, z}): A corner; from the front, a, b, c run counterclockwise.
 ---@field b gr.triple b (a point {x, y, z}): The next corner.
 ---@field c gr.triple c (a point {x, y, z}): The last corner.
@@ -729,6 +752,7 @@ function gr.triangle(material, a, b, c) end
 ---@field name? string name (a string; default 'polygon'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Corners in one plane; from the front, the first outline runs counterclockwise.
 ---@field outlines? integer[][] outlines (a table of tuples of indices; default all points in order): Tuples of indices into points, from 0; the polygon is filled by the even-odd rule.
 
@@ -745,6 +769,7 @@ function gr.polygon(material, points, outlines) end
 ---@field name? string name (a string; default 'lathe'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field points number[][] points (a table of pairs {u, v}): The profile: pairs of radius and y.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): Kind of spline through the points; bezier needs 3 n + 1 points.
 ---@field loop? boolean loop (true or false; default false): Whether the profile is closed.
@@ -763,6 +788,7 @@ function gr.lathe(material, points, spline) end
 ---@field name? string name (a string; default 'prism'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field outline number[][] outline (a table of pairs {u, v}): A closed curve: pairs of x and z.
 ---@field holes? number[][][] holes (a table of tables of pairs {x, z}; default none): More closed curves; the solid follows the even-odd rule.
 ---@field from? number from (a number; default 0): Height of the bottom.
@@ -781,6 +807,7 @@ function gr.prism(material, outline) end
 ---@field name? string name (a string; default 'sweep'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Path of the centre of the ball.
 ---@field radii number|number[] radii (a number or a table of numbers, >= 0): Radius at each point, or one for all.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): Kind of spline through the points; bezier needs 3 n + 1 points.
@@ -800,6 +827,7 @@ function gr.sweep(material, points, radii, spline) end
 ---@field name? string name (a string; default 'height field'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field heights? number[][] heights (a table of tables of numbers; optional): Rows of heights, all of one length; x varies within a row, z from row to row.
 ---@field image? string|gr.texture image (the name of a picture file or a texture; optional): A picture instead of heights: black is 0, white is 1, the upper edge is z = 0.
 ---@field f? function|gr.texture f (a function; optional): A function of the point {x, 0, z}: its height, or an offset that is added to heights or image.
@@ -821,6 +849,7 @@ function gr.height_field(material, heights) end
 ---@field name? string name (a string; default 'blob'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field spheres? number[][] spheres (a table of tables of numbers; default {}): Balls {x, y, z, radius, strength}; the default strength is 1.
 ---@field cylinders? number[][] cylinders (a table of tables of numbers; default {}): Rods {x1, y1, z1, x2, y2, z2, radius, strength}; the default strength is 1.
 ---@field threshold? number threshold (a number, > 0; default 0.5): The surface is where the sum of the fields strength (1 - (distance/radius)^2)^2 has this value.
@@ -839,6 +868,7 @@ function gr.blob(material, spheres, cylinders, threshold) end
 ---@field name? string name (a string; default 'implicit'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field f function|gr.texture f (a function): A function of a point that is negative inside.
 ---@field bounds? gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
 ---@field radius? number radius (a number, > 0; optional): Radius of a ball that bounds it, instead of bounds.
@@ -860,6 +890,7 @@ function gr.implicit(material, f, bounds) end
 ---@field name? string name (a string; default 'curve'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Path of the curve.
 ---@field widths number|number[] widths (a number or a table of numbers, >= 0): Width at each point, or one for all.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): Kind of spline through the points; bezier needs 3 n + 1 points.
@@ -879,6 +910,7 @@ function gr.curve(material, points, widths, spline) end
 ---@field name? string name (a string; default 'patch'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Control points, 16 for each patch, in 4 rows of 4.
 ---@field patches? integer[][] patches (a table of tuples of indices; default 16 points each, in order): Tuples of 16 indices into points, from 0.
 ---@field tolerance? number tolerance (a number, > 0; default a thousandth of the size): Largest distance of the triangles from the exact surface.

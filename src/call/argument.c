@@ -714,8 +714,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
         value->fog = read_handle(c, index, &argument_path, HANDLE_FOG);
         return value->fog != NULL;
     case KIND_MEDIUM:
-        value->medium = read_handle(c, index, &argument_path, HANDLE_MEDIUM);
-        return value->medium != NULL;
+        value->material = read_handle(c, index, &argument_path, HANDLE_MEDIUM);
+        return value->material != NULL;
     case KIND_CAUSTICS:
         read_caustics(c, index, &argument_path, value);
         return true;

@@ -106,7 +106,6 @@ struct script_value {
     const double (*pairs)[2];
     const double (*stops)[4];
     const struct fog *fog;
-    const struct medium *medium;
     const struct sky *sky;
     const struct tone_table *curve;
     const uint32_t *starts, *indices;

@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct medium;
+
 enum { MATERIAL_DEPTH = 1000 };
 
 /* What a material was made of its base by, with its name in descriptions of the chain. PHONG, OPENPBR: by nothing, it
@@ -62,6 +64,7 @@ struct material {
     struct phong phong; /* of a base */
     /* The layers of OpenPBR Surface, which take the place of the classic lobes; NULL: none (openpbr.h). */
     const struct openpbr *openpbr;
+    const struct medium *medium; /* fills solids of it; or NULL */
 };
 
 /* The original base at the end of its chain: the world's copies (material_mapping.h) have the numbers of that. */

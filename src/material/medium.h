@@ -29,6 +29,7 @@ struct medium {
     struct vec3 emission;   /* radiance per unit */
     struct phase phase;     /* of scattering */
     bool scatters;          /* scattering is not black */
+    bool fills;             /* inside of solids whose surface is invisible */
     unsigned affects;       /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 

@@ -11,6 +11,7 @@ struct surface_material surface_material_make(const struct material *material, b
                                               const struct texture *textures[INPUT_COUNT]) {
     const struct texture *own[INPUT_COUNT], **inputs = textures ? textures : own;
     struct surface_material out = {.fresnel = material->fresnel,
+                                   .filled = material_origin(material)->medium != NULL,
                                    .has_layers = material->openpbr != NULL,
                                    .phong = material_origin(material)->phong};
     for (int i = 0; i < INPUT_COUNT; i++)
@@ -162,11 +163,12 @@ bool surface_tables_build(struct surface_tables *out, const struct material *con
 
 bool surface_is_transparent(const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
-    return numbers->has_ior && (surface->fresnel || numbers->refract > 0);
+    return surface->filled || (numbers->has_ior && (surface->fresnel || numbers->refract > 0));
 }
 
 bool surface_passes(const struct surface_material *surface) {
-    return surface->fresnel || surface->phong.refract > 0 || surface_has_texture(surface, INPUT_REFRACT);
+    return surface->filled || surface->fresnel || surface->phong.refract > 0 ||
+           surface_has_texture(surface, INPUT_REFRACT);
 }
 
 struct medium surface_medium(const struct surface_material *surface) {
@@ -185,7 +187,7 @@ bool surface_divides_media(const struct surface_material *surface) {
     struct medium medium = surface_medium(surface);
     bool thin = surface->has_layers && surface->openpbr.thin_walled;
     bool differs = surface->has_layers || medium.ior != 1 || vec3_max_abs(medium.extinction) > 0;
-    return !thin && differs && surface_passes(surface);
+    return surface->filled || (!thin && differs && surface_passes(surface));
 }
 
 static struct vec3 estimate(const struct surface_tables *tables, const struct surface_material *surface,

@@ -148,6 +148,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         if (bsdf.opacity < 1 && draw(&path) >= bsdf.opacity) {
             /* Through a hole, as if nothing were there. */
             path.ray = joint_ray_through_hole(&joint, &hit, &path.ray, &path.media);
+            (void)joint_pass_invisible(s->world, &joint, &hit, &path.media);
             continue;
         }
         struct branching branching = branching_make(&bsdf);

@@ -10,6 +10,8 @@
 #include "material/bsdf_select.h"
 #include "material/medium.h"
 #include "render/path_light_internal.h"
+#include "world/joint.h"
+#include "world/world_describe.h"
 
 /* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
 static double weight_of(const struct path_tracer *tracer, enum path_strategy strategy, double pdf, double other) {
@@ -79,6 +81,38 @@ static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow
     out->sent = true;
 }
 
+/* What the media on a shadow ray leave over t up to `end`, through the invisible surfaces of media. */
+static struct vec3 left_of_light(const struct world *world, const struct ray *shadow, double end,
+                                 struct world_scratch *scratch) {
+    struct medium_stack media;
+    struct ray rest = *shadow;
+    struct vec3 left = vec3_all(1);
+    double length = vec3_length(shadow->direction);
+    bool met = true;
+    medium_stack_copy(&media, shadow->media);
+    rest.media = &media;
+    while (met) {
+        struct hit hit;
+        struct joint joint = {.joined = JOINED_NOT};
+        struct medium_effect effect;
+        rest.t_max = end;
+        met = world_nearest_surface(world, &rest, scratch, &hit);
+        if (met && world_touches(world, &hit))
+            world_join_path(world, &rest, &media, scratch, &hit, &joint);
+        if (joint.joined == JOINED_AWAY)
+            continue;
+        if (medium_transmittance(MEDIUM_RAY_SHADOW, &rest, (met ? hit.t : end) * length, &effect))
+            left = vec3_mul(left, effect.transmittance);
+        if (!met)
+            break;
+        rest = joint_ray_through_hole(&joint, &hit, &rest, &media);
+        rest.direction = shadow->direction;
+        (void)joint_pass_invisible(world, &joint, &hit, &media);
+        end -= hit.t;
+    }
+    return left;
+}
+
 struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
                                 const struct light_receiver *receiver, struct path_shadow *shadow) {
     const struct world_lights *lights = &tracer->lights;
@@ -93,6 +127,8 @@ struct vec3 path_light_arriving(const struct path_tracer *tracer, struct integra
     } else {
         radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
+    if (tracer->has_fillings && !is_black(radiance))
+        return vec3_mul(radiance, left_of_light(lights->world, &shadow->ray, end, state->scratch));
     if (is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
     struct medium_effect effect;

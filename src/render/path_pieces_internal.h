@@ -399,7 +399,8 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     if (bsdf.opacity < 1 && !(random_unit(random_combine(path->sampler.key, dimension)) < bsdf.opacity)) {
         path->ray = joint_ray_through_hole(joint, hit, &path->ray, &path->media);
         path->kind = RAY_HOLE;
-        return path->holes++ < HOLE_LIMIT || watch_end(watch, PATH_IN_TOO_MANY_HOLES);
+        return joint_pass_invisible(state->job->world, joint, hit, &path->media) || path->holes++ < HOLE_LIMIT ||
+               watch_end(watch, PATH_IN_TOO_MANY_HOLES);
     }
     if (OBSERVED)
         OBSERVE(state->observer, OBSERVED_SURFACE, .surface = &bsdf);

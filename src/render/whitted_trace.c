@@ -115,6 +115,12 @@ static struct vec3 follow_hole(struct integrator_state *state, const struct hit 
     if (is_given_up(state, RAY_HOLE, path.holes >= HOLE_LIMIT, vec3_all(share), &path))
         return vec3_all(0);
     struct ray onward = joint_ray_through_hole(joint, hit, ray, ray->media);
+    struct medium_stack behind;
+    if (hit->solid != SOLID_NONE) {
+        medium_stack_copy(&behind, ray->media);
+        if (joint_pass_invisible(state->job->world, joint, hit, &behind))
+            onward.media = &behind;
+    }
     state->refracted_rays++;
     path.key = sampler_branch(path.key, SAMPLER_HOLE);
     path.holes++;

@@ -240,6 +240,21 @@ static const struct script_parameter medium_parameters[] = {
                       "Rayleigh's phase function, of very small particles, instead of g."},
 };
 
+/* The material of solids that it fills: their surface is a hole everywhere. */
+static struct material *keep_medium(struct script_context *context, const struct medium *medium, struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct material *material = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
+    struct medium *kept = arena_alloc(arena, sizeof *kept);
+    if (!material || !kept) {
+        error_no_memory(error, "a medium");
+        return NULL;
+    }
+    *kept = *medium;
+    material->medium = kept;
+    material->inputs[INPUT_OPACITY] = texture_keep(arena, texture_number(0), error);
+    return material->inputs[INPUT_OPACITY] ? material : NULL;
+}
+
 static bool gr_medium(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     bool by_distance = args[MEDIUM_ALBEDO].given || args[MEDIUM_DISTANCE].given;
@@ -258,14 +273,12 @@ static bool gr_medium(struct script_context *context, const struct script_value 
         in.scattering = vec3_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].vector : vec3_all(1), events);
         in.absorption = vec3_sub(vec3_all(events), in.scattering);
     }
-    struct medium *kept = arena_alloc(&context->scene.arena, sizeof *kept);
-    if (!kept)
-        return error_no_memory(error, "a medium");
-    *kept = medium_scattering(&in);
-    if (!vec3_finite(kept->extinction))
+    struct medium medium = medium_scattering(&in);
+    medium.fills = true;
+    if (!vec3_finite(medium.extinction))
         return error_set(error, ERROR_SCENE, "absorption and scattering are too large together");
-    result->pointer = kept;
-    return true;
+    result->pointer = keep_medium(context, &medium, error);
+    return result->pointer;
 }
 
 /* Fogs. */

@@ -23,6 +23,7 @@ enum {
     MESH_FLIP,
     MESH_CULL,
     MESH_THIN_WALLED,
+    MESH_MEDIUM,
     MESH_MATERIALS,
     MESH_TIME,
     MESH_ANIMATION,
@@ -49,6 +50,7 @@ static const struct script_parameter mesh_parameters[] = {
     [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
                    "Which faces rays ignore: those seen from behind, or those seen from the front."},
     [MESH_THIN_WALLED] = THIN_WALLED,
+    [MESH_MEDIUM] = MEDIUM,
     [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
                         "Materials by the names of the parts in the file; with face_materials, a list."},
     [MESH_TIME] = {"time", KIND_NUMBER, OPTIONAL, ANY, "seconds", "at rest",
@@ -294,12 +296,15 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
 
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
+    const struct material *material;
+    if (!choose_material(&args[MESH_MATERIAL], &args[MESH_MEDIUM], &material, error))
+        return false;
     if (from_file) {
         /* A file: its nodes, with materials for its parts. */
         struct model *model = model_of_file(context, args, error);
         const struct script_value *parts = &args[MESH_MATERIALS];
         struct model_placing placing = {.name = name,
-                                        .material = args[MESH_MATERIAL].material,
+                                        .material = material,
                                         .cull = cull,
                                         .walls = walls_of(&args[MESH_THIN_WALLED]),
                                         .part_names = parts->names,
@@ -312,7 +317,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
         if (!model && context->lenient && error->kind == ERROR_SCENE && !error->limit) {
             lenient_warn(context, "%s: a cube takes its place", error->text);
             *error = (struct error){0};
-            result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
+            result->pointer = lenient_placeholder(context, name, material, error);
             return result->pointer != NULL;
         }
         if (!model || !check_parts(model, parts, error))
@@ -327,7 +332,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     struct node *node = mesh ? scene_node(&context->scene, NODE_GEOMETRY, name, error) : NULL;
     if (!node)
         return false;
-    node->material = args[MESH_MATERIAL].material;
+    node->material = material;
     node->cull = cull;
     node->walls = walls_of(&args[MESH_THIN_WALLED]);
     node->shape.kind = SHAPE_MESH;

@@ -21,9 +21,8 @@ static bool give_node(struct script_context *context, const struct script_value 
                       const struct shape *shape, struct script_result *result, struct error *error) {
     const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
-    if (!node)
+    if (!node || !set_shape_fields(args, node, error))
         return false;
-    set_shape_fields(args, node);
     node->shape = *shape;
     result->pointer = node;
     return true;

@@ -28,22 +28,30 @@
 #define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}
 
 /* Every shape begins with these parameters; its own start at SHAPE_FIRST. */
-enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_FIRST };
+enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_MEDIUM, SHAPE_FIRST };
 #define THIN_WALLED_HELP                                                                                               \
     "Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons."
 #define THIN_WALLED                                                                                                    \
     { "thin_walled", KIND_BOOLEAN, OPTIONAL | RARE, ANY, NULL, "whether it is open", THIN_WALLED_HELP }
+#define MEDIUM                                                                                                         \
+    { "medium", KIND_MEDIUM, OPTIONAL | RARE, ANY, NULL, "none", "Fills the solid, instead of a material." }
 #define SHAPE(otherwise)                                                                                               \
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
     [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},  \
-    [SHAPE_THIN_WALLED] = THIN_WALLED
+    [SHAPE_THIN_WALLED] = THIN_WALLED, [SHAPE_MEDIUM] = MEDIUM
 /* What every shape takes from them. */
 static inline enum node_walls walls_of(const struct script_value *thin_walled) {
     return !thin_walled->given ? WALLS_BY_SHAPE : thin_walled->boolean ? WALLS_THIN : WALLS_OF_SOLID;
 }
-static inline void set_shape_fields(const struct script_value *args, struct node *node) {
-    node->material = args[SHAPE_MATERIAL].material;
+static inline bool choose_material(const struct script_value *material, const struct script_value *medium,
+                                   const struct material **out, struct error *error) {
+    *out = medium->given ? medium->material : material->material;
+    return !(medium->given && material->given) ||
+           error_set(error, ERROR_SCENE, "material and medium: the surface of a medium is invisible; give one of them");
+}
+static inline bool set_shape_fields(const struct script_value *args, struct node *node, struct error *error) {
     node->walls = walls_of(&args[SHAPE_THIN_WALLED]);
+    return choose_material(&args[SHAPE_MATERIAL], &args[SHAPE_MEDIUM], &node->material, error);
 }
 
 #endif

@@ -121,7 +121,10 @@ static void add_light(const struct viewer *viewer, struct window_form *form) {
     set_range(field, -10, 10, "stops");
     set_help(field, "Above the brightness that the script gives it");
     field = add(form, "Light", "colour", FIELD_COLOUR, FIELD_LIGHT_COLOUR);
-    set_vector(field, viewer_light_colour_now(viewer));
+    struct vec3 colour = viewer_light_colour_now(viewer);
+    field->numbers[0] = colour.x;
+    field->numbers[1] = colour.y;
+    field->numbers[2] = colour.z;
     set_range(field, 0, HUGE_VAL, "");
 }
 
@@ -224,7 +227,7 @@ static void set_selected(struct viewer *viewer, const struct window_event *event
         viewer_brighten_light(viewer, event->numbers[0]);
         return;
     case FIELD_LIGHT_COLOUR:
-        viewer_light_colour(viewer, vector_of(event));
+        viewer_light_colour(viewer, vec3_make(event->numbers[0], event->numbers[1], event->numbers[2]));
         return;
     default:
         if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)

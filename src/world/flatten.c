@@ -129,6 +129,10 @@ static bool has_holes(const struct surface_material *material) {
     return surface_has_holes(material);
 }
 
+static bool is_filled(const struct surface_material *material) {
+    return material->filled;
+}
+
 /* Whether one of the materials of a prototype is such; what clips it has none. */
 static bool any_material(const struct flattening *f, const struct prototype *prototype, surface_test *is) {
     const struct csg *csg = prototype->geometry.csg;
@@ -264,6 +268,8 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
 static bool add_prototype(struct flattening *f, const struct node *node, struct prototype *prototype) {
     if (!find_walls(f, node->walls, prototype))
         return false;
+    if (prototype->is_thin && any_material(f, prototype, is_filled))
+        return error_set(f->error, ERROR_SCENE, "node '%.100s' is open, so it holds no medium", node->name);
     struct world *world = f->world;
     uint32_t capacity = f->prototype_capacity;
     struct prototype *prototypes =

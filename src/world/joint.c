@@ -33,13 +33,19 @@ static void add_face(struct junction *junction, const struct hit *hit, const str
                                              .thin = !world->classic && primitive_is_thin(world, hit->primitive)};
     struct bsdf bsdf;
     material_eval(&world->surfaces, hit, junction->ray->media, &context, &bsdf);
-    if (!(bsdf.opacity > 0) || junction->count == FACES)
+    struct medium_boundary invisible;
+    bool filled = world_is_filled(junction->world, hit, &invisible);
+    if ((!(bsdf.opacity > 0) && !filled) || junction->count == FACES)
         return;
     struct face *face = &junction->faces[junction->count++];
     *face = (struct face){.primitive = hit->primitive, .t = hit->t, .offset = hit->offset, .passes = bsdf.passes};
     if (crossing)
         face->crossing = *crossing;
-    if (bsdf.passes) {
+    if (filled) {
+        face->passes = true;
+        face->rank = -1;
+        face->boundary = invisible;
+    } else if (bsdf.passes) {
         face->rank = bsdf.roughness;
         face->boundary = bsdf.boundary;
     }
@@ -121,15 +127,17 @@ static bool has_thin_wall(const struct junction *junction) {
     return false;
 }
 
-/* The surface that scatters: one between media rather than a thin wall, the roughest, then that of the solid that is
- * entered, then the first one. */
+/* The surface that scatters: one that is not invisible; one between media rather than a thin wall, the roughest, then
+ * that of the solid that is entered, then the first one. */
 static const struct face *roughest_face(const struct junction *junction) {
     const struct face *best = &junction->faces[0];
     for (int i = 1; i < junction->count; i++) {
         const struct face *face = &junction->faces[i];
         bool enters = face->boundary.entering && !best->boundary.entering;
         bool leaves = !face->boundary.entering && best->boundary.entering;
-        if (face->boundary.thin != best->boundary.thin)
+        if (face->rank < 0 || best->rank < 0)
+            best = face->rank > best->rank ? face : best;
+        else if (face->boundary.thin != best->boundary.thin)
             best = best->boundary.thin ? face : best;
         else if (face->rank > best->rank ||
                  (face->rank == best->rank && (enters || (!leaves && face->primitive < best->primitive))))
@@ -228,6 +236,18 @@ void world_join_path(const struct world *world, struct ray *ray, struct medium_s
         return;
     ray->t_min = fmax(ray->t_min, joint->past);
     medium_stack_copy(media, &joint->behind);
+}
+
+bool joint_pass_invisible(const struct world *world, const struct joint *joint, const struct hit *hit,
+                          struct medium_stack *stack) {
+    struct medium_boundary boundary;
+    if (!world_is_filled(world, hit, &boundary))
+        return false;
+    if (joint->joined == JOINED_TRANSPARENT)
+        medium_stack_copy(stack, &joint->behind);
+    else
+        medium_stack_cross(stack, &boundary);
+    return true;
 }
 
 struct ray joint_ray_through_hole(const struct joint *joint, const struct hit *hit, const struct ray *ray,

@@ -55,6 +55,10 @@ static inline const struct bsdf_joint *joint_boundary(const struct joint *joint)
     return joint->joined == JOINED_TRANSPARENT ? &joint->boundary : NULL;
 }
 
+/* The media behind the invisible surface of a medium at the hit, and behind all that touch it. False: it is none. */
+bool joint_pass_invisible(const struct world *world, const struct joint *joint, const struct hit *hit,
+                          struct medium_stack *stack);
+
 /* The ray that continues through a hole of the surface at the hit of `ray`: past all surfaces there, or on to the next
  * one of them. */
 struct ray joint_ray_through_hole(const struct joint *joint, const struct hit *hit, const struct ray *ray,

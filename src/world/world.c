@@ -659,10 +659,15 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
         world->mesh_memory += mesh_memory(entry->mesh);
 }
 
+static struct medium medium_of(const struct world *world, uint32_t material) {
+    const struct medium *filling = material_origin(world->authored.materials[material])->medium;
+    return filling ? *filling : surface_medium(&world->surfaces.materials[material]);
+}
+
 void world_update_materials(struct world *world) {
     for (uint32_t i = 0; i < world->material_count; i++) {
         surface_material_update(&world->surfaces.materials[i], world->authored.materials[i], world->classic);
-        world->media.all[i] = surface_medium(&world->surfaces.materials[i]);
+        world->media.all[i] = medium_of(world, i);
     }
 }
 
@@ -685,7 +690,7 @@ static bool make_materials(struct flattening *f) {
         world->material_has_image[i] = material->needs_footprint;
         world->material_has_tangents[i] = material->needs_tangents;
         world->material_has_medium[i] = surface_is_transparent(material);
-        world->media.all[i] = surface_medium(material);
+        world->media.all[i] = medium_of(world, i);
         struct vec3 emission = material_emission_bound(world->authored.materials[i]);
         world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.x, emission.y), emission.z));
     }

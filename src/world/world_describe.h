@@ -20,6 +20,11 @@ static inline uint32_t world_solid(const struct world *world, uint32_t primitive
             return i;
     return SOLID_NONE;
 }
+/* Whether the surface is the invisible one of a medium; *boundary: it. */
+static inline bool world_is_filled(const struct world *world, const struct hit *hit, struct medium_boundary *boundary) {
+    *boundary = (struct medium_boundary){hit->solid, 1, {1, 1, 1}, hit->front, false};
+    return hit->solid != SOLID_NONE && world->media.all[world->media.solids[hit->solid].medium].fills;
+}
 /* The u and v that the shape of a hit supplies. False: it has none. */
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* What is the same for every hit of a triangle of a primitive whose space is the world's. */

@@ -89,7 +89,7 @@ static void add_words(const char *name, const char *text) {
     (void)name;
 }
 
-TEST_LONG(the_pieces_of_a_path_reach_no_allocator_no_call_through_a_pointer_and_not_themselves) {
+TEST_LONG(the_pieces_of_a_path_call_no_allocator_no_pointer_and_not_themselves) {
     char root[4096], *line = NULL;
     if (test_has_sanitizer())
         test_skip("compiles a build of its own");

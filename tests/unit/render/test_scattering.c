@@ -4,6 +4,7 @@
 #include "tests/stage.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -131,5 +132,141 @@ TEST(the_emission_of_a_medium_is_seen_by_both_integrators) {
         }
         stage_end(&s);
         medium.scatters = true;
+    }
+}
+
+/* --- media that fill solids --- */
+
+static struct medium filling_of(double absorption, double scattering, double g) {
+    struct medium medium = medium_of(vec3_all(absorption), vec3_all(scattering), g);
+    medium.fills = true;
+    return medium;
+}
+
+static struct material *filled(struct stage *s, const struct medium *medium) {
+    static struct texture hole;
+    hole = texture_number(0);
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    material->medium = medium;
+    material->inputs[INPUT_OPACITY] = &hole;
+    return material;
+}
+
+/* A slab from z0 to z1, which is wide. */
+static void add_slab(struct stage *s, const struct material *material, double z0, double z1) {
+    struct node *slab = stage_cube(s, s->root, material);
+    stage_move(s, slab, -0.5, -0.5, 0);
+    stage_scale(s, slab, 40, 40, z1 - z0);
+    stage_move(s, slab, 0, 0, z0);
+}
+
+TEST(white_media_in_solids_are_invisible_in_uniform_light) {
+    const struct medium medium = filling_of(0, 3, 0.4);
+    for (int cube = 0; cube < 2; cube++) {
+        for (int inside = 0; inside < 2; inside++) {
+            struct stage s;
+            stage_begin(&s, 2);
+            (void)(cube ? stage_cube(&s, s.root, filled(&s, &medium)) : stage_sphere(&s, s.root, filled(&s, &medium)));
+            s.sky.colour = vec3_all(1);
+            s.camera.eye = inside ? vec3_make(0.4, 0.3, 0.5) : vec3_make(0, 0, 3);
+            s.settings.integrator = INTEGRATOR_PATH;
+            CHECK_NEAR(mean_of(&s, 16, 256, 1000).y, 1, 0.003);
+            stage_end(&s);
+        }
+    }
+}
+
+/* Slabs in a row before a glowing wall: what is left is the product, by both integrators; their invisible surfaces
+ * count neither as depth nor as refraction. A slab inside another one takes its place. */
+TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
+    const struct medium thin = filling_of(0.3, 0, 0), dense = filling_of(1.1, 0, 0);
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+    glow->phong.emission = vec3_all(1);
+    add_slab(&s, glow, -6, -5);
+    add_slab(&s, filled(&s, &thin), -1, 1);
+    add_slab(&s, filled(&s, &dense), -0.25, 0.25);
+    add_slab(&s, filled(&s, &thin), 2, 3);
+    add_slab(&s, filled(&s, &dense), 3, 3.5);
+    s.camera.fov = 0.01;
+    for (int inside = 0; inside < 2; inside++) {
+        s.camera.eye = vec3_make(0, 0, inside ? 0 : 10);
+        double depth = inside ? 1.1 * 0.25 + 0.3 * 0.75 : 1.1 * (0.5 + 0.5) + 0.3 * (1 + 1.5);
+        for (int i = 0; i < 2; i++) {
+            s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+            s.settings.reflect_limit = s.settings.refract_limit = 0;
+            CHECK_NEAR(mean_of(&s, 2, 16, 0).y, exp(-depth), 1e-6);
+        }
+    }
+    stage_end(&s);
+}
+
+TEST(shadow_rays_are_dimmed_by_the_media_that_they_pass) {
+    const struct medium medium = filling_of(0.4, 0.3, 0);
+    double light[2];
+    for (int filling = 0; filling < 2; filling++) {
+        struct stage s;
+        stage_floor(&s);
+        s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 8, 0}, .colour = {1, 1, 1}};
+        struct node *slab = stage_cube(&s, s.root, filled(&s, &medium));
+        stage_move(&s, slab, -0.5, 0, -0.5);
+        stage_scale(&s, slab, 4, 2, 4);
+        stage_move(&s, slab, 0, filling ? 3 : 20, 0);
+        s.camera.eye = vec3_make(0, 1, 0.001);
+        s.camera.view = vec3_make(0, -1, 0);
+        s.camera.up = vec3_make(0, 0, 1);
+        s.camera.fov = 0.01;
+        s.settings.integrator = INTEGRATOR_PATH;
+        light[filling] = mean_of(&s, 2, 16, 1).y;
+        stage_end(&s);
+    }
+    CHECK(light[0] > 0.01);
+    CHECK_NEAR(light[1] / light[0], exp(-0.7 * 2), 1e-5);
+}
+
+TEST(an_open_shape_holds_no_medium) {
+    const struct medium medium = filling_of(0.4, 0.3, 0);
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *pane = stage_sphere(&s, s.root, filled(&s, &medium));
+    pane->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 0, 1), 1, 0)};
+    CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
+    CHECK(strstr(s.error.text, "is open, so it holds no medium") != NULL);
+    stage_end(&s);
+}
+
+/* Shares of a normal beam, known values of transport theory (the last one: van de Hulst, "Multiple Light Scattering",
+ * 1980): by reciprocity what the camera sees along the normal of a slab in front of, or behind, a plane of radiance 1.
+ */
+TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
+    static const struct {
+        double albedo, g, depth, reflected, transmitted;
+    } slabs[] = {{1, 0, 1, 0.3413, 0.6587},
+                 {1, 0, 4, 0.6910, 0.3090},
+                 {0.9, 0, 1, 0.2674, 0.5916},
+                 {0.9, 0.75, 2, 0.09740, 0.66096}};
+    const int samples = 4096 * times;
+    for (int i = 0; i < 4; i++) {
+        const struct medium medium =
+            filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, slabs[i].g);
+        for (int behind = 0; behind < 2; behind++) {
+            struct stage s;
+            stage_begin(&s, 2);
+            struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+            glow->phong.emission = vec3_all(1);
+            glow->phong.two_sided = true;
+            struct node *wall = stage_sphere(&s, s.root, glow);
+            wall->shape =
+                (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), behind ? -5 : 20)};
+            struct node *slab = stage_cube(&s, s.root, filled(&s, &medium));
+            stage_move(&s, slab, -0.5, -0.5, 0);
+            stage_scale(&s, slab, 400, 400, 1);
+            s.camera.fov = 0.01;
+            s.settings.integrator = INTEGRATOR_PATH;
+            double seen = mean_of(&s, 4, samples, 1000).y, want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            CHECK_NEAR(seen, want, 4 * 0.48 / sqrt(16.0 * samples) + 0.0002);
+            stage_end(&s);
+        }
     }
 }
