@@ -84,7 +84,10 @@ if [ "$mode" = --tests ]; then
     want window xvfb command -v xvfb-run
     want window xauth command -v xauth
     want window xdotool command -v xdotool
-    [ -z "$gtk" ] || want window openbox command -v openbox
+    if [ -n "$gtk" ]; then
+        want window openbox command -v openbox
+        want window weston command -v weston
+    fi
     want machines libopenmpi-dev have_mpi
     want machines openmpi-bin command -v mpirun
     want animations ffmpeg command -v ffmpeg

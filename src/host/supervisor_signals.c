@@ -67,7 +67,7 @@ void supervisor_interrupt(struct supervisor *supervisor) {
     atomic_store(&supervisor->control->cancel, 1);
     const struct output_session *output = &supervisor->output;
     const struct picture *picture = output->current.open ? &output->current : output->held.open ? &output->held : NULL;
-    if (!picture) {
+    if (!picture || (supervisor->viewer.window.open && supervisor->viewer.written)) {
         output_report(&supervisor->output, LINE_ERROR, "gray: interrupted");
         return;
     }

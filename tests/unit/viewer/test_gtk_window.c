@@ -144,3 +144,15 @@ TEST(gtk_window_asks_before_edits_are_lost) {
           0);
     gives("grep -q \"gr.change_delete('ball'\" out-changes1.lua", 0);
 }
+
+/* Without input: it opens, draws, writes the picture, and ends by a signal. */
+TEST(gtk_window_opens_under_wayland) {
+    need_display();
+    test_need_tools("weston");
+    gives("chmod 700 . && { weston --backend=headless-backend.so --socket=gray-test >weston.txt 2>&1 & weston=$!; "
+          "await 'test -S gray-test'; WAYLAND_DISPLAY=gray-test GDK_BACKEND=wayland DISPLAY= $gray -gui scene.lua & "
+          "pid=$!; "
+          "await 'test -s out.png'; kill -TERM $pid; wait $pid; status=$?; kill $weston; wait $weston; exit $status; }",
+          130);
+    gives("! grep 'is not written' err.txt && GRAY_WINDOW= $gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+}
