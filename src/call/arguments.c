@@ -191,7 +191,7 @@ _Noreturn static void unknown_field(struct script_context *c, const struct scrip
         suggest_offer(&suggestion, function->passes->rows->parameters[k].name);
     if (use || suggestion.best)
         sandbox_raise(&c->sandbox, "unknown field '%.100s'; did you mean '%s'?", field, use ? use : suggestion.best);
-    enum { SHORT_LIST = 5 };
+    enum { SHORT_LIST = 6 };
     char fields[256] = "";
     bool all = count <= SHORT_LIST;
     for (int k = 0; k < (all ? count : SUGGESTIONS_NEAR) && (all || suggestion.near[k]); k++)

@@ -42,7 +42,7 @@ TEST(a_topic_is_answered_with_its_entries_and_nothing_else) {
 
 TEST(words_of_other_programs_and_of_descriptions_are_topics) {
     check_topic("extrude", "gray has no 'extrude'; use gr.prism\n\ngr.prism(", NULL);
-    check_topic("albedo", "use the field kd", NULL);
+    check_topic("transparency", "use the field refract", NULL);
     check_topic("shadow", "gr.area_light ", NULL);
 }
 

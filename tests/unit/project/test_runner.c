@@ -511,7 +511,7 @@ static void make_sources(void) {
     CHECK(wait_for(start("mkdir -p $GRAY_EXAMPLE_RUN/own/src/host $GRAY_EXAMPLE_RUN/own/lua; "
                          "cp Makefile $GRAY_EXAMPLE_RUN/own; cd $GRAY_EXAMPLE_RUN/own; "
                          "echo 'int main(void) { return 0; }' >src/host/program.c; "
-                         "for f in gui mpi; do echo \"extern int $f;\" >src/host/main_$f.c; done; "
+                         "for f in gui gtk mpi; do echo \"extern int $f;\" >src/host/main_$f.c; done; "
                          "touch lua/a.lua; find . | sort >../before")) == 0);
 }
 

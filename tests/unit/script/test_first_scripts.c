@@ -33,7 +33,8 @@ TEST(nil_as_lights_is_no_default) {
 }
 
 TEST(an_unknown_field_lists_the_valid_ones) {
-    says("gr.sphere{wobble = 1}", "gr.sphere: unknown field 'wobble'; the fields are name, material, thin_walled, centre, radius");
+    says("gr.sphere{wobble = 1}",
+         "gr.sphere: unknown field 'wobble'; the fields are name, material, thin_walled, medium, centre, radius");
     says("gr.sphere{raduis = 1}", "did you mean 'radius'?");
 }
 
