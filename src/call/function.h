@@ -127,7 +127,7 @@ enum {
     /* Of KIND_CHOICE and KIND_BOOLEAN: a number is accepted, in the range of the parameter; `boolean` is true then. */
     OR_NUMBER = 256,
     OR_CURVE = 2048, /* of KIND_CHOICE: also accepts a function of the light, which sets `curve` */
-    /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and vector is 1. Of
+    /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and colour is 1. Of
      * KIND_FUNCTION: it is a function of the direction. */
     OR_PROFILE = 512,
     OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
