@@ -1,10 +1,6 @@
 /* Lobes by purpose. */
 #include "material/bsdf_select.h"
 
-static bool is_black(struct colour c) {
-    return c.r == 0 && c.g == 0 && c.b == 0;
-}
-
 /* Lobes with a weight: highlights, and the others. */
 struct lobe_sets {
     uint32_t highlights, others;
@@ -17,7 +13,7 @@ static struct lobe_sets sets_of(const struct bsdf *bsdf) {
         const struct lobe *lobe = &bsdf->lobes[i];
         unsigned flags = lobe_flags(lobe->kind);
         sets.traced = sets.traced || (flags & BSDF_TRACED);
-        if (!is_black(lobe->weight))
+        if (!colour_is_black(lobe->weight))
             *(flags & BSDF_EXPONENT ? &sets.highlights : &sets.others) |= UINT32_C(1) << i;
     }
     return sets;
@@ -53,7 +49,7 @@ struct colour bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lam
     *lambert = true;
     for (int i = 0; i < bsdf->count; i++) {
         const struct lobe *lobe = &bsdf->lobes[i];
-        if (!(*lobes >> i & 1) || is_black(lobe->weight))
+        if (!(*lobes >> i & 1) || colour_is_black(lobe->weight))
             continue;
         left |= UINT32_C(1) << i;
         *lambert = *lambert && (lobe_flags(lobe->kind) & BSDF_LAMBERT);
@@ -83,7 +79,7 @@ struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow) {
         if (flags & BSDF_EXPONENT)
             continue;
         bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
-        guide.scatters = guide.scatters || (!smooth && !is_black(lobe->weight));
+        guide.scatters = guide.scatters || (!smooth && !colour_is_black(lobe->weight));
         guide.albedo = colour_add(guide.albedo, lobe->weight);
         *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += colour_max_abs(lobe->weight);
     }

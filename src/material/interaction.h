@@ -13,9 +13,6 @@ struct interaction {
     const struct phase *phase; /* of a medium: the colour of scattering is in the weight of medium_sample */
 };
 
-/* The flag of samples in a medium, beside those of bsdf_sample. */
-enum { INTERACTION_MEDIUM = 1 << 16 };
-
 /* f |cos wi| of some of the lobes that are not delta. */
 static inline struct colour interaction_eval(const struct interaction *at, uint32_t lobes, enum bsdf_mode mode,
                                              struct vec3 wi) {
@@ -37,7 +34,7 @@ static inline bool interaction_sample(const struct interaction *at, enum bsdf_mo
     out->direction = phase_sample(at->phase, at->wo, u);
     out->weight = colour_all(1);
     out->pdf = phase_eval(at->phase, at->wo, out->direction);
-    out->flags = INTERACTION_MEDIUM;
+    out->flags = 0;
     return true;
 }
 

@@ -121,14 +121,10 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
     memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
 }
 
-static bool vectors_equal(struct colour a, struct colour b) {
-    return a.r == b.r && a.g == b.g && a.b == b.b;
-}
-
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
     const struct medium *x = medium_stack_current(a), *y = medium_stack_current(b);
-    return x->ior == y->ior && vectors_equal(x->extinction, y->extinction) && vectors_equal(x->tint, y->tint) &&
-           x->fog == y->fog && vectors_equal(x->scattering, y->scattering) && vectors_equal(x->emission, y->emission) &&
+    return x->ior == y->ior && colour_equal(x->extinction, y->extinction) && colour_equal(x->tint, y->tint) &&
+           x->fog == y->fog && colour_equal(x->scattering, y->scattering) && colour_equal(x->emission, y->emission) &&
            x->phase.kind == y->phase.kind && x->phase.g == y->phase.g;
 }
 

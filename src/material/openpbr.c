@@ -164,12 +164,8 @@ struct layering {
     double coated, coat_sees, coat_inside;
 };
 
-static bool is_black(struct colour c) {
-    return c.r == 0 && c.g == 0 && c.b == 0;
-}
-
 static void add(struct layering *l, enum lobe_kind kind, struct colour weight, double share) {
-    if (is_black(weight) || !(share > 0))
+    if (colour_is_black(weight) || !(share > 0))
         return;
     struct lobe *lobe = &l->bsdf->lobes[l->bsdf->count++];
     lobe->kind = kind;
@@ -365,7 +361,7 @@ static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, st
     add(l, LOBE_GLASS, through, fmax(single, min_glass_share));
     add(l, LOBE_FACETS_MULTIPLE, all, lack * (1 - facets->through));
     add(l, LOBE_FACETS_THROUGH, through, lack * facets->through);
-    if (is_black(l->turned))
+    if (colour_is_black(l->turned))
         return;
     struct bsdf_facets *turning = &l->bsdf->facets[l->facets++];
     *turning = *facets;
@@ -378,7 +374,7 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
     const struct openpbr *v = l->values;
     struct colour all = colour_scale(l->left, 1 - v->base_metalness);
     double clear = l->inputs->refract;
-    if (is_black(all))
+    if (colour_is_black(all))
         return;
     /* A thin pane lets light through without a change of direction. */
     if (v->thin_walled && clear > 0) {

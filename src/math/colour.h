@@ -50,6 +50,20 @@ static inline struct colour colour_max(struct colour a, struct colour b) {
 static inline double colour_get(struct colour a, int channel) {
     return channel == 0 ? a.r : channel == 1 ? a.g : a.b;
 }
+static inline bool colour_is_black(struct colour a) {
+    return a.r == 0 && a.g == 0 && a.b == 0;
+}
+static inline bool colour_equal(struct colour a, struct colour b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+/* The share of a part in the whole; 0 of black. */
+static inline double channel_share(double part, double whole) {
+    return whole != 0 ? part / whole : 0;
+}
+static inline struct colour colour_share(struct colour part, struct colour whole) {
+    return (struct colour){channel_share(part.r, whole.r), channel_share(part.g, whole.g),
+                           channel_share(part.b, whole.b)};
+}
 static inline bool colour_finite(struct colour a) {
     return isfinite(a.r) && isfinite(a.g) && isfinite(a.b);
 }

@@ -113,7 +113,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
     medium_stack_copy(&path.media, &target->media);
     path.ray.media = &path.media;
     path.ray.time = draw(&path);
-    if (start.power.r == 0 && start.power.g == 0 && start.power.b == 0)
+    if (colour_is_black(start.power))
         return;
     if (start.from_afar) {
         /* It starts beyond the finite objects: an unbounded ground may block it. */

@@ -184,7 +184,7 @@ static struct colour light_of_delta(struct integrator_state *state, const struct
     struct colour reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
     OBSERVE(state->observer, OBSERVED_LIGHT_SAMPLE,
             .position = {arrival.distance, arrival.strength, arrival.direction, reflected});
-    if (arrival.strength == 0 || (reflected.r == 0 && reflected.g == 0 && reflected.b == 0))
+    if (arrival.strength == 0 || colour_is_black(reflected))
         return colour_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);
     return share == 0 ? colour_all(0) : colour_mul(colour_scale(arrival.colour, share * arrival.strength), reflected);

@@ -20,10 +20,6 @@ static double weight_of(const struct path_tracer *tracer, enum path_strategy str
     return pdf * pdf / (pdf * pdf + other * other);
 }
 
-static bool is_black(struct colour c) {
-    return c.r == 0 && c.g == 0 && c.b == 0;
-}
-
 /* The part of a light's radiance that the path adds. If photons come from this light, the fraction `photons` of the
  * path's weight belongs to the photon map. */
 static struct colour without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
@@ -127,9 +123,9 @@ struct colour path_light_arriving(const struct path_tracer *tracer, struct integ
     } else {
         radiance = colour_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
-    if (tracer->has_fillings && !is_black(radiance))
+    if (tracer->has_fillings && !colour_is_black(radiance))
         return colour_mul(radiance, left_of_light(lights->world, &shadow->ray, end, state->scratch));
-    if (is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
+    if (colour_is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
     struct medium_effect effect;
     (void)medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect);
@@ -151,10 +147,6 @@ void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]) {
         out[i] = colour_all((int)scattering_of(flags) == i ? 1 : 0);
 }
 
-static double share_of(double part, double all) {
-    return all != 0 ? part / all : 0;
-}
-
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi,
                  struct colour out[PATH_SCATTERINGS]) {
     const struct bsdf *bsdf = vertex->at.bsdf;
@@ -172,7 +164,7 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
         sum = colour_add(sum, out[i]);
     }
     for (int i = 0; i < PATH_SCATTERINGS; i++)
-        out[i] = colour_make(share_of(out[i].r, sum.r), share_of(out[i].g, sum.g), share_of(out[i].b, sum.b));
+        out[i] = colour_share(out[i], sum);
     /* A channel that no lobe scatters: its light is 0 for any fraction. */
     out[0] = colour_sub(colour_all(1), colour_add(out[1], out[2]));
 }
@@ -183,9 +175,9 @@ void path_direct_shares(const struct path_vertex *vertex, const struct path_choi
                         struct colour shares[PATH_SCATTERINGS]) {
     struct colour f = choice->lobes, highlight = choice->highlight, sum = colour_add(f, highlight);
     path_shares(vertex, vertex->at.lobes, wi, shares);
-    if (is_black(highlight))
+    if (colour_is_black(highlight))
         return;
-    struct colour all = colour_make(share_of(f.r, sum.r), share_of(f.g, sum.g), share_of(f.b, sum.b));
+    struct colour all = colour_share(f, sum);
     for (int i = 0; i < PATH_SCATTERINGS; i++)
         shares[i] = colour_mul(shares[i], all);
     shares[SCATTERING_SPECULAR] = colour_add(shares[SCATTERING_SPECULAR], colour_sub(colour_all(1), all));
@@ -216,11 +208,11 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (!world_lights_sample(lights, vertex->receiver, part, xi, sample))
         return false;
     struct colour f = scattered(vertex, vertex->at.lobes, sample->direction);
-    if (!vertex->substitute && is_black(f))
+    if (!vertex->substitute && colour_is_black(f))
         return false;
     uint32_t traced =
         tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
-    if (traced && !is_black(vertex->thrown)) {
+    if (traced && !colour_is_black(vertex->thrown)) {
         struct colour by_traced = scattered(vertex, traced, sample->direction);
         f = colour_sub(f, colour_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
@@ -241,7 +233,7 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
             without_thrown(tracer, part.light, vertex->thrown,
                            colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
     out->scattered = colour_add(f, choice->highlight);
-    if (is_black(out->scattered))
+    if (colour_is_black(out->scattered))
         return false;
     send_shadow_ray(vertex, out);
     return true;
@@ -257,11 +249,11 @@ static double met_weight(const struct path_tracer *tracer, const struct path_seg
 struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
                             struct colour emission) {
     const struct world_lights *lights = &tracer->lights;
-    if (lights->of_primitive[hit->primitive] == LIGHT_NONE && is_black(emission))
+    if (lights->of_primitive[hit->primitive] == LIGHT_NONE && colour_is_black(emission))
         return emission;
     struct colour radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
     radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->thrown, radiance);
-    if (is_black(radiance) || segment->pdf == 0)
+    if (colour_is_black(radiance) || segment->pdf == 0)
         return radiance;
     double pdf = world_lights_pdf_of_hit(lights, segment->receiver, vec3_negate(hit->view), hit);
     return colour_scale(radiance, met_weight(tracer, segment, pdf));

@@ -51,7 +51,7 @@ static void add_to_groups(struct path_parts *parts, int depth, const struct colo
 
 /* The hit of the path's ray. */
 static void add_light(const struct integrator_state *state, struct path *path, struct colour radiance) {
-    if (radiance.r == 0 && radiance.g == 0 && radiance.b == 0)
+    if (colour_is_black(radiance))
         return;
     struct colour light = colour_mul(path->weight, radiance);
     path->light = colour_add(path->light, light);
@@ -225,10 +225,6 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
         add_to_groups(parts, path->depth + 2, path->depth == 0 ? diffuse : parts->shares, light);
 }
 
-static double share_of(double part, double all) {
-    return all != 0 ? part / all : 0;
-}
-
 /* The fraction of light from wi that these lobes of the vertex scatter. */
 static struct colour share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
     const struct interaction *at = &vertex->at;
@@ -236,7 +232,7 @@ static struct colour share_of_lobes(const struct path_vertex *vertex, uint32_t l
         return colour_all(lobes ? 1 : 0);
     struct colour part = interaction_eval(at, lobes, BSDF_RADIANCE, wi),
                   all = interaction_eval(at, at->lobes, BSDF_RADIANCE, wi);
-    return colour_make(share_of(part.r, all.r), share_of(part.g, all.g), share_of(part.b, all.b));
+    return colour_share(part, all);
 }
 
 /* Photons carry light from a light source through traced lobes to a lobe that receives them. A path that continues

@@ -58,14 +58,6 @@ static inline bool watch_end(struct path_watch *watch, enum path_end why) {
 
 #if OBSERVED
 
-static double quotient_of(double part, double all) {
-    return all != 0 ? part / all : 0;
-}
-
-static struct colour quotient(struct colour a, struct colour b) {
-    return colour_make(quotient_of(a.r, b.r), quotient_of(a.g, b.g), quotient_of(a.b, b.b));
-}
-
 /* The ray of the path is its next one. hit: or NULL. */
 static void watch_ray(struct path_watch *watch, const struct observer *observer, const struct path *path,
                       const struct hit *hit) {
@@ -77,7 +69,7 @@ static void watch_ray(struct path_watch *watch, const struct observer *observer,
     double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
     if (watch->count > 0)
         OBSERVE(observer, OBSERVED_RAY_SENT,
-                .sent = {(enum ray_kind)path->kind, quotient(path->weight, watch->rays[watch->count - 1].arriving),
+                .sent = {(enum ray_kind)path->kind, colour_share(path->weight, watch->rays[watch->count - 1].arriving),
                          RAY_FOLLOWED});
     watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
     watch_arrival(watch, path, 0);
@@ -92,7 +84,7 @@ static void watch_vertex(struct path_watch *watch, const struct observer *observ
         return;
     struct colour gains[STAGES];
     for (int i = STAGE_EMISSION; i < STAGES; i++)
-        gains[i] = quotient(colour_sub(ray->lights[i], ray->lights[i - 1]), ray->arriving);
+        gains[i] = colour_share(colour_sub(ray->lights[i], ray->lights[i - 1]), ray->arriving);
     OBSERVE(observer, OBSERVED_VERTEX,
             .vertex = {.end = watch->end,
                        .distance = ray->distance,
@@ -110,10 +102,10 @@ static void watch_path(const struct path_watch *watch, const struct observer *ob
         struct colour before = ray->lights[STAGE_BEFORE_HIT];
         OBSERVE(observer, OBSERVED_RAY_END,
                 .end = {.evaluated = true,
-                        .seen = quotient(colour_sub(path->light, before), ray->arriving),
-                        .left = quotient(ray->arriving, ray->weight),
-                        .in_scattered = quotient(colour_sub(before, ray->light), ray->weight),
-                        .brings = quotient(colour_sub(path->light, ray->light), ray->weight)});
+                        .seen = colour_share(colour_sub(path->light, before), ray->arriving),
+                        .left = colour_share(ray->arriving, ray->weight),
+                        .in_scattered = colour_share(colour_sub(before, ray->light), ray->weight),
+                        .brings = colour_share(colour_sub(path->light, ray->light), ray->weight)});
     }
 }
 

@@ -513,10 +513,6 @@ static bool is_own_triangle(const struct world_lights *lights, uint32_t light, u
     return lights->of_primitive[lights->lights[light].mesh->triangles[triangle].primitive] == light;
 }
 
-static bool is_dark(struct colour c) {
-    return c.r == 0 && c.g == 0 && c.b == 0;
-}
-
 /* A part of a light as a receiver sees it: a triangle, the context of a light, or the bound that is sampled instead. */
 struct view {
     const struct light *light;
@@ -560,7 +556,7 @@ static bool sample_point_light(const struct light *light, struct vec3 point, str
     out->decided = false;
     out->triangle = 0;
     out->skip_primitive = 0;
-    return !is_dark(out->radiance);
+    return !colour_is_black(out->radiance);
 }
 
 /* Separate, so that lights without extent need not prepare for it. */
@@ -586,7 +582,7 @@ static __attribute__((noinline)) bool sample_extended_light(const struct world_l
     out->triangle = part.triangle;
     bool single = emitter->shown && !emitter->by_triangle && !out->decided;
     out->skip_primitive = single ? emitter->primitive + 1 : 0;
-    return out->decided || !is_dark(out->radiance);
+    return out->decided || !colour_is_black(out->radiance);
 }
 
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
