@@ -1,5 +1,5 @@
-/* The picture while a camera moves: one ray for each pixel, shaded by a light at the eye and a little ambient light, with
- * the colours and textures of the materials. No other rays: no shadows, reflections, media. */
+/* The picture while a camera moves: one ray for each pixel, shaded by a light at the eye and a little ambient light,
+ * with the colours and textures of the materials. No other rays: no shadows, reflections, media. */
 #ifndef GRAY_RENDER_HEADLIGHT_H
 #define GRAY_RENDER_HEADLIGHT_H
 

@@ -39,7 +39,7 @@ struct gui {
     struct tile_layer layers[2];        /* picture, overlay */
     graphene_rect_t picture_area;       /* in pixels of the screen, as the layers */
     double mouse_x, mouse_y;            /* in those of the picture's widget, times the scale */
-    GFile *next_scene; /* while the user is asked about unsaved edits */
+    GFile *next_scene;                  /* the scene to open if the user agrees to lose the edits; else NULL */
     struct window_status status;
     enum window_key_set key_set;
     bool flies, updates; /* updates: widgets are set by the program, not by the user */

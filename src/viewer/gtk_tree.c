@@ -1,5 +1,5 @@
-/* The children of a node are a list model of their own, whose length its row has told; rows are wanted from the viewer
- * when they come into view, some at a time. Only open nodes have a model, so millions of nodes cost nothing. */
+/* Each open node has a list model of its children. The row of the node states how many there are. The model asks the
+ * viewer for rows when they come into view, NODE_ROWS at a time. Closed nodes have no model. */
 #include "viewer/gtk_tree_internal.h"
 
 #include "viewer/gtk_window_internal.h"
