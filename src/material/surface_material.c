@@ -11,7 +11,8 @@ struct surface_material surface_material_make(const struct material *material, b
                                               const struct texture *textures[INPUT_COUNT]) {
     const struct texture *own[INPUT_COUNT], **inputs = textures ? textures : own;
     struct surface_material out = {.fresnel = material->fresnel,
-                                   .filled = material_origin(material)->medium != NULL,
+                                   .filled = material->medium && material->medium->fills,
+                                   .holds_medium = material->medium != NULL,
                                    .has_layers = material->openpbr != NULL,
                                    .phong = material_origin(material)->phong};
     for (int i = 0; i < INPUT_COUNT; i++)

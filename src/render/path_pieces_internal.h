@@ -16,7 +16,7 @@
  * samples of lights. */
 
 #include "material/bsdf_select.h"
-#include "material/medium.h"
+#include "material/medium_mix.h"
 #include "math/range.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
@@ -113,7 +113,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
 
 /* A scattered ray. passed: after holes, the line began at t = -passed. */
 static struct path_segment segment_of(const struct path *path, double passed) {
-    return (struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown, passed};
+    return (struct path_segment){path, passed};
 }
 
 /* After holes, the distance from where the line began, in t of the ray. */
@@ -126,10 +126,14 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
-/* Passes the medium over a distance. True: it scatters the path, after *distance. */
-static bool pass_medium(const struct integrator_state *state, struct path *path, enum medium_ray kind,
-                        double *distance) {
-    const struct medium *medium = medium_stack_current(path->ray.media);
+/* The random numbers of the media along the path's ray. */
+static uint64_t medium_key(const struct path *path) {
+    return random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM);
+}
+
+/* Passes the medium over a distance. Returns the one that scatters the path, after *distance, or NULL. */
+static const struct medium *pass_single(const struct integrator_state *state, struct path *path,
+                                       const struct medium *medium, enum medium_ray kind, double *distance) {
     struct medium_effect effect;
     if (medium->scatters) {
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
@@ -137,19 +141,45 @@ static bool pass_medium(const struct integrator_state *state, struct path *path,
         struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
         path->weight = colour_mul(path->weight, sample.weight);
         *distance = sample.distance;
-        return sample.scatters;
+        return sample.scatters ? medium : NULL;
     }
     if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
         add_light(state, path, effect.added);
         path->weight = colour_mul(path->weight, effect.transmittance);
     }
-    return false;
+    return NULL;
+}
+
+/* The same for several together, and for a density. */
+static __attribute__((noinline)) const struct medium *pass_mix(const struct integrator_state *state, struct path *path,
+                                                               enum medium_ray kind, double *distance) {
+    struct medium_mix mix;
+    struct medium_track track;
+    medium_stack_mix(path->ray.media, &mix);
+    if (mix.count == 0)
+        return NULL;
+    if (mix.count == 1 && !mix.media[0]->density)
+        return pass_single(state, path, mix.media[0], kind, distance);
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), *distance, path->ray.time};
+    const struct medium_draw numbers = {sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM),
+                                        medium_key(path)};
+    medium_mix_track(&mix, &line, path->weight, numbers, &track);
+    add_light(state, path, track.emitted);
+    /* What only absorbs does not end the path. */
+    if (!medium_mix_scatters(&mix)) {
+        path->weight = colour_mul(path->weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
+        return NULL;
+    }
+    path->weight = colour_mul(path->weight, track.weight);
+    *distance = track.distance;
+    return track.scatterer;
 }
 
 /* Adds everything between the origin of the ray and its end: area lights, media. *distance: to the hit, the light or
- * where the medium scatters. */
+ * where the medium *scatterer scatters. */
 static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
-                             const struct hit *hit, struct path_watch *watch, double *distance) {
+                             const struct hit *hit, struct path_watch *watch, double *distance,
+                             const struct medium **scatterer) {
     double end = hit ? hit->t : path->ray.t_max;
     struct colour radiance;
     bool seen = false;
@@ -163,7 +193,10 @@ static enum travelled travel(const struct path_tracer *tracer, const struct inte
     if (!seen && !path_is_affected(tracer, kind, &path->ray))
         return ENDS_AT_HIT;
     *distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    if (pass_medium(state, path, kind, distance))
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    *scatterer =
+        medium->mixed ? pass_mix(state, path, kind, distance) : pass_single(state, path, medium, kind, distance);
+    if (*scatterer)
         return ENDS_IN_MEDIUM;
     if (!seen)
         return ENDS_AT_HIT;
@@ -239,8 +272,11 @@ static struct colour share_of_lobes(const struct path_vertex *vertex, uint32_t l
  * from such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
     const struct bsdf *bsdf = vertex->at.bsdf;
-    uint32_t traced = bsdf ? vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED) : 0;
-    uint32_t receiving = bsdf ? vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS) : 0;
+    /* Photons pass media as paths do. */
+    if (!bsdf)
+        return;
+    uint32_t traced = vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED);
+    uint32_t receiving = vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS);
     bool delta = (sample->flags & BSDF_DELTA) != 0;
     struct colour by_traced = delta ? colour_all(1) : share_of_lobes(vertex, traced, sample->direction);
     path->thrown = colour_mul(colour_add(path->received, path->thrown), by_traced);
@@ -328,9 +364,8 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
 
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
-                                                  struct path *path, double distance, struct path_shadow *shadow,
-                                                  struct path_watch *watch) {
-    const struct medium *medium = medium_stack_current(path->ray.media);
+                                                  struct path *path, const struct medium *medium, double distance,
+                                                  struct path_shadow *shadow, struct path_watch *watch) {
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
@@ -344,7 +379,8 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &medium->phase},
                                        .receiver = &path->scatter,
-                                       .sight = path->sight};
+                                       .sight = path->sight,
+                                       .thrown = path->thrown};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
@@ -480,12 +516,13 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
 #endif
     /* The way to it, then the surface or the sky there. */
     double distance;
-    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
+    const struct medium *scatterer;
+    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance, &scatterer);
     if (to == ENDS_AT_LIGHT)
         return false;
     watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? distance : 0);
     if (to == ENDS_IN_MEDIUM)
-        return meet_medium(tracer, state, path, distance, shadow, watch);
+        return meet_medium(tracer, state, path, scatterer, distance, shadow, watch);
     if (met)
         return meet_surface(tracer, state, path, &at, shadow, watch);
     leave_scene(tracer, state, path);
@@ -498,7 +535,7 @@ static void shadow(const struct path_tracer *tracer, struct integrator_state *st
                    struct path_shadow *shadow) {
     struct colour arriving = colour_all(0), seen = colour_all(0);
     if (shadow->sent) {
-        arriving = path_light_arriving(tracer, state, &path->scatter, shadow);
+        arriving = path_light_arriving(tracer, state, path, shadow);
         seen = colour_mul(shadow->scattered, arriving);
         struct colour light = colour_mul(shadow->weight, seen);
         path->light = colour_add(path->light, light);

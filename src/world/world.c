@@ -660,8 +660,13 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 static struct medium medium_of(const struct world *world, uint32_t material) {
-    const struct medium *filling = material_origin(world->authored.materials[material])->medium;
-    return filling ? *filling : surface_medium(&world->surfaces.materials[material]);
+    const struct medium *own = world->authored.materials[material]->medium;
+    if (own && own->fills)
+        return *own;
+    struct medium medium = surface_medium(&world->surfaces.materials[material]);
+    if (own)
+        medium_put_inside(&medium, own);
+    return medium;
 }
 
 void world_update_materials(struct world *world) {
