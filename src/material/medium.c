@@ -24,8 +24,8 @@ struct medium medium_scattering(const struct medium_input *in) {
     return medium;
 }
 
-struct medium medium_inside(double ior, struct colour tint, struct colour absorption) {
-    struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
+struct medium medium_inside(double ior, struct colour tint, const struct medium_input *in) {
+    struct medium medium = medium_scattering(in);
     medium.ior = ior;
     medium.tint = tint;
     return medium;
