@@ -179,3 +179,51 @@ TEST(light_from_under_a_surface_is_direct_light) {
     CHECK_NEAR(stage_pixel(&s, 0, 0).r, 0.8 * cos(25 * 3.14159265358979323846 / 180), 1e-3);
     stage_end(&s);
 }
+
+/* --- scattering inside of transparent solids --- */
+
+/* A solid of index 1.5 whose inside has the extinction 1 / radius in every channel. */
+static struct openpbr *milk(struct stage *s, struct material **material, struct colour albedo, double radius) {
+    struct openpbr *layers = wax(s, material);
+    layers->subsurface_weight = 0;
+    layers->specular_weight = 1;
+    layers->deep = true;
+    layers->transmission_scattering = colour_scale(albedo, 1 / radius);
+    (*material)->phong.absorption = colour_scale(colour_sub(colour_all(1), albedo), 1 / radius);
+    (*material)->phong.refract = 1;
+    (*material)->phong.has_ior = true;
+    (*material)->phong.ior = 1.5;
+    return layers;
+}
+
+/* Half spaces under a polished surface, its reflection included, by doubling. */
+TEST_TIMES(half_spaces_under_glass_reflect_what_doubling_says, 64) {
+    struct stage s;
+    struct material *material;
+    begin(&s);
+    (void)milk(&s, &material, colour_make(0.9, 0.99, 0), 1e-3);
+    struct node *node = stage_cube(&s, s.root, material);
+    stage_scale(&s, node, 20, 20, 1);
+    stage_move(&s, node, -10, -10, 0);
+    s.camera.fov = 0.5;
+    check_channels("under glass", &s, colour_make(0.2600, 0.6020, 0.04), 64 * times);
+    stage_end(&s);
+}
+
+/* Roughness, forward scattering, and extinctions that differ by channel. */
+TEST_TIMES(white_milk_is_invisible_in_uniform_light, 16) {
+    for (int i = 0; i < 4; i++) {
+        struct stage s;
+        struct material *material;
+        begin(&s);
+        struct openpbr *layers = milk(&s, &material, colour_all(1), i < 2 ? 1 : 0.25);
+        layers->transmission_anisotropy = i & 1 ? 0.8 : 0;
+        if (i == 3)
+            layers->transmission_scattering = colour_make(0.1, 1, 10);
+        material->phong.roughness = i == 2 ? 0.3 : 0;
+        (void)stage_sphere(&s, s.root, material);
+        s.camera.fov = 15;
+        check_channels("white milk", &s, colour_all(1), 64 * times);
+        stage_end(&s);
+    }
+}
