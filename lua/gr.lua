@@ -1258,9 +1258,9 @@ function gr.glyphs(font, text) end
 ---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz; a rough fuzz is visible farther from the rim.
 ---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 means radiance 1.
 ---@field emission_color? gr.triple|string|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
----@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not implemented.
----@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not implemented.
----@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not implemented.
+---@field thin_film_weight? number|gr.texture|function thin_film_weight (a number or a texture, 0 to 1; default 0): Share of the base with a film that shows colours of interference.
+---@field thin_film_thickness? number|gr.texture|function thin_film_thickness (a number or a texture, >= 0; default 0.5): Its thickness in micrometres; 0: no film.
+---@field thin_film_ior? number thin_film_ior (a number, > 0; default 1.4): Its index of refraction.
 ---@field geometry_opacity? number|gr.texture|function geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
 ---@field geometry_normal? string|gr.texture|function geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.

@@ -12,6 +12,7 @@
 #include "material/medium.h"
 #include "material/microfacet_internal.h"
 #include "material/subsurface.h"
+#include "material/thin_film.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
 
@@ -27,7 +28,7 @@ enum bsdf_flags {
     BSDF_LAMBERT = 32,  /* f is the same for all directions */
     BSDF_EXPONENT = 64, /* it has one */
     BSDF_ROUGH = 128,   /* of layered materials, in rough_lobes.c */
-    BSDF_TINTED = 256,  /* f has a colour beside the weight, that of Fresnel's reflection by metals */
+    BSDF_TINTED = 256,  /* f has a colour beside the weight: Fresnel's shares of metals and thin films */
     BSDF_DIFFUSE = 512, /* render layers count it as diffuse */
     BSDF_BELOW = 1024,  /* light comes out elsewhere: f and pdf are 0 */
 };
@@ -53,6 +54,9 @@ enum bsdf_flags {
     X(LOBE_METAL, "metal", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                      \
     X(LOBE_GLASS, "glass", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                  \
     X(LOBE_PANE, "pane", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                    \
+    X(LOBE_FILM, "film", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                        \
+    X(LOBE_FILM_GLASS, "glass below a film", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS | BSDF_TINTED)                  \
+    X(LOBE_FILM_PANE, "pane below a film", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS | BSDF_TINTED)                    \
     X(LOBE_FACETS_MULTIPLE, "facets, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                             \
     X(LOBE_FACETS_THROUGH, "facets through, multiple", BSDF_ROUGH | BSDF_TRANSMITS)
 #define LOBES(X) SIMPLE_LOBES(X) ROUGH_LOBES(X)
@@ -113,6 +117,7 @@ struct bsdf {
     const struct medium_stack *behind; /* if light passes other surfaces too: the media behind them all; else NULL */
     bool passes;                       /* some light enters the solid or passes the thin wall */
     double roughness;                  /* if it passes: that of the boundary, 2 where some light is diffuse */
+    struct thin_film film;             /* over the facets of lobes with a film; else undefined */
     struct bsdf_facets facets[BSDF_FACETS]; /* those that lobes refer to */
     struct subsurface subsurface;           /* of LOBE_SUBSURFACE */
 };

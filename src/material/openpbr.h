@@ -22,7 +22,8 @@ struct openpbr {
     struct colour coat_colour;
     double fuzz_weight, fuzz_roughness;
     struct colour fuzz_colour;
-    bool deep; /* transmission_depth is above 0: the colour is that of the inside */
+    double film_weight, film_thickness, film_ior; /* the thickness in micrometres */
+    bool deep;                                    /* transmission_depth is above 0: the colour is that of the inside */
     bool thin_walled;
     bool classic;                      /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */
     struct vec3 tangent, coat_tangent; /* in the world; 0: along u */

@@ -232,7 +232,8 @@ static double layers_specular(const struct surface_material *surface) {
     double base = dielectric_fresnel_average(1 / ior), coat = dielectric_fresnel_average(1 / v->coat_ior);
     if (surface_has_texture(surface, INPUT_METALNESS) || surface_has_texture(surface, INPUT_REFRACT))
         return 1;
-    if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT))
+    if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT) ||
+        v->film_weight > 0 || surface_has_texture(surface, INPUT_FILM_WEIGHT))
         base = fmax(base, 0.04);
     if (!surface_has_texture(surface, INPUT_KS))
         base *= colour_max_abs(surface->phong.ks);

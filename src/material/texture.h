@@ -137,7 +137,9 @@ struct phong {
     X(INPUT_COAT_DARKENING, "coat_darkening", false)                                                                   \
     X(INPUT_FUZZ_WEIGHT, "fuzz_weight", false)                                                                         \
     X(INPUT_FUZZ_COLOUR, "fuzz_color", true)                                                                           \
-    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)
+    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)                                                                   \
+    X(INPUT_FILM_WEIGHT, "thin_film_weight", false)                                                                    \
+    X(INPUT_FILM_THICKNESS, "thin_film_thickness", false)
 #define MATERIAL_INPUTS(X)                                                                                             \
     X(INPUT_KD, "kd", true)                                                                                            \
     X(INPUT_KS, "ks", true)                                                                                            \

@@ -130,9 +130,12 @@ static const struct script_parameter openpbr_parameters[] = {
     [EMISSION_LUMINANCE] = {"emission_luminance", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0",
                             "Emitted light, below coat and fuzz; 1 means radiance 1."},
     [EMISSION_COLOUR] = TINT("emission_color", "{1, 1, 1}", "Its colour."),
-    [THIN_FILM_WEIGHT] = LATER("thin_film_weight", KIND_NUMBER, "0"),
-    [THIN_FILM_THICKNESS] = LATER("thin_film_thickness", KIND_NUMBER, "0.5"),
-    [THIN_FILM_IOR] = LATER("thin_film_ior", KIND_NUMBER, "1.4"),
+    [THIN_FILM_WEIGHT] =
+        SHARE("thin_film_weight", "0", "Share of the base with a film that shows colours of interference."),
+    [THIN_FILM_THICKNESS] = {"thin_film_thickness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0.5",
+                             "Its thickness in micrometres; 0: no film."},
+    [THIN_FILM_IOR] = {"thin_film_ior", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1.4",
+                       "Its index of refraction."},
     [GEOMETRY_OPACITY] = SHARE("geometry_opacity", "1", "Opacity of the surface; below 1 it has holes."),
     [GEOMETRY_THIN_WALLED] = {"geometry_thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
                               "Whether the surface is a wall without thickness: nothing is inside."},
@@ -159,7 +162,7 @@ static bool is_there(const struct script_value *args, struct error *error) {
     static const struct {
         int parameter;
         bool colour;
-    } later[] = {{THIN_FILM_WEIGHT, false}, {TRANSMISSION_DISPERSION_SCALE, false}, {GEOMETRY_COAT_NORMAL, false}};
+    } later[] = {{TRANSMISSION_DISPERSION_SCALE, false}, {GEOMETRY_COAT_NORMAL, false}};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
         const struct script_value *value = &args[later[i].parameter];
         bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
@@ -255,6 +258,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {FUZZ_WEIGHT, INPUT_FUZZ_WEIGHT, true},
                 {FUZZ_COLOUR, INPUT_FUZZ_COLOUR, false},
                 {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
+                {THIN_FILM_WEIGHT, INPUT_FILM_WEIGHT, true},
+                {THIN_FILM_THICKNESS, INPUT_FILM_THICKNESS, false},
                 {EMISSION_COLOUR, INPUT_EMISSION, false},
                 {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
     /* A texture of each input. */
@@ -324,6 +329,9 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->fuzz_weight = args[FUZZ_WEIGHT].number;
     out->fuzz_colour = colour_or(&args[FUZZ_COLOUR], out->fuzz_colour);
     out->fuzz_roughness = number_or(&args[FUZZ_ROUGHNESS], out->fuzz_roughness);
+    out->film_weight = args[THIN_FILM_WEIGHT].number;
+    out->film_thickness = number_or(&args[THIN_FILM_THICKNESS], out->film_thickness);
+    out->film_ior = number_or(&args[THIN_FILM_IOR], out->film_ior);
     out->classic = args[OPENPBR_CLASSIC].boolean;
     out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
     out->tangent = args[GEOMETRY_TANGENT].vector;

@@ -341,6 +341,8 @@ static void *field_of(struct surface_inputs *inputs, enum material_input input, 
     case INPUT_SUBSURFACE_COLOUR:
     case INPUT_SUBSURFACE_RADIUS:
     case INPUT_COAT_WEIGHT:
+    case INPUT_FILM_WEIGHT:
+    case INPUT_FILM_THICKNESS:
     case INPUT_COAT_COLOUR:
     case INPUT_COAT_ROUGHNESS:
     case INPUT_COAT_ANISOTROPY:
