@@ -43,7 +43,7 @@ static struct view view_make(double lean, double degrees, double alpha, double e
 }
 
 static bool is_pane(enum lobe_kind kind) {
-    return kind == LOBE_PANE || kind == LOBE_FILM_PANE;
+    return kind == LOBE_PANE || kind == LOBE_FILM_PANE || kind == LOBE_DIFFUSE_THROUGH;
 }
 
 /* Facets that are wider along one tangent than along the other, as the kind of lobe needs them. */
@@ -569,7 +569,7 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }
-    for (int i = 0; i < 64; i++) {
+    for (int i = 0; i < 128; i++) {
         struct openpbr numbers = openpbr_defaults();
         struct material layered = {.kind = MATERIAL_OPENPBR, .depth = 1, .openpbr = &numbers};
         struct hit hit = hit_at(30, true);
@@ -581,7 +581,8 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         numbers.base_metalness = i & 8 ? 0.5 : 0;
         numbers.base_diffuse_roughness = numbers.fuzz_weight = i & 16 ? 0.5 : 0;
         numbers.film_weight = i & 32 ? 1 : 0;
-        surface_eval(&layered, &hit, NULL, NULL, &bsdf);
+        numbers.subsurface_weight = i & 64 ? 0.5 : 0;
+        surface_eval(&layered, &hit, NULL, &(struct material_context){.walks = true}, &bsdf);
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }
