@@ -545,8 +545,10 @@ static void obey(struct gui *gui, const struct window_order *order, int descript
         show_page(gui, order->kind == ORDER_OPEN);
         return;
     case ORDER_PICTURE:
-    case ORDER_OVERLAY:
-        gui_picture_set_layer(gui, order->kind == ORDER_OVERLAY, order, descriptor);
+        gui_picture_attach(gui, order, descriptor);
+        return;
+    case ORDER_LINES:
+        gui_picture_take_lines(gui, order);
         return;
     case ORDER_DRAW:
         gui_picture_draw(gui, order);

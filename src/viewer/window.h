@@ -1,52 +1,37 @@
-/* The interface to a window: it shows a picture with a drawing over it, and reports input. The driver
- * decides on the library (SDL 2 in main_gui.c); tests have their own driver. All positions are pixels of the
- * screen, from the upper left corner of the window. */
+/* The interface to a window: it shows a picture with lines over it, has widgets for everything else, and reports input.
+ * The driver of window_channel.c has the window in another process; tests have their own. All positions are pixels of
+ * the screen, from the upper left corner of the place for the picture. */
 #ifndef GRAY_VIEWER_WINDOW_H
 #define GRAY_VIEWER_WINDOW_H
 
 #include "base/error.h"
 #include "inspect/node_list.h"
 #include "viewer/actions.h"
+#include "viewer/fly_camera.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 enum window_event_kind {
     WINDOW_CLOSE,
-    WINDOW_KEY,     /* key; down or up; repeats are left out */
-    WINDOW_MOVE,    /* x, y: position of the mouse; dx, dy: its motion, also while it is grabbed */
+    WINDOW_KEY,     /* the key that flies, `key`, is down or up; repeats are left out */
+    WINDOW_MOVE,    /* x, y: position of the mouse; dx, dy: its motion */
     WINDOW_WHEEL,   /* y: steps away from the user */
     WINDOW_PRESS,   /* button at x, y */
     WINDOW_RELEASE, /* the same */
-    WINDOW_LEAVE,   /* the window has lost the keyboard: no key is pressed */
-    WINDOW_SIZE,    /* x, y: the size of the window in pixels; density: pixels per dot of a letter */
+    WINDOW_LEAVE,   /* the picture has lost the keyboard: no key is pressed */
+    WINDOW_SIZE,    /* x, y: the size for the picture; density: pixels per dot of the desktop */
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
-
-/* Letters and digits are their own small ASCII codes. */
-enum window_key {
-    WINDOW_ESCAPE = 256,
-    WINDOW_SPACE,
-    WINDOW_SHIFT,
-    WINDOW_CONTROL,
-    WINDOW_ARROW_UP,
-    WINDOW_ARROW_DOWN,
-    WINDOW_ARROW_LEFT,
-    WINDOW_ARROW_RIGHT,
-    WINDOW_HOME,
-    WINDOW_DELETE,
-    WINDOW_PAGE_UP,
-    WINDOW_PAGE_DOWN,
-    WINDOW_TAB,
-};
 enum { WINDOW_LEFT = 1, WINDOW_MIDDLE = 2, WINDOW_RIGHT = 4 };
 
 struct window_event {
     enum window_event_kind kind;
-    int key, button;
+    enum fly_camera_key key;
+    int button;
     bool down, control, shift; /* control, shift: held */
     double x, y, dx, dy, density;
     enum window_action action;
@@ -56,7 +41,7 @@ struct window_event {
     struct node_query node;
 };
 
-/* What a window with widgets shows in them. */
+/* What the window shows in its widgets. */
 struct window_status {
     char file[256], state[64], figures[288], frame[64];
     char message[512], notice[512];                    /* an error that stays; a line that goes away by itself */
@@ -92,36 +77,44 @@ struct window_form {
     struct window_field fields[FORM_FIELDS];
 };
 
+/* A line over the picture. */
+enum line_colour {
+    LINE_COLOUR_SELECTED,
+    LINE_COLOUR_LIGHT,
+    LINE_COLOUR_FAINT,
+    LINE_COLOUR_X,
+    LINE_COLOUR_Y,
+    LINE_COLOUR_Z
+};
+struct window_line {
+    float x0, y0, x1, y1;
+    enum line_colour colour;
+};
+enum { WINDOW_LINES = 8192 }; /* at most */
+
 struct window_content {
     const uint8_t *picture; /* 3 bytes per pixel, rows from the top */
     uint32_t width, height;
-    bool picture_changed;
     int left, top, shown_width, shown_height; /* where the picture goes */
-    const uint8_t *overlay;                   /* over all of the window: red, green, blue, opacity */
-    uint32_t window_width, window_height;
-    bool overlay_changed;
-    /* Not 0: a picture of this size begins, and the window should get its size unless the user has chosen another. */
-    uint32_t fit_width, fit_height;
+    const struct window_line *lines;
+    uint32_t line_count;
 };
 
 struct window_driver {
     void *context;
-    /* Opens a window for a picture of this size; its first event is a WINDOW_SIZE. */
-    bool (*open)(void *context, uint32_t width, uint32_t height, const char *title, struct error *error);
-    void (*show)(void *context, const struct window_content *frame);
-    bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
-    void (*title)(void *context, const char *text);
-    void (*grab)(void *context, bool on); /* the mouse is hidden and kept inside the window */
-    void (*full_screen)(void *context);   /* on, or off again */
+    /* Opens the window, or takes the open one for another scene; its first event is a WINDOW_SIZE. */
+    bool (*open)(void *context, const char *title, struct error *error);
     void (*close)(void *context);
-    /* Becomes readable with an event; NULL: the window must be polled often. */
-    int (*descriptor)(void *context);
-    /* A window with widgets of its own; NULL: all is drawn over the picture. */
+    bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
+    int (*descriptor)(void *context);                        /* becomes readable with an event; or -1 */
+    void (*show)(void *context, const struct window_content *content);
     void (*status)(void *context, const struct window_status *status);
     void (*form)(void *context, const struct window_form *form);
     void (*trace)(void *context, const char *text); /* of a pixel */
     /* Rows that were wanted; query NULL: the tree is another one, and no row is known. */
     void (*nodes)(void *context, const struct node_query *query, const struct node_rows *rows);
+    void (*fly)(void *context, bool on); /* letters move the camera */
+    void (*full_screen)(void *context);  /* on, or off again */
 };
 
 #endif

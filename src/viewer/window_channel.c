@@ -8,34 +8,34 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Memory of a layer. */
+/* The memory of the picture. */
 
 static uint32_t across(uint32_t pixels) {
     return (pixels + WINDOW_TILE - 1) / WINDOW_TILE;
 }
 
-uint32_t window_layer_tiles(const struct window_layer *layer) {
-    return across(layer->width) * across(layer->height);
+uint32_t window_picture_tiles(const struct window_picture *picture) {
+    return across(picture->width) * across(picture->height);
 }
 
-_Atomic uint32_t *window_layer_numbers(const struct window_layer *layer) {
-    return layer->memory.block;
+_Atomic uint32_t *window_picture_numbers(const struct window_picture *picture) {
+    return picture->memory.block;
 }
 
-uint8_t *window_layer_pixels(const struct window_layer *layer) {
-    return (uint8_t *)layer->memory.block + window_layer_tiles(layer) * sizeof(uint32_t);
+uint8_t *window_picture_pixels(const struct window_picture *picture) {
+    return (uint8_t *)picture->memory.block + window_picture_tiles(picture) * sizeof(uint32_t);
 }
 
-static size_t layer_size(const struct window_layer *layer) {
-    return window_layer_tiles(layer) * sizeof(uint32_t) + (size_t)layer->width * layer->height * layer->bytes;
+static size_t memory_size(const struct window_picture *picture) {
+    return window_picture_tiles(picture) * sizeof(uint32_t) + (size_t)3 * picture->width * picture->height;
 }
 
-bool window_layer_attach(struct window_layer *layer, uint32_t width, uint32_t height, int descriptor) {
+bool window_picture_attach(struct window_picture *picture, uint32_t width, uint32_t height, int descriptor) {
     struct error ignored;
-    share_destroy(&layer->memory);
-    layer->width = width;
-    layer->height = height;
-    return share_attach(&layer->memory, descriptor, layer_size(layer), &ignored);
+    share_destroy(&picture->memory);
+    picture->width = width;
+    picture->height = height;
+    return share_attach(&picture->memory, descriptor, memory_size(picture), &ignored);
 }
 
 /* Orders and notes. */
@@ -57,9 +57,11 @@ bool window_send_order(struct channel *channel, const struct window_order *order
     case ORDER_TRACE:
         size += strlen(order->body.text) + 1;
         break;
+    case ORDER_LINES:
+        size += order->count * sizeof *order->body.lines;
+        break;
     case ORDER_CLOSE:
     case ORDER_PICTURE:
-    case ORDER_OVERLAY:
     case ORDER_DRAW:
     case ORDER_FULL_SCREEN:
     case ORDER_FLY:
@@ -79,15 +81,18 @@ bool window_send_note(struct channel *channel, enum window_note_kind kind, const
 
 /* The driver. */
 
+static void send(struct window_channel *window, const struct window_order *order, int descriptor) {
+    window->closed = window->closed || !window_send_order(&window->channel, order, descriptor);
+}
+
 static void send_kind(struct window_channel *window, enum window_order_kind kind, bool on, const char *text) {
     struct window_order order = {.kind = kind, .on = on};
     (void)snprintf(order.body.text, sizeof order.body.text, "%s", text);
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+    send(window, &order, -1);
 }
 
-static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+static bool open_window(void *context, const char *title, struct error *error) {
     struct window_channel *window = context;
-    (void)width, (void)height;
     window->empty = title[0] == '\0';
     window->drawn.kind = ORDER_OPEN;
     send_kind(window, ORDER_OPEN, true, title);
@@ -99,62 +104,74 @@ static void close_window(void *context) {
 }
 
 /* Another size has other memory. */
-static bool fit_layer(struct window_channel *window, struct window_layer *layer, const uint32_t size[2],
-                      enum window_order_kind kind) {
-    struct window_order order = {.kind = kind, .width = size[0], .height = size[1]};
+static bool fit_picture(struct window_channel *window, uint32_t width, uint32_t height) {
+    struct window_picture *picture = &window->picture;
+    struct window_order order = {.kind = ORDER_PICTURE, .width = width, .height = height};
     struct error ignored;
-    if (layer->memory.block && layer->width == size[0] && layer->height == size[1])
+    if (picture->memory.block && picture->width == width && picture->height == height)
         return true;
-    share_destroy(&layer->memory);
-    layer->width = size[0];
-    layer->height = size[1];
-    if (!share_create(&layer->memory, layer_size(layer), &ignored))
+    share_destroy(&picture->memory);
+    picture->width = width;
+    picture->height = height;
+    if (!share_create(&picture->memory, memory_size(picture), &ignored))
         return false;
-    window->closed = window->closed || !window_send_order(&window->channel, &order, layer->memory.descriptor);
+    send(window, &order, picture->memory.descriptor);
     return true;
 }
 
 /* Copies the tiles that differ. True: there are some. */
-static bool update_layer(struct window_layer *layer, const uint8_t *from) {
-    uint8_t *to = window_layer_pixels(layer);
-    size_t row = (size_t)layer->width * layer->bytes;
+static bool update_picture(struct window_picture *picture, const uint8_t *from) {
+    uint8_t *to = window_picture_pixels(picture);
     bool any = false;
-    for (uint32_t tile = 0; tile < window_layer_tiles(layer); tile++) {
-        uint32_t x = tile % across(layer->width) * WINDOW_TILE, y = tile / across(layer->width) * WINDOW_TILE;
-        uint32_t width = layer->width - x < WINDOW_TILE ? layer->width - x : WINDOW_TILE;
+    for (uint32_t tile = 0; tile < window_picture_tiles(picture); tile++) {
+        uint32_t x = tile % across(picture->width) * WINDOW_TILE, y = tile / across(picture->width) * WINDOW_TILE;
+        uint32_t width = picture->width - x < WINDOW_TILE ? picture->width - x : WINDOW_TILE;
         bool changed = false;
-        for (uint32_t v = y; v < layer->height && v < y + WINDOW_TILE; v++) {
-            size_t at = v * row + (size_t)x * layer->bytes, bytes = (size_t)width * layer->bytes;
+        for (uint32_t v = y; v < picture->height && v < y + WINDOW_TILE; v++) {
+            size_t at = 3 * ((size_t)v * picture->width + x), bytes = (size_t)3 * width;
             if (memcmp(to + at, from + at, bytes) == 0)
                 continue;
             memcpy(to + at, from + at, bytes);
             changed = true;
         }
         if (changed)
-            atomic_fetch_add_explicit(&window_layer_numbers(layer)[tile], 1, memory_order_release);
+            atomic_fetch_add_explicit(&window_picture_numbers(picture)[tile], 1, memory_order_release);
         any = any || changed;
     }
     return any;
 }
 
-static void show_frame(void *context, const struct window_content *frame) {
+/* True: they are others than before. */
+static bool update_lines(struct window_channel *window, const struct window_content *content) {
+    const uint32_t count = content->line_count;
+    if (count == window->drawn.count &&
+        (count == 0 || memcmp(window->lines, content->lines, count * sizeof *content->lines) == 0))
+        return false;
+    memcpy(window->lines, content->lines, count * sizeof *content->lines);
+    for (uint32_t first = 0; first < count; first += LINES_PER_ORDER) {
+        uint32_t part = count - first < LINES_PER_ORDER ? count - first : LINES_PER_ORDER;
+        struct window_order order = {.kind = ORDER_LINES, .index = first, .count = part};
+        memcpy(order.body.lines, content->lines + first, part * sizeof *content->lines);
+        send(window, &order, -1);
+    }
+    return true;
+}
+
+static void show_content(void *context, const struct window_content *content) {
     struct window_channel *window = context;
-    const uint32_t size[2] = {frame->width, frame->height}, over[2] = {frame->window_width, frame->window_height};
     struct window_order order = {.kind = ORDER_DRAW,
-                                 .left = frame->left,
-                                 .top = frame->top,
-                                 .shown_width = frame->shown_width,
-                                 .shown_height = frame->shown_height};
-    window->picture.bytes = 3;
-    window->overlay.bytes = 4;
-    bool changed = memcmp(&order, &window->drawn, sizeof order - sizeof order.body) != 0;
-    memcpy(&window->drawn, &order, sizeof window->drawn - sizeof window->drawn.body);
-    if (fit_layer(window, &window->picture, size, ORDER_PICTURE))
-        changed = update_layer(&window->picture, frame->picture) || changed;
-    if (frame->overlay && frame->overlay_changed && fit_layer(window, &window->overlay, over, ORDER_OVERLAY))
-        changed = update_layer(&window->overlay, frame->overlay) || changed;
+                                 .count = content->line_count,
+                                 .left = content->left,
+                                 .top = content->top,
+                                 .shown_width = content->shown_width,
+                                 .shown_height = content->shown_height};
+    bool changed =
+        update_lines(window, content) || memcmp(&order, &window->drawn, offsetof(struct window_order, body)) != 0;
+    memcpy(&window->drawn, &order, offsetof(struct window_order, body));
+    if (fit_picture(window, content->width, content->height))
+        changed = update_picture(&window->picture, content->picture) || changed;
     if (changed)
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+        send(window, &order, -1);
 }
 
 static int descriptor_of(void *context) {
@@ -204,11 +221,7 @@ static bool poll_event(void *context, struct window_event *event) {
     return note.kind == NOTE_EVENT || note.kind == NOTE_OPEN_SCENE;
 }
 
-static void set_title(void *context, const char *text) {
-    (void)context, (void)text; /* the status has it */
-}
-
-static void set_grab(void *context, bool on) {
+static void let_fly(void *context, bool on) {
     send_kind(context, ORDER_FLY, on, "");
 }
 
@@ -222,7 +235,7 @@ static void send_status(void *context, const struct window_status *status) {
     if (memcmp(&window->status, status, sizeof *status) == 0)
         return;
     window->status = *status;
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+    send(window, &order, -1);
 }
 
 static void send_form(void *context, const struct window_form *form) {
@@ -232,14 +245,14 @@ static void send_form(void *context, const struct window_form *form) {
         struct window_order order = {.kind = ORDER_FIELD, .index = i, .body.field = form->fields[i]};
         if (!other && memcmp(&form->fields[i], &window->form.fields[i], sizeof form->fields[i]) == 0)
             continue;
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+        send(window, &order, -1);
         sent = true;
     }
     window->form = *form;
     struct window_order order = {.kind = ORDER_FORM, .index = form->count, .subject = form->subject};
     (void)snprintf(order.body.text, sizeof order.body.text, "%s", form->title);
     if (sent)
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+        send(window, &order, -1);
 }
 
 static void send_trace(void *context, const char *text) {
@@ -256,23 +269,22 @@ static void send_nodes(void *context, const struct node_query *query, const stru
         order.body.nodes.query = *query;
         order.body.nodes.rows = *rows;
     }
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+    send(window, &order, -1);
 }
 
 struct window_driver window_channel_driver(struct window_channel *window) {
     return (struct window_driver){.context = window,
                                   .open = open_window,
-                                  .show = show_frame,
-                                  .poll = poll_event,
-                                  .title = set_title,
-                                  .grab = set_grab,
-                                  .full_screen = turn_full_screen,
                                   .close = close_window,
+                                  .poll = poll_event,
                                   .descriptor = descriptor_of,
+                                  .show = show_content,
                                   .status = send_status,
                                   .form = send_form,
                                   .trace = send_trace,
-                                  .nodes = send_nodes};
+                                  .nodes = send_nodes,
+                                  .fly = let_fly,
+                                  .full_screen = turn_full_screen};
 }
 
 bool window_channel_wait(struct window_channel *window, struct error *error) {
@@ -297,5 +309,4 @@ bool window_channel_next_scene(struct window_channel *window) {
 void window_channel_destroy(struct window_channel *window) {
     channel_close(&window->channel);
     share_destroy(&window->picture.memory);
-    share_destroy(&window->overlay.memory);
 }

@@ -12,25 +12,26 @@
 
 enum { WINDOW_TILE = 128 };
 
-/* The picture, or what is drawn over it, in memory that both processes map: the numbers of the tiles, then the pixels.
- */
-struct window_layer {
+/* The picture in memory that both processes map: the numbers of the tiles, then the pixels, of 3 bytes. */
+struct window_picture {
     struct share memory;
-    uint32_t width, height, bytes; /* bytes: of a pixel, 3 or 4 */
+    uint32_t width, height;
 };
-uint32_t window_layer_tiles(const struct window_layer *layer);
-_Atomic uint32_t *window_layer_numbers(const struct window_layer *layer);
-uint8_t *window_layer_pixels(const struct window_layer *layer);
+uint32_t window_picture_tiles(const struct window_picture *picture);
+_Atomic uint32_t *window_picture_numbers(const struct window_picture *picture);
+uint8_t *window_picture_pixels(const struct window_picture *picture);
 /* Maps the memory of the other process, whose descriptor it takes over. */
-bool window_layer_attach(struct window_layer *layer, uint32_t width, uint32_t height, int descriptor);
+bool window_picture_attach(struct window_picture *picture, uint32_t width, uint32_t height, int descriptor);
 
+enum { LINES_PER_ORDER = 512 };
 /* What the window is to do. */
 enum window_order_kind {
     ORDER_OPEN,    /* a picture begins, or a script: text is its title */
     ORDER_CLOSE,   /* no scene is open */
-    ORDER_PICTURE, /* the memory of a layer: picture, or overlay; width, height, with the descriptor */
-    ORDER_OVERLAY,
-    ORDER_DRAW,   /* the layers may have changed; the picture goes to left, top, shown_width, shown_height */
+    ORDER_PICTURE, /* its memory: width, height, with the descriptor */
+    ORDER_LINES,   /* count of them, from `index` on */
+    ORDER_DRAW,   /* picture and lines may have changed; it goes to left, top, shown_width, shown_height; count of lines
+                   */
     ORDER_STATUS, /* status */
     ORDER_FORM,   /* subject, count and title of the form; its fields have come before */
     ORDER_FIELD,  /* the field with this index */
@@ -41,7 +42,7 @@ enum window_order_kind {
 };
 struct window_order {
     enum window_order_kind kind;
-    uint32_t width, height, index;
+    uint32_t width, height, index, count;
     int left, top, shown_width, shown_height;
     bool on;
     uint64_t subject;
@@ -52,6 +53,7 @@ struct window_order {
             struct node_query query;
             struct node_rows rows;
         } nodes;
+        struct window_line lines[LINES_PER_ORDER];
         char text[MESSAGE_TEXT_LIMIT - 256];
     } body;
 };
@@ -69,8 +71,9 @@ bool window_send_note(struct channel *channel, enum window_note_kind kind, const
 /* The viewer's side. Zero value with a closed channel: no window. */
 struct window_channel {
     struct channel channel;
-    struct window_layer picture, overlay;
-    struct window_order drawn; /* as sent last, without its body; so are the next three */
+    struct window_picture picture;
+    struct window_order drawn; /* as sent last, without its body; so are the next four */
+    struct window_line lines[WINDOW_LINES];
     struct window_status status;
     struct window_form form;
     size_t trace_length;

@@ -5,6 +5,7 @@
 
 #include <poll.h>
 #include <string.h>
+#include <unistd.h>
 
 /* The next order, or false: there is none. */
 static bool next_order(struct channel *channel, struct window_order *order, int *descriptor) {
@@ -23,8 +24,8 @@ static int count_orders(struct channel *channel, enum window_order_kind kind) {
     while (next_order(channel, &order, &descriptor)) {
         count += order.kind == kind;
         if (descriptor >= 0) {
-            struct window_layer none = {.bytes = 4};
-            (void)window_layer_attach(&none, 1, 1, descriptor);
+            struct window_picture none = {0};
+            (void)window_picture_attach(&none, 1, 1, descriptor);
             share_destroy(&none.memory);
         }
     }
@@ -36,7 +37,7 @@ TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     static uint8_t picture[3 * WIDE * HIGH];
     static struct window_channel window;
     static struct window_order order;
-    struct window_layer seen = {.bytes = 3};
+    struct window_picture seen = {0};
     struct channel ends[2];
     struct error error;
     int descriptor = -1;
@@ -46,16 +47,50 @@ TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     struct window_content frame = {.picture = picture, .width = WIDE, .height = HIGH, .shown_width = WIDE};
     driver.show(driver.context, &frame);
     CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_PICTURE && descriptor >= 0);
-    CHECK(window_layer_attach(&seen, order.width, order.height, descriptor));
-    CHECK_EQ_INT(window_layer_tiles(&seen), TILES);
+    CHECK(window_picture_attach(&seen, order.width, order.height, descriptor));
+    CHECK_EQ_INT(window_picture_tiles(&seen), TILES);
     CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_DRAW && order.shown_width == WIDE);
     /* The last pixel is in the last tile. */
     picture[sizeof picture - 1] = 7;
     driver.show(driver.context, &frame);
     for (uint32_t i = 0; i < TILES; i++)
-        CHECK_EQ_INT(atomic_load(&window_layer_numbers(&seen)[i]), i == TILES - 1);
-    CHECK(memcmp(window_layer_pixels(&seen), picture, sizeof picture) == 0);
+        CHECK_EQ_INT(atomic_load(&window_picture_numbers(&seen)[i]), i == TILES - 1);
+    CHECK(memcmp(window_picture_pixels(&seen), picture, sizeof picture) == 0);
     share_destroy(&seen.memory);
+    window_channel_destroy(&window);
+    channel_close(&ends[1]);
+}
+
+TEST(window_channel_sends_many_lines_in_parts_and_only_when_they_change) {
+    enum { COUNT = 2 * LINES_PER_ORDER + 7 };
+    static struct window_line lines[COUNT];
+    static struct window_channel window;
+    static struct window_order order;
+    static const uint8_t picture[3];
+    struct channel ends[2];
+    struct error error;
+    int descriptor = -1;
+    uint32_t seen = 0;
+    CHECK(channel_pair(ends, &error));
+    window = (struct window_channel){.channel = ends[0]};
+    struct window_driver driver = window_channel_driver(&window);
+    for (int i = 0; i < COUNT; i++)
+        lines[i].x0 = (float)i;
+    const struct window_content content = {
+        .picture = picture, .width = 1, .height = 1, .lines = lines, .line_count = COUNT};
+    driver.show(driver.context, &content);
+    while (next_order(&ends[1], &order, &descriptor) && order.kind != ORDER_DRAW) {
+        for (uint32_t i = 0; order.kind == ORDER_LINES && i < order.count; i++)
+            CHECK(order.body.lines[i].x0 >= (float)seen && order.body.lines[i].x0 <= (float)seen++);
+        if (descriptor >= 0)
+            (void)close(descriptor);
+    }
+    CHECK(seen == COUNT && order.kind == ORDER_DRAW && order.count == COUNT);
+    driver.show(driver.context, &content);
+    CHECK(!next_order(&ends[1], &order, &descriptor));
+    lines[COUNT - 1].y1 = 1;
+    driver.show(driver.context, &content);
+    CHECK_EQ_INT(count_orders(&ends[1], ORDER_LINES), 3);
     window_channel_destroy(&window);
     channel_close(&ends[1]);
 }
