@@ -38,10 +38,10 @@ static bool start(struct gtk_process *gtk, struct error *error) {
     return true;
 }
 
-static bool open_window(void *context, const char *title, struct error *error) {
+static bool open_window(void *context, struct error *error) {
     struct gtk_process *gtk = context;
     return (gtk->process > 0 || start(gtk, error)) && window_channel_wait(&gtk->window, error) &&
-           gtk->driver.open(&gtk->window, title, error);
+           gtk->driver.open(&gtk->window, error);
 }
 
 int main(int argc, char **argv) {

@@ -87,7 +87,8 @@ static void disable_output(struct options *options) {
 static bool open_first(const struct window_driver *window, const struct options *options) {
     bool empty = options->script_count == 0;
     struct error error;
-    bool ok = window->open(window->context, empty ? "" : options->scripts[0], &error);
+    window->state->has_scene = !empty;
+    bool ok = window->open(window->context, &error);
     if (!ok)
         (void)fprintf(stderr, "gray: %s\n", error.text);
     else if (empty)

@@ -37,14 +37,13 @@ struct gui {
     GtkSingleSelection *node_selection; /* its model is the tree */
     GPtrArray *open_nodes;              /* the lists of children; not owned */
     struct picture_tiles tiles;
-    struct window_line lines[WINDOW_LINES]; /* over the picture */
-    uint32_t line_count;
-    graphene_rect_t picture_area; /* in pixels of the screen */
-    double mouse_x, mouse_y;      /* in those of the picture's widget, times the scale */
-    GFile *next_scene;            /* the scene to open if the user agrees to lose the edits; else NULL */
-    struct window_status status;
+    struct share memory;       /* of the shared state ... */
+    struct window_state state; /* ... and what it was last */
+    double mouse_x, mouse_y;   /* in those of the picture's widget, times the scale */
+    GFile *next_scene;         /* the scene to open if the user agrees to lose the edits; else NULL */
+
     enum window_key_set key_set;
-    bool flies, updates; /* updates: widgets are set by the program, not by the user */
+    bool updates; /* widgets are set by the program, not by the user */
     struct form_row rows[FORM_FIELDS];
     uint32_t row_count;
     uint64_t form_subject;

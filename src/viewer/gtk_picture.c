@@ -51,16 +51,8 @@ static void make_texture(struct picture_tiles *tiles, uint32_t tile) {
     g_bytes_unref(owned);
 }
 
-void gui_picture_take_lines(struct gui *gui, const struct window_order *order) {
-    if (order->index < WINDOW_LINES && order->count <= MIN(LINES_PER_ORDER, WINDOW_LINES - order->index))
-        memcpy(gui->lines + order->index, order->body.lines, order->count * sizeof *gui->lines);
-}
-
-void gui_picture_draw(struct gui *gui, const struct window_order *order) {
+void gui_picture_draw(struct gui *gui) {
     struct picture_tiles *tiles = &gui->tiles;
-    gui->picture_area = GRAPHENE_RECT_INIT((float)order->left, (float)order->top, (float)order->shown_width,
-                                           (float)order->shown_height);
-    gui->line_count = MIN(order->count, WINDOW_LINES);
     for (uint32_t tile = 0; tile < tiles->count; tile++) {
         uint32_t number = atomic_load_explicit(&window_picture_numbers(&tiles->shared)[tile], memory_order_acquire);
         if (number == tiles->seen[tile] && tiles->textures[tile])
@@ -107,11 +99,11 @@ static void draw_lines(cairo_t *cairo, const struct gui *gui) {
                                         [LINE_COLOUR_Y] = {0.4, 0.85, 0.3},       [LINE_COLOUR_Z] = {0.35, 0.55, 1}};
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
     for (int over = 0; over < 2; over++) {
-        for (uint32_t i = 0; i < gui->line_count; i++) {
-            const struct window_line *line = &gui->lines[i];
+        for (uint32_t i = 0; i < gui->state.line_count; i++) {
+            const struct window_line *line = &gui->state.lines[i];
             cairo_move_to(cairo, (double)line->x0, (double)line->y0);
             cairo_line_to(cairo, (double)line->x1, (double)line->y1);
-            if (i + 1 < gui->line_count && gui->lines[i + 1].colour == line->colour)
+            if (i + 1 < gui->state.line_count && gui->state.lines[i + 1].colour == line->colour)
                 continue;
             const double *colour = colours[line->colour % G_N_ELEMENTS(colours)];
             cairo_set_source_rgba(cairo, over ? colour[0] : 0, over ? colour[1] : 0, over ? colour[2] : 0,
@@ -129,8 +121,10 @@ static void gray_picture_snapshot(GtkWidget *widget, GtkSnapshot *snapshot) {
     graphene_rect_t whole = GRAPHENE_RECT_INIT(0, 0, width, height);
     gtk_snapshot_push_clip(snapshot, &whole);
     gtk_snapshot_append_color(snapshot, &(GdkRGBA){0.1f, 0.1f, 0.1f, 1}, &whole);
-    draw_tiles(snapshot, &gui->tiles, &gui->picture_area, scale);
-    if (gui->line_count > 0) {
+    graphene_rect_t area = GRAPHENE_RECT_INIT((float)gui->state.left, (float)gui->state.top,
+                                              (float)gui->state.shown_width, (float)gui->state.shown_height);
+    draw_tiles(snapshot, &gui->tiles, &area, scale);
+    if (gui->state.line_count > 0) {
         cairo_t *cairo = gtk_snapshot_append_cairo(snapshot, &whole);
         cairo_scale(cairo, 1 / scale, 1 / scale);
         draw_lines(cairo, gui);
@@ -235,7 +229,8 @@ static int held_key(const struct gui *gui, guint value) {
                 {GDK_KEY_e, FLY_UP, true},
                 {GDK_KEY_q, FLY_DOWN, true}};
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
-        if (keys[i].value == (keys[i].letter ? gdk_keyval_to_lower(value) : value) && (gui->flies || !keys[i].letter))
+        if (keys[i].value == (keys[i].letter ? gdk_keyval_to_lower(value) : value) &&
+            (gui->state.flies || !keys[i].letter))
             return (int)keys[i].key;
     }
     return -1;
@@ -269,7 +264,7 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
     (void)keys, (void)code;
-    bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->flies;
+    bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->state.flies;
     int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : -1;
     if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
         send_held_key(gui, held, true);

@@ -56,10 +56,8 @@ static void close_window(struct viewer *viewer) {
     mem_free(viewer->window.drawn);
     viewer_destroy_overlay(viewer);
     viewer_destroy_large(viewer);
-    mem_free(viewer->window.lines.items);
     viewer->window.image = viewer->window.drawn = NULL;
     viewer->window.light = NULL;
-    viewer->window.lines = (struct line_list){0};
     viewer->window.layout = (struct window_layout){0};
     viewer->window.open = false;
 }
@@ -90,10 +88,11 @@ static bool fit_images(struct viewer *viewer, struct error *error) {
     return true;
 }
 
-static bool open_window(struct viewer *viewer, const char *title, struct error *error) {
+static bool open_window(struct viewer *viewer, struct error *error) {
     if (!make_images(viewer, error))
         return false;
-    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, title, error);
+    viewer->window.driver->state->has_scene = true;
+    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, error);
     return viewer->window.open;
 }
 
@@ -107,7 +106,7 @@ bool viewer_open(struct viewer *viewer, const struct window_driver *driver, cons
     (void)snprintf(viewer->request.file, sizeof viewer->request.file, "%s", title);
     viewer->display.tiles = 1;
     fly_camera_begin(&viewer->fly_camera, &camera, &unknown);
-    return open_window(viewer, title, error);
+    return open_window(viewer, error);
 }
 
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
@@ -141,7 +140,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         forget_work(&before);
     viewer_player_begin(viewer, &before);
     resized = resized || viewer->display.tiles != before.display.tiles; /* before: maybe a window without picture */
-    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
+    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, error))
         return false;
     memset(viewer->window.drawn, 0, viewer->display.tiles);
     return true;

@@ -15,12 +15,6 @@
 #include "viewer/preview_messages.h"
 #include "viewer/window.h"
 
-/* Owned by its holder. */
-struct line_list {
-    struct window_line *items;
-    uint32_t count, room;
-};
-
 enum viewer_action {
     VIEWER_NOTHING,
     VIEWER_STOP_PASS,      /* the current pass is obsolete */
@@ -120,9 +114,9 @@ struct viewer_lights {
 
 /* The trace of a pixel. */
 struct viewer_trace {
-    bool requested;   /* of the pixel x, y of the whole picture; it was not sent yet */
-    double x, y;      /* pixels of the whole picture */
-    char text[16384]; /* empty: none is shown */
+    bool requested;          /* of the pixel x, y of the whole picture; it was not sent yet */
+    double x, y;             /* pixels of the whole picture */
+    char text[WINDOW_TRACE]; /* empty: none is shown */
 };
 
 /* What is drawn over the picture (viewer_overlay.c): the render process makes lines of pixels, and the outline. */
@@ -131,7 +125,8 @@ struct viewer_overlay {
     float (*lines)[4];               /* over the image, where has_lines; owned */
     bool has_lines;                  /* lines are visible, possibly those of another view */
     bool lines_fresh, outline_fresh; /* those of the view in full detail, or a failed request */
-    struct line_list outline;        /* in pixels of the picture; empty: there is none, or it is too long */
+    struct window_line *outline;     /* in pixels of the picture; owned */
+    uint32_t outline_count;          /* 0: there is none, or it is too long */
 };
 
 /* The content of the screen, of this picture. */
@@ -208,8 +203,7 @@ struct viewer_window {
     uint8_t *drawn;                /* by tile: the state in which it is on the image, or 0; owned */
     bool dirty;                    /* the image was changed since it was shown */
     struct window_layout layout;
-    struct line_list lines; /* over the picture, in pixels of the window */
-    bool hides_lines;       /* they are not shown */
+    bool hides_lines; /* over the picture */
     struct viewer_notice notice;
     struct viewer_large large;
 };

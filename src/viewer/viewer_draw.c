@@ -153,57 +153,56 @@ static void add_count(char *text, size_t size, double count, const char *what) {
 
 /* The finished share: of the picture itself by its work, with the remaining time once it is known
  * (render/time_estimate.h); coarse ones by their tiles. */
-static void describe_pass(const struct viewer *viewer, struct window_status *status, double now) {
+static void describe_pass(const struct viewer *viewer, struct window_state *state, double now) {
     const struct progress_estimate *estimate =
         viewer->window.control && !viewer->pass.view.plain ? &viewer->window.control->progress_estimate : NULL;
     double share = estimate ? progress_estimate_share(estimate) : -1,
            left = estimate ? progress_estimate_left(estimate, now) : -1;
     char time[48];
-    status->share = share >= 0 ? share : status->share;
+    state->share = share >= 0 ? share : state->share;
     text_duration(left > 0 ? left : 0, time, sizeof time);
-    (void)snprintf(status->state, sizeof status->state, left > 0 ? "%.0f %%%s, %s left" : "%.0f %%%s",
-                   100 * status->share, viewer->pass.view.plain ? " (coarse)" : "", time);
+    (void)snprintf(state->state, sizeof state->state, left > 0 ? "%.0f %%%s, %s left" : "%.0f %%%s", 100 * state->share,
+                   viewer->pass.view.plain ? " (coarse)" : "", time);
 }
 
-static void describe_state(const struct viewer *viewer, struct window_status *status, double now) {
+static void describe_state(const struct viewer *viewer, struct window_state *state, double now) {
     const struct control *control = viewer->window.control;
-    char time[48], *state = status->state;
-    const size_t size = sizeof status->state;
+    char time[48], *words = state->state;
+    const size_t size = sizeof state->state;
     uint32_t step = control ? atomic_load_explicit(&control->build_step, memory_order_relaxed) : 0;
     uint32_t done = viewer->block ? film_tiles_in(&viewer->pass.film, FILM_TILE_DONE) : 0;
     uint32_t count = viewer->block ? film_tile_count(&viewer->pass.film) : 0;
-    status->share = count > 0 ? (double)done / count : viewer->pass.result == RESULT_COMPLETE ? 1 : 0;
+    state->share = count > 0 ? (double)done / count : viewer->pass.result == RESULT_COMPLETE ? 1 : 0;
     /* From what the user has asked for to what the render process does. */
     if (viewer_plays(viewer)) {
-        (void)snprintf(state, size, "playing");
+        (void)snprintf(words, size, "playing");
     } else if (viewer->player.seeking) {
-        (void)snprintf(state, size, "going to frame %u", viewer->player.target);
+        (void)snprintf(words, size, "going to frame %u", viewer->player.target);
     } else if (viewer->pass.halted && viewer->block) {
-        (void)snprintf(state, size, viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%",
-                       100 * status->share);
+        (void)snprintf(words, size, viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * state->share);
     } else if (step > 0) {
-        status->share = 0.001 * atomic_load_explicit(&control->build_done, memory_order_relaxed);
-        (void)snprintf(state, size, "building, step %u: %.0f %%", step, 100 * status->share);
+        state->share = 0.001 * atomic_load_explicit(&control->build_done, memory_order_relaxed);
+        (void)snprintf(words, size, "building, step %u: %.0f %%", step, 100 * state->share);
     } else if (!viewer->block) {
         text_duration(viewer->window.script_began > 0 ? now - viewer->window.script_began : 0, time, sizeof time);
-        (void)snprintf(state, size, viewer->window.waits ? "waiting for a change" : "the script runs, %s", time);
+        (void)snprintf(words, size, viewer->window.waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
-        (void)snprintf(state, size, "building");
+        (void)snprintf(words, size, "building");
     } else if (viewer_is_enlarging(viewer)) {
-        (void)snprintf(state, size, "ready, enlarging: %.0f %%", 100 * status->share);
+        (void)snprintf(words, size, "ready, enlarging: %.0f %%", 100 * state->share);
     } else if (viewer->pass.result == RESULT_COMPLETE) {
-        (void)snprintf(state, size, viewer_is_idle(viewer) ? "ready" : "working");
+        (void)snprintf(words, size, viewer_is_idle(viewer) ? "ready" : "working");
     } else {
-        describe_pass(viewer, status, now);
+        describe_pass(viewer, state, now);
     }
 }
 
 /* Size, rays, triangles, voxels and frames a second, of the last pass; the frame of an animation. */
-static void describe_work(const struct viewer *viewer, struct window_status *status) {
+static void describe_work(const struct viewer *viewer, struct window_state *state) {
     const struct picture_report *report = &viewer->pass.report;
     const struct render_statistics *rays = &report->rays;
     const struct frame *frame = &viewer->request.frame;
-    char *text = status->figures;
+    char *text = state->figures;
     double seconds = rays->render_seconds;
     double traced = (double)rays->camera_rays + (double)rays->reflected_rays + (double)rays->refracted_rays +
                     (double)rays->shadow_rays;
@@ -211,39 +210,38 @@ static void describe_work(const struct viewer *viewer, struct window_status *sta
     double voxels = 1;
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
-    (void)snprintf(text, sizeof status->figures, "%ux%u", viewer->request.width, viewer->request.height);
-    add_count(text, sizeof status->figures, seconds > 0 ? traced / seconds : 0, "rays/s");
-    add_count(text, sizeof status->figures, (double)report->triangles, "triangles");
-    add_count(text, sizeof status->figures, voxels, voxels > 1 ? "voxels" : "voxel");
+    (void)snprintf(text, sizeof state->figures, "%ux%u", viewer->request.width, viewer->request.height);
+    add_count(text, sizeof state->figures, seconds > 0 ? traced / seconds : 0, "rays/s");
+    add_count(text, sizeof state->figures, (double)report->triangles, "triangles");
+    add_count(text, sizeof state->figures, voxels, voxels > 1 ? "voxels" : "voxel");
     double rate = viewer_plays(viewer) ? viewer->player.rate : seconds > 0 ? 1 / seconds : 0;
     size_t used = strlen(text);
-    (void)snprintf(text + used, sizeof status->figures - used, ", %.*f frames/s", rate < 10 ? 2 : rate < 100, rate);
+    (void)snprintf(text + used, sizeof state->figures - used, ", %.*f frames/s", rate < 10 ? 2 : rate < 100, rate);
+    state->frame[0] = '\0';
     if (frame->number > 0)
-        (void)snprintf(status->frame, sizeof status->frame, "frame %*u/%u %7.2f s",
-                       snprintf(NULL, 0, "%u", frame->count), frame->number, frame->count, frame_time(frame));
+        (void)snprintf(state->frame, sizeof state->frame, "frame %*u/%u %7.2f s", snprintf(NULL, 0, "%u", frame->count),
+                       frame->number, frame->count, frame_time(frame));
 }
 
-static void show_status(struct viewer *viewer, double now) {
-    const struct window_driver *driver = viewer->window.driver;
-    const struct viewer_notice *notice = &viewer->window.notice;
-    struct window_status status = {.action_on = viewer_needs_met(viewer),
-                                   .warns = notice->warns,
-                                   .halted = viewer->pass.halted,
-                                   .busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer)),
-                                   .playing = viewer->player.playing,
-                                   .loops = viewer->player.loops,
-                                   .unsaved = viewer->edit.steps.at != viewer->edit.saved_at,
-                                   .frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0,
-                                   .frame_count = viewer->player.count,
-                                   .exposure = viewer->request.settings.tone.exposure};
-    describe_state(viewer, &status, now);
-    describe_work(viewer, &status);
-    (void)snprintf(status.file, sizeof status.file, "%.250s", viewer->request.file);
-    (void)snprintf(status.message, sizeof status.message, "%s", viewer->message);
-    (void)snprintf(status.notice, sizeof status.notice, "%s", notice->text);
-    driver->status(driver->context, &status);
-    driver->trace(driver->context, viewer->trace.text);
-    viewer_show_form(viewer);
+/* What the widgets show. */
+static void describe(struct viewer *viewer, double now) {
+    struct window_state *state = viewer->window.driver->state;
+    state->flies = viewer->input.flies;
+    state->action_on = viewer_needs_met(viewer);
+    state->halted = viewer->pass.halted;
+    state->busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer));
+    state->playing = viewer->player.playing;
+    state->loops = viewer->player.loops;
+    state->unsaved = viewer->edit.steps.at != viewer->edit.saved_at;
+    state->frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0;
+    state->frame_count = viewer->player.count;
+    describe_state(viewer, state, now);
+    describe_work(viewer, state);
+    (void)snprintf(state->file, sizeof state->file, "%.250s", viewer->request.file);
+    (void)snprintf(state->message, sizeof state->message, "%s", viewer->message);
+    (void)snprintf(state->notice, sizeof state->notice, "%s", viewer->window.notice.text);
+    (void)snprintf(state->trace, sizeof state->trace, "%s", viewer->trace.text);
+    viewer_make_form(viewer, &state->form);
 }
 
 /* The window. */
@@ -280,20 +278,17 @@ void viewer_show(struct viewer *viewer, double now) {
     if (due || viewer->display.hud_dirty) {
         viewer->display.hud_dirty = false;
         viewer_make_lines(viewer);
-        show_status(viewer, now);
+        describe(viewer, now);
         viewer->display.figures_at = due ? now : viewer->display.figures_at;
     }
-    viewer->window.driver->show(
-        viewer->window.driver->context,
-        &(struct window_content){.picture = large->shown ? large->image : viewer->window.image,
-                                 .width = large->shown ? large->width : viewer->request.width,
-                                 .height = large->shown ? large->height : viewer->request.height,
-                                 .left = (int)layout->left,
-                                 .top = (int)layout->top,
-                                 .shown_width = (int)layout->shown_width,
-                                 .shown_height = (int)layout->shown_height,
-                                 .lines = viewer->window.lines.items,
-                                 .line_count = viewer->window.lines.count});
+    struct window_state *state = viewer->window.driver->state;
+    state->left = (int)layout->left;
+    state->top = (int)layout->top;
+    state->shown_width = (int)layout->shown_width;
+    state->shown_height = (int)layout->shown_height;
+    viewer->window.driver->show(viewer->window.driver->context, large->shown ? large->image : viewer->window.image,
+                                large->shown ? large->width : viewer->request.width,
+                                large->shown ? large->height : viewer->request.height);
     note_first_picture(viewer);
     viewer->display.shown_at = now;
     viewer->window.dirty = false;

@@ -46,7 +46,6 @@ static void release_keys(struct viewer *viewer) {
 static void fly(struct viewer *viewer, bool on) {
     viewer->input.flies = on;
     release_keys(viewer);
-    viewer->window.driver->fly(viewer->window.driver->context, on);
 }
 
 /* Ends what is going on, from the inside out: flying, the selection and the trace, rendering. */
@@ -201,7 +200,7 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         viewer->window.hides_lines = !viewer->window.hides_lines;
         return;
     case DO_FULL_SCREEN:
-        viewer->window.driver->full_screen(viewer->window.driver->context);
+        viewer->window.driver->state->full_screen = !viewer->window.driver->state->full_screen;
         return;
 
     case DO_RENDER:

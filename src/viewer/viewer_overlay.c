@@ -63,19 +63,6 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
     viewer->window.large.stale = viewer->window.large.shown;
 }
 
-/* Lines beyond the limit, or without memory, are not there. */
-static void add_line(struct line_list *list, struct window_line line) {
-    if (list->count == list->room) {
-        uint32_t room = list->room ? 2 * list->room : 512;
-        struct window_line *more = room <= WINDOW_LINES ? mem_resize_array(list->items, room, sizeof *more) : NULL;
-        if (!more)
-            return;
-        list->items = more;
-        list->room = room;
-    }
-    list->items[list->count++] = line;
-}
-
 /* The outline. */
 
 struct silhouette {
@@ -98,7 +85,10 @@ static bool is_edge(const struct silhouette *s, bool upright, uint32_t across, u
 /* The edges between a pixel that shows the node and one that does not, in runs. There are none at the borders of the
  * picture. An outline of too many runs is none. */
 static void take_outline(struct viewer *viewer, const struct silhouette *s) {
-    struct line_list *list = &viewer->overlay.outline;
+    enum { LIMIT = WINDOW_LINES / 2 };
+    struct viewer_overlay *overlay = &viewer->overlay;
+    if (!overlay->outline)
+        overlay->outline = mem_alloc_zero(LIMIT, sizeof *overlay->outline);
     for (int upright = 0; upright < 2; upright++) {
         uint32_t first = upright ? s->area.x0 : s->area.y0, last = upright ? s->area.x1 : s->area.y1;
         uint32_t end = upright ? viewer->request.width : viewer->request.height;
@@ -108,14 +98,14 @@ static void take_outline(struct viewer *viewer, const struct silhouette *s) {
                 for (run = along; run < to && is_edge(s, upright, across, run);)
                     run++;
                 float a = (float)along, b = (float)run, c = (float)across;
-                if (run > along)
-                    add_line(list, upright ? (struct window_line){c, a, c, b, LINE_COLOUR_SELECTED}
-                                           : (struct window_line){a, c, b, c, LINE_COLOUR_SELECTED});
+                if (run > along && overlay->outline && overlay->outline_count < LIMIT)
+                    overlay->outline[overlay->outline_count++] =
+                        upright ? (struct window_line){c, a, c, b, LINE_COLOUR_SELECTED}
+                                : (struct window_line){a, c, b, c, LINE_COLOUR_SELECTED};
             }
         }
     }
-    if (list->count >= WINDOW_LINES / 2)
-        list->count = 0;
+    overlay->outline_count = overlay->outline_count < LIMIT ? overlay->outline_count : 0;
 }
 
 void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
@@ -135,7 +125,7 @@ void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_req
         struct silhouette s = {buffers.shows, viewer->request.width, overlay->outline};
         s.area.x1 = s.area.x1 < s.width ? s.area.x1 : s.width;
         s.area.y1 = s.area.y1 < viewer->request.height ? s.area.y1 : viewer->request.height;
-        viewer->overlay.outline.count = 0;
+        viewer->overlay.outline_count = 0;
         if (overlay->has_outline)
             take_outline(viewer, &s);
         viewer->overlay.outline_fresh = true;
@@ -150,8 +140,11 @@ struct drawing {
     struct camera_frame frame;
 };
 
+/* Lines beyond the limit are not drawn. */
 static void draw(const struct drawing *drawing, double x0, double y0, double x1, double y1, enum line_colour colour) {
-    add_line(&drawing->viewer->window.lines, (struct window_line){(float)x0, (float)y0, (float)x1, (float)y1, colour});
+    struct window_state *state = drawing->viewer->window.driver->state;
+    if (state->line_count < WINDOW_LINES)
+        state->lines[state->line_count++] = (struct window_line){(float)x0, (float)y0, (float)x1, (float)y1, colour};
 }
 
 /* In short pieces, since a line is not straight in every projection, and may begin behind the camera. */
@@ -207,12 +200,12 @@ static bool draw_outline(const struct drawing *drawing) {
     double zoom = layout->shown_width / viewer->request.width;
     if (!viewer->overlay.outline_fresh || viewer->pass.outdated || viewer->edit.pending.count > 0)
         return false;
-    for (uint32_t i = 0; i < viewer->overlay.outline.count; i++) {
-        const struct window_line *line = &viewer->overlay.outline.items[i];
+    for (uint32_t i = 0; i < viewer->overlay.outline_count; i++) {
+        const struct window_line *line = &viewer->overlay.outline[i];
         draw(drawing, layout->left + (double)line->x0 * zoom, layout->top + (double)line->y0 * zoom,
              layout->left + (double)line->x1 * zoom, layout->top + (double)line->y1 * zoom, LINE_COLOUR_SELECTED);
     }
-    return viewer->overlay.outline.count > 0;
+    return viewer->overlay.outline_count > 0;
 }
 
 static void draw_node(const struct drawing *drawing) {
@@ -291,7 +284,7 @@ static void draw_symbol(const struct drawing *drawing, uint32_t number) {
 
 void viewer_make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
-    viewer->window.lines.count = 0;
+    viewer->window.driver->state->line_count = 0;
     if (!viewer->block || viewer->window.hides_lines || !viewer_camera_frame(viewer, &drawing.frame))
         return;
     if (viewer->edit.selection.kind == SELECTED_NODE)
@@ -305,9 +298,10 @@ void viewer_make_lines(struct viewer *viewer) {
 
 void viewer_destroy_overlay(struct viewer *viewer) {
     mem_free(viewer->overlay.lines);
-    mem_free(viewer->overlay.outline.items);
+    mem_free(viewer->overlay.outline);
     viewer->overlay.lines = NULL;
-    viewer->overlay.outline = (struct line_list){0};
+    viewer->overlay.outline = NULL;
+    viewer->overlay.outline_count = 0;
     viewer->overlay.has_lines = false;
     viewer_invalidate_overlay(viewer);
 }

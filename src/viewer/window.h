@@ -41,17 +41,6 @@ struct window_event {
     struct node_query node;
 };
 
-/* What the window shows in its widgets. */
-struct window_status {
-    char file[256], state[64], figures[288], frame[64];
-    char message[512], notice[512];                    /* an error that stays; a line that goes away by itself */
-    double share;                                      /* of the work, 0 to 1 */
-    uint32_t action_on;                                /* by enum action_need, as bits: what there is */
-    bool warns, halted, busy, playing, loops, unsaved; /* unsaved: edits */
-    uint32_t frame_index, frame_count;
-    double exposure;
-};
-
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
 enum window_field_kind {
     FIELD_TEXT,   /* only shown */
@@ -90,31 +79,38 @@ struct window_line {
     float x0, y0, x1, y1;
     enum line_colour colour;
 };
-enum { WINDOW_LINES = 8192 }; /* at most */
+enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384 };
 
-struct window_content {
-    const uint8_t *picture; /* 3 bytes per pixel, rows from the top */
-    uint32_t width, height;
+/* Everything that the window shows but the picture and the rows of the tree. */
+struct window_state {
+    bool has_scene;                             /* else the page without a scene */
+    bool flies;                                 /* letters move the camera */
+    bool full_screen;                           /* the whole screen */
+    bool halted, busy, playing, loops, unsaved; /* unsaved: edits */
+    char file[256], state[64], figures[288], frame[64];
+    char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
+    double share;                   /* of the work, 0 to 1 */
+    uint32_t action_on;             /* by enum action_need, as bits: what there is */
+    uint32_t frame_index, frame_count;
+    char trace[WINDOW_TRACE];                 /* of a pixel, or empty */
     int left, top, shown_width, shown_height; /* where the picture goes */
-    const struct window_line *lines;
+    struct window_form form;
     uint32_t line_count;
+    struct window_line lines[WINDOW_LINES];
 };
 
 struct window_driver {
     void *context;
+    struct window_state *state; /* what the window shows when it has been published by `show`; the viewer writes it */
     /* Opens the window, or takes the open one for another scene; its first event is a WINDOW_SIZE. */
-    bool (*open)(void *context, const char *title, struct error *error);
+    bool (*open)(void *context, struct error *error);
     void (*close)(void *context);
     bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
     int (*descriptor)(void *context);                        /* becomes readable with an event; or -1 */
-    void (*show)(void *context, const struct window_content *content);
-    void (*status)(void *context, const struct window_status *status);
-    void (*form)(void *context, const struct window_form *form);
-    void (*trace)(void *context, const char *text); /* of a pixel */
+    /* The picture (3 bytes per pixel, rows from the top) and the state. */
+    void (*show)(void *context, const uint8_t *picture, uint32_t width, uint32_t height);
     /* Rows that were wanted; query NULL: the tree is another one, and no row is known. */
     void (*nodes)(void *context, const struct node_query *query, const struct node_rows *rows);
-    void (*fly)(void *context, bool on); /* letters move the camera */
-    void (*full_screen)(void *context);  /* on, or off again */
 };
 
 #endif

@@ -38,36 +38,13 @@ bool window_picture_attach(struct window_picture *picture, uint32_t width, uint3
     return share_attach(&picture->memory, descriptor, memory_size(picture), &ignored);
 }
 
-/* Orders and notes. */
-
-bool window_send_order(struct channel *channel, const struct window_order *order, int descriptor) {
-    size_t size = offsetof(struct window_order, body);
-    switch (order->kind) {
-    case ORDER_STATUS:
-        size += sizeof order->body.status;
-        break;
-    case ORDER_FIELD:
-        size += sizeof order->body.field;
-        break;
-    case ORDER_NODES:
-        size += sizeof order->body.nodes;
-        break;
-    case ORDER_OPEN:
-    case ORDER_FORM:
-    case ORDER_TRACE:
-        size += strlen(order->body.text) + 1;
-        break;
-    case ORDER_LINES:
-        size += order->count * sizeof *order->body.lines;
-        break;
-    case ORDER_CLOSE:
-    case ORDER_PICTURE:
-    case ORDER_DRAW:
-    case ORDER_FULL_SCREEN:
-    case ORDER_FLY:
-        break;
-    }
-    return channel_send(channel, MESSAGE_WINDOW, order, size, descriptor);
+void window_shared_read(const struct window_shared *shared, struct window_state *out) {
+    uint32_t before;
+    do {
+        before = atomic_load_explicit(&shared->number, memory_order_acquire);
+        memcpy(out, &shared->state, sizeof *out);
+        atomic_thread_fence(memory_order_acquire);
+    } while (before % 2 == 1 || before != atomic_load_explicit(&shared->number, memory_order_relaxed));
 }
 
 bool window_send_note(struct channel *channel, enum window_note_kind kind, const struct window_event *event,
@@ -82,25 +59,36 @@ bool window_send_note(struct channel *channel, enum window_note_kind kind, const
 /* The driver. */
 
 static void send(struct window_channel *window, const struct window_order *order, int descriptor) {
-    window->closed = window->closed || !window_send_order(&window->channel, order, descriptor);
+    size_t size = order->kind == ORDER_NODES ? sizeof *order : offsetof(struct window_order, query);
+    window->closed = window->closed || !channel_send(&window->channel, MESSAGE_WINDOW, order, size, descriptor);
 }
 
-static void send_kind(struct window_channel *window, enum window_order_kind kind, bool on, const char *text) {
-    struct window_order order = {.kind = kind, .on = on};
-    (void)snprintf(order.body.text, sizeof order.body.text, "%s", text);
-    send(window, &order, -1);
+/* Publishes the state. True: it has changed. */
+static bool update_state(struct window_channel *window) {
+    struct window_shared *shared = window->memory.block;
+    if (!shared || memcmp(&shared->state, &window->state, sizeof window->state) == 0)
+        return false;
+    atomic_fetch_add_explicit(&shared->number, 1, memory_order_acq_rel);
+    memcpy(&shared->state, &window->state, sizeof window->state);
+    atomic_fetch_add_explicit(&shared->number, 1, memory_order_release);
+    return true;
 }
 
-static bool open_window(void *context, const char *title, struct error *error) {
+static void show_state(struct window_channel *window, bool changed) {
+    if (update_state(window) || changed)
+        send(window, &(struct window_order){.kind = ORDER_SHOW}, -1);
+}
+
+static bool open_window(void *context, struct error *error) {
     struct window_channel *window = context;
-    window->empty = title[0] == '\0';
-    window->drawn.kind = ORDER_OPEN;
-    send_kind(window, ORDER_OPEN, true, title);
+    window->empty = !window->state.has_scene;
+    if (!window->memory.block) {
+        if (!share_create(&window->memory, sizeof(struct window_shared), error))
+            return false;
+        send(window, &(struct window_order){.kind = ORDER_STATE}, window->memory.descriptor);
+    }
+    show_state(window, false);
     return !window->closed || error_set(error, ERROR_MACHINE, "-gui: the process of the window has ended");
-}
-
-static void close_window(void *context) {
-    send_kind(context, ORDER_CLOSE, false, "");
 }
 
 /* Another size has other memory. */
@@ -141,37 +129,16 @@ static bool update_picture(struct window_picture *picture, const uint8_t *from) 
     return any;
 }
 
-/* True: they are others than before. */
-static bool update_lines(struct window_channel *window, const struct window_content *content) {
-    const uint32_t count = content->line_count;
-    if (count == window->drawn.count &&
-        (count == 0 || memcmp(window->lines, content->lines, count * sizeof *content->lines) == 0))
-        return false;
-    memcpy(window->lines, content->lines, count * sizeof *content->lines);
-    for (uint32_t first = 0; first < count; first += LINES_PER_ORDER) {
-        uint32_t part = count - first < LINES_PER_ORDER ? count - first : LINES_PER_ORDER;
-        struct window_order order = {.kind = ORDER_LINES, .index = first, .count = part};
-        memcpy(order.body.lines, content->lines + first, part * sizeof *content->lines);
-        send(window, &order, -1);
-    }
-    return true;
+static void show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
+    struct window_channel *window = context;
+    bool changed = fit_picture(window, width, height) && update_picture(&window->picture, picture);
+    show_state(window, changed);
 }
 
-static void show_content(void *context, const struct window_content *content) {
+static void close_window(void *context) {
     struct window_channel *window = context;
-    struct window_order order = {.kind = ORDER_DRAW,
-                                 .count = content->line_count,
-                                 .left = content->left,
-                                 .top = content->top,
-                                 .shown_width = content->shown_width,
-                                 .shown_height = content->shown_height};
-    bool changed =
-        update_lines(window, content) || memcmp(&order, &window->drawn, offsetof(struct window_order, body)) != 0;
-    memcpy(&window->drawn, &order, offsetof(struct window_order, body));
-    if (fit_picture(window, content->width, content->height))
-        changed = update_picture(&window->picture, content->picture) || changed;
-    if (changed)
-        send(window, &order, -1);
+    window->state = (struct window_state){.has_scene = false};
+    show_state(window, false);
 }
 
 static int descriptor_of(void *context) {
@@ -221,70 +188,24 @@ static bool poll_event(void *context, struct window_event *event) {
     return note.kind == NOTE_EVENT || note.kind == NOTE_OPEN_SCENE;
 }
 
-static void let_fly(void *context, bool on) {
-    send_kind(context, ORDER_FLY, on, "");
-}
-
-static void turn_full_screen(void *context) {
-    send_kind(context, ORDER_FULL_SCREEN, true, "");
-}
-
-static void send_status(void *context, const struct window_status *status) {
-    struct window_channel *window = context;
-    struct window_order order = {.kind = ORDER_STATUS, .body.status = *status};
-    if (memcmp(&window->status, status, sizeof *status) == 0)
-        return;
-    window->status = *status;
-    send(window, &order, -1);
-}
-
-static void send_form(void *context, const struct window_form *form) {
-    struct window_channel *window = context;
-    bool other = form->subject != window->form.subject || form->count != window->form.count, sent = other;
-    for (uint32_t i = 0; i < form->count; i++) {
-        struct window_order order = {.kind = ORDER_FIELD, .index = i, .body.field = form->fields[i]};
-        if (!other && memcmp(&form->fields[i], &window->form.fields[i], sizeof form->fields[i]) == 0)
-            continue;
-        send(window, &order, -1);
-        sent = true;
-    }
-    window->form = *form;
-    struct window_order order = {.kind = ORDER_FORM, .index = form->count, .subject = form->subject};
-    (void)snprintf(order.body.text, sizeof order.body.text, "%s", form->title);
-    if (sent)
-        send(window, &order, -1);
-}
-
-static void send_trace(void *context, const char *text) {
-    struct window_channel *window = context;
-    if (strlen(text) != window->trace_length)
-        send_kind(window, ORDER_TRACE, true, text);
-    window->trace_length = strlen(text);
-}
-
 static void send_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
-    struct window_channel *window = context;
-    struct window_order order = {.kind = ORDER_NODES, .on = !query};
+    struct window_order order = {.kind = ORDER_NODES, .reset = !query};
     if (query) {
-        order.body.nodes.query = *query;
-        order.body.nodes.rows = *rows;
+        order.query = *query;
+        order.rows = *rows;
     }
-    send(window, &order, -1);
+    send(context, &order, -1);
 }
 
 struct window_driver window_channel_driver(struct window_channel *window) {
     return (struct window_driver){.context = window,
+                                  .state = &window->state,
                                   .open = open_window,
                                   .close = close_window,
                                   .poll = poll_event,
                                   .descriptor = descriptor_of,
-                                  .show = show_content,
-                                  .status = send_status,
-                                  .form = send_form,
-                                  .trace = send_trace,
-                                  .nodes = send_nodes,
-                                  .fly = let_fly,
-                                  .full_screen = turn_full_screen};
+                                  .show = show,
+                                  .nodes = send_nodes};
 }
 
 bool window_channel_wait(struct window_channel *window, struct error *error) {
@@ -309,4 +230,5 @@ bool window_channel_next_scene(struct window_channel *window) {
 void window_channel_destroy(struct window_channel *window) {
     channel_close(&window->channel);
     share_destroy(&window->picture.memory);
+    share_destroy(&window->memory);
 }

@@ -129,24 +129,19 @@ struct fake {
     struct window_event queue[16];
     int count, shown;
     bool open, flies;
-    struct window_status status;
-    struct window_line lines[WINDOW_LINES];
-    uint32_t line_count;
+    struct window_state state;
 };
 
-static bool fake_open(void *context, const char *title, struct error *error) {
+static bool fake_open(void *context, struct error *error) {
     struct fake *fake = context;
     (void)error;
-    CHECK(title != NULL);
+    CHECK(fake->state.has_scene);
     return fake->open = true;
 }
-static void fake_show(void *context, const struct window_content *content) {
+static void fake_show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct fake *fake = context;
-    CHECK(content->picture && content->width == 100 && content->height == 70);
+    CHECK(picture && width == 100 && height == 70 && fake->state.form.count < FORM_FIELDS);
     fake->shown++;
-    fake->line_count = content->line_count;
-    if (content->line_count > 0)
-        memcpy(fake->lines, content->lines, content->line_count * sizeof *content->lines);
 }
 static bool fake_poll(void *context, struct window_event *event) {
     struct fake *fake = context;
@@ -160,26 +155,8 @@ static int fake_descriptor(void *context) {
     (void)context;
     return -1;
 }
-static void fake_status(void *context, const struct window_status *status) {
-    struct fake *fake = context;
-    fake->status = *status;
-}
-static void fake_form(void *context, const struct window_form *form) {
-    (void)context;
-    CHECK(form->count < FORM_FIELDS);
-}
-static void fake_trace(void *context, const char *text) {
-    (void)context, (void)text;
-}
 static void fake_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
     (void)context, (void)query, (void)rows;
-}
-static void fake_fly(void *context, bool on) {
-    struct fake *fake = context;
-    fake->flies = on;
-}
-static void fake_full_screen(void *context) {
-    (void)context;
 }
 static void fake_close(void *context) {
     struct fake *fake = context;
@@ -235,17 +212,13 @@ static void begin(struct table *t) {
                                     .height = 70,
                                     .camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40}}};
     t->driver = (struct window_driver){.context = &t->fake,
+                                       .state = &t->fake.state,
                                        .open = fake_open,
                                        .close = fake_close,
                                        .poll = fake_poll,
                                        .descriptor = fake_descriptor,
                                        .show = fake_show,
-                                       .status = fake_status,
-                                       .form = fake_form,
-                                       .trace = fake_trace,
-                                       .nodes = fake_nodes,
-                                       .fly = fake_fly,
-                                       .full_screen = fake_full_screen};
+                                       .nodes = fake_nodes};
     CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(
@@ -479,12 +452,12 @@ TEST(window_keys_fly_and_escape_ends_it) {
     do_action(&t.fake, DO_FLY);
     key(&t.fake, FLY_BACK, true);
     (void)step(&t);
-    CHECK(t.fake.flies);
+    CHECK(t.fake.state.flies);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.pass.view.camera.eye.z > 5);
     do_action(&t.fake, DO_ESCAPE);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(!t.fake.flies && !t.viewer.fly_camera.down[FLY_BACK]);
+    CHECK(!t.fake.state.flies && !t.viewer.fly_camera.down[FLY_BACK]);
     do_action(&t.fake, DO_QUIT);
     CHECK_EQ_INT(step(&t), VIEWER_QUIT);
     end(&t);
@@ -550,13 +523,13 @@ TEST(window_shows_how_long_the_picture_will_take) {
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.pass.view.plain && strstr(t.fake.status.state, "(coarse)") && !strstr(t.fake.status.state, "left"));
+    CHECK(t.viewer.pass.view.plain && strstr(t.fake.state.state, "(coarse)") && !strstr(t.fake.state.state, "left"));
     go_to_the_fine_pass(&t);
     control.progress_estimate.begun = t.now - 30;
     progress_estimate_report(&control.progress_estimate, 1, 3, t.now);
     t.now += 10;
     (void)step(&t);
-    CHECK(strstr(t.fake.status.state, "25 %, 1 min 20 s left"));
+    CHECK(strstr(t.fake.state.state, "25 %, 1 min 20 s left"));
     end(&t);
 }
 
@@ -567,15 +540,15 @@ TEST(window_shows_how_far_building_is_and_errors) {
     t.viewer.window.control = &control;
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(strstr(t.fake.status.state, "building, step 3: 25 %") != NULL);
+    CHECK(strstr(t.fake.state.state, "building, step 3: 25 %") != NULL);
     control.build_step = 0;
     finish_pass(&t, 1, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    const char *figures = t.fake.status.figures;
+    const char *figures = t.fake.state.figures;
     CHECK(strstr(figures, "triangles") && strstr(figures, "rays/s") && strstr(figures, "frames/s"));
     viewer_show_message(&t.viewer, "scene.lua:3: no such thing\nstack traceback");
     (void)step(&t);
-    CHECK_TEXT(t.fake.status.message, "scene.lua:3: no such thing");
+    CHECK_TEXT(t.fake.state.message, "scene.lua:3: no such thing");
     viewer_detach(&t.viewer);
     (void)step(&t);
     do_action(&t.fake, DO_RENDER); /* there is nothing to render */

@@ -18,20 +18,6 @@ static bool next_order(struct channel *channel, struct window_order *order, int 
     return true;
 }
 
-static int count_orders(struct channel *channel, enum window_order_kind kind) {
-    static struct window_order order;
-    int count = 0, descriptor;
-    while (next_order(channel, &order, &descriptor)) {
-        count += order.kind == kind;
-        if (descriptor >= 0) {
-            struct window_picture none = {0};
-            (void)window_picture_attach(&none, 1, 1, descriptor);
-            share_destroy(&none.memory);
-        }
-    }
-    return count;
-}
-
 TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     enum { WIDE = 300, HIGH = 200, TILES = 3 * 2 };
     static uint8_t picture[3 * WIDE * HIGH];
@@ -44,15 +30,14 @@ TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     CHECK(channel_pair(ends, &error));
     window = (struct window_channel){.channel = ends[0]};
     struct window_driver driver = window_channel_driver(&window);
-    struct window_content frame = {.picture = picture, .width = WIDE, .height = HIGH, .shown_width = WIDE};
-    driver.show(driver.context, &frame);
+    driver.show(driver.context, picture, WIDE, HIGH);
     CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_PICTURE && descriptor >= 0);
     CHECK(window_picture_attach(&seen, order.width, order.height, descriptor));
     CHECK_EQ_INT(window_picture_tiles(&seen), TILES);
-    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_DRAW && order.shown_width == WIDE);
     /* The last pixel is in the last tile. */
     picture[sizeof picture - 1] = 7;
-    driver.show(driver.context, &frame);
+    driver.show(driver.context, picture, WIDE, HIGH);
+    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_SHOW);
     for (uint32_t i = 0; i < TILES; i++)
         CHECK_EQ_INT(atomic_load(&window_picture_numbers(&seen)[i]), i == TILES - 1);
     CHECK(memcmp(window_picture_pixels(&seen), picture, sizeof picture) == 0);
@@ -61,65 +46,35 @@ TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     channel_close(&ends[1]);
 }
 
-TEST(window_channel_sends_many_lines_in_parts_and_only_when_they_change) {
-    enum { COUNT = 2 * LINES_PER_ORDER + 7 };
-    static struct window_line lines[COUNT];
+TEST(window_channel_shows_what_has_changed_and_nothing_twice) {
     static struct window_channel window;
     static struct window_order order;
+    static struct window_state state;
     static const uint8_t picture[3];
+    struct share memory = {0};
     struct channel ends[2];
     struct error error;
     int descriptor = -1;
-    uint32_t seen = 0;
     CHECK(channel_pair(ends, &error));
     window = (struct window_channel){.channel = ends[0]};
     struct window_driver driver = window_channel_driver(&window);
-    for (int i = 0; i < COUNT; i++)
-        lines[i].x0 = (float)i;
-    const struct window_content content = {
-        .picture = picture, .width = 1, .height = 1, .lines = lines, .line_count = COUNT};
-    driver.show(driver.context, &content);
-    while (next_order(&ends[1], &order, &descriptor) && order.kind != ORDER_DRAW) {
-        for (uint32_t i = 0; order.kind == ORDER_LINES && i < order.count; i++)
-            CHECK(order.body.lines[i].x0 >= (float)seen && order.body.lines[i].x0 <= (float)seen++);
-        if (descriptor >= 0)
-            (void)close(descriptor);
+    CHECK(driver.open(driver.context, &error));
+    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_STATE);
+    CHECK(share_attach(&memory, descriptor, sizeof(struct window_shared), &error));
+    driver.show(driver.context, picture, 1, 1);
+    while (next_order(&ends[1], &order, &descriptor))
+        CHECK(order.kind == ORDER_PICTURE && close(descriptor) == 0);
+    for (int i = 1; i < 4; i++) {
+        driver.state->share = 0.25 * i;
+        driver.state->lines[WINDOW_LINES - 1].x1 = (float)i;
+        driver.show(driver.context, picture, 1, 1);
+        CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_SHOW);
+        window_shared_read(memory.block, &state);
+        CHECK(memcmp(&state, driver.state, sizeof state) == 0);
+        driver.show(driver.context, picture, 1, 1);
+        CHECK(!next_order(&ends[1], &order, &descriptor));
     }
-    CHECK(seen == COUNT && order.kind == ORDER_DRAW && order.count == COUNT);
-    driver.show(driver.context, &content);
-    CHECK(!next_order(&ends[1], &order, &descriptor));
-    lines[COUNT - 1].y1 = 1;
-    driver.show(driver.context, &content);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_LINES), 3);
-    window_channel_destroy(&window);
-    channel_close(&ends[1]);
-}
-
-TEST(window_channel_sends_what_has_changed_and_nothing_twice) {
-    static struct window_channel window;
-    static struct window_form form;
-    struct window_status status;
-    struct channel ends[2];
-    struct error error;
-    CHECK(channel_pair(ends, &error));
-    window = (struct window_channel){.channel = ends[0]};
-    struct window_driver driver = window_channel_driver(&window);
-    memset(&status, 0, sizeof status);
-    status.share = 0.5;
-    form.count = 3;
-    form.subject = 1;
-    for (int i = 0; i < 2; i++)
-        driver.status(driver.context, &status);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_STATUS), 1);
-    for (int i = 0; i < 2; i++)
-        driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 3);
-    form.fields[1].numbers[0] = 2;
-    driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 1);
-    form.subject = 2; /* all of them again */
-    driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 3);
+    share_destroy(&memory);
     channel_close(&ends[1]);
     window_channel_destroy(&window);
 }

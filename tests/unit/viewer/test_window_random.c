@@ -19,8 +19,8 @@ struct crowd {
     bool open, mutates;
     int width, height;
     double x, y;
-    int statuses, frames;
-    uint32_t numbers[FORM_FIELDS], fields; /* of the form, without settings, which run the scripts again */
+    int frames;
+    struct window_state state;
 };
 
 static int below(struct crowd *crowd, int limit) {
@@ -59,25 +59,26 @@ static void write_scene(struct crowd *crowd) {
     CHECK(rename("new.lua", "scene.lua") == 0);
 }
 
-static bool crowd_open(void *context, const char *title, struct error *error) {
+static bool crowd_open(void *context, struct error *error) {
     struct crowd *crowd = context;
     (void)error;
-    CHECK(!crowd->open && title);
+    CHECK(!crowd->open);
     crowd->width = crowd->height = 0;
     return crowd->open = true;
 }
 
 /* Every byte to be displayed is readable, every line a number. */
-static void crowd_show(void *context, const struct window_content *content) {
+static void crowd_show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct crowd *crowd = context;
+    const struct window_state *state = &crowd->state;
     unsigned sum = 0;
-    for (size_t i = 0; i < 3 * (size_t)content->width * content->height; i += 97)
-        sum += content->picture[i];
-    CHECK(content->line_count <= WINDOW_LINES);
-    for (uint32_t i = 0; i < content->line_count; i++)
-        CHECK(content->lines[i].x0 + content->lines[i].y0 + content->lines[i].x1 + content->lines[i].y1 < INFINITY);
+    for (size_t i = 0; i < 3 * (size_t)width * height; i += 97)
+        sum += picture[i];
+    CHECK(state->line_count <= WINDOW_LINES);
+    for (uint32_t i = 0; i < state->line_count; i++)
+        CHECK(state->lines[i].x0 + state->lines[i].y0 + state->lines[i].x1 + state->lines[i].y1 < INFINITY);
     crowd->frames += sum > 0;
-    CHECK(crowd->open && content->shown_width >= 1 && content->shown_height >= 1);
+    CHECK(crowd->open && state->shown_width >= 1 && state->shown_height >= 1);
 }
 
 /* Quitting, saving, the next picture and traces are rare. */
@@ -91,11 +92,12 @@ static struct window_event random_action(struct crowd *crowd) {
     return event;
 }
 
-/* A number of the form that is shown, or any other. */
+/* A field of the form that is shown, but no setting, which runs the scripts again; or any other. */
 static struct window_event random_field(struct crowd *crowd) {
     struct window_event event = {.kind = WINDOW_FIELD, .field = (uint32_t)below(crowd, 60), .joins = below(crowd, 2)};
-    if (crowd->fields > 0 && below(crowd, 4) > 0)
-        event.field = crowd->numbers[below(crowd, (int)crowd->fields)];
+    uint32_t count = crowd->state.form.count, at = count > 0 ? (uint32_t)below(crowd, (int)count) : 0;
+    if (count > 0 && below(crowd, 4) > 0 && crowd->state.form.fields[at].number < 60)
+        event.field = crowd->state.form.fields[at].number;
     for (int i = 0; i < 3; i++)
         event.numbers[i] = below(crowd, 4) ? test_uniform(&crowd->random, -1, 2) : (double)below(crowd, 4);
     return event;
@@ -169,30 +171,9 @@ static int crowd_descriptor(void *context) {
     (void)context;
     return -1;
 }
-static void crowd_status(void *context, const struct window_status *status) {
-    struct crowd *crowd = context;
-    crowd->statuses += status->state[0] != '\0';
-}
-static void crowd_form(void *context, const struct window_form *form) {
-    struct crowd *crowd = context;
-    crowd->fields = 0;
-    for (uint32_t i = 0; i < form->count; i++) {
-        if (form->fields[i].number < 60)
-            crowd->numbers[crowd->fields++] = form->fields[i].number;
-    }
-}
-static void crowd_trace(void *context, const char *text) {
-    (void)context, (void)text;
-}
 static void crowd_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
     (void)context;
     CHECK(!query || rows->count <= NODE_ROWS);
-}
-static void crowd_fly(void *context, bool on) {
-    (void)context, (void)on;
-}
-static void crowd_full_screen(void *context) {
-    (void)context;
 }
 static void crowd_close(void *context) {
     struct crowd *crowd = context;
@@ -202,19 +183,16 @@ static void crowd_close(void *context) {
 
 /* One session with this many polls for events. Returns the number of displayed frames. */
 static int sit(uint64_t seed, int polls) {
-    struct crowd crowd = {.random = {seed}, .polls_left = polls};
+    static struct crowd crowd;
+    crowd = (struct crowd){.random = {seed}, .polls_left = polls};
     const struct window_driver driver = {.context = &crowd,
+                                         .state = &crowd.state,
                                          .open = crowd_open,
                                          .close = crowd_close,
                                          .poll = crowd_poll,
                                          .descriptor = crowd_descriptor,
                                          .show = crowd_show,
-                                         .status = crowd_status,
-                                         .form = crowd_form,
-                                         .trace = crowd_trace,
-                                         .nodes = crowd_nodes,
-                                         .fly = crowd_fly,
-                                         .full_screen = crowd_full_screen};
+                                         .nodes = crowd_nodes};
     struct arena arena = {0};
     struct options options;
     struct error error;

@@ -33,26 +33,30 @@ struct person {
     bool open, size_sent;
     const char *other_scene; /* that scene.lua is from the deed WINDOW_LEAVE on */
     char status[2048];
-    struct window_form form;
-    struct window_line lines[WINDOW_LINES];
-    uint32_t line_count;
+    struct window_state state;
     uint8_t *large;         /* or NULL: the last picture that had the pixels of the window */
     uint32_t seen_nodes[3]; /* rows of the tree, by depth */
 };
 
-static bool person_open(void *context, const char *title, struct error *error) {
+static bool person_open(void *context, struct error *error) {
     struct person *person = context;
     (void)error;
-    CHECK(title[0] != '\0');
+    CHECK(person->state.has_scene);
     return person->open = true;
 }
-static void person_show(void *context, const struct window_content *content) {
+static void person_show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct person *person = context;
-    if (person->large && content->width == WIDE && content->height == HIGH)
-        memcpy(person->large, content->picture, (size_t)3 * WIDE * HIGH);
-    person->line_count = content->line_count;
-    if (content->line_count > 0)
-        memcpy(person->lines, content->lines, content->line_count * sizeof *content->lines);
+    const struct window_state *state = &person->state;
+    CHECK(state->share >= 0 && state->share <= 1 && state->file[0] != '\0');
+    CHECK(state->form.count < FORM_FIELDS && state->line_count <= WINDOW_LINES);
+    for (uint32_t i = 0; i < state->form.count; i++)
+        CHECK(state->form.fields[i].group[0] != '\0' && state->form.fields[i].name[0] != '\0');
+    if (person->large && width == WIDE && height == HIGH)
+        memcpy(person->large, picture, (size_t)3 * WIDE * HIGH);
+    if (person->since >= DELAY)
+        (void)snprintf(person->status, sizeof person->status, "%s  %.*s  %s  %s  %s  %s", state->file,
+                       (int)strcspn(state->figures, ","), state->figures, state->state, state->frame, state->notice,
+                       state->message);
 }
 static bool says(const char *status, const char *words) {
     if (strcmp(words, SETTLED) == 0)
@@ -69,7 +73,7 @@ static const struct window_field *find_field(const struct window_form *form, con
 static bool person_poll(void *context, struct window_event *event) {
     struct person *person = context;
     const struct deed *deed = &person->deeds[person->at];
-    const struct window_field *field = deed->field ? find_field(&person->form, deed->field) : NULL;
+    const struct window_field *field = deed->field ? find_field(&person->state.form, deed->field) : NULL;
     person->since++;
     if (!person->size_sent) {
         person->size_sent = true;
@@ -94,34 +98,10 @@ static int person_descriptor(void *context) {
     (void)context;
     return -1;
 }
-static void person_status(void *context, const struct window_status *status) {
-    struct person *person = context;
-    CHECK(status->share >= 0 && status->share <= 1 && status->file[0] != '\0');
-    if (person->since >= DELAY)
-        (void)snprintf(person->status, sizeof person->status, "%s  %.*s  %s  %s  %s  %s", status->file,
-                       (int)strcspn(status->figures, ","), status->figures, status->state, status->frame,
-                       status->notice, status->message);
-}
-static void person_form(void *context, const struct window_form *form) {
-    struct person *person = context;
-    CHECK(form->count < FORM_FIELDS);
-    person->form = *form;
-    for (uint32_t i = 0; i < form->count; i++)
-        CHECK(form->fields[i].group[0] != '\0' && form->fields[i].name[0] != '\0');
-}
 static void person_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
     struct person *person = context;
     for (uint32_t i = 0; query && i < rows->count; i++)
         person->seen_nodes[query->depth > 2 ? 2 : query->depth] += rows->rows[i].name[0] != '\0';
-}
-static void person_trace(void *context, const char *text) {
-    (void)context, (void)text;
-}
-static void person_fly(void *context, bool on) {
-    (void)context, (void)on;
-}
-static void person_full_screen(void *context) {
-    (void)context;
 }
 static void person_close(void *context) {
     struct person *person = context;
@@ -167,17 +147,13 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting) 
     static struct person person;
     person = (struct person){.deeds = deeds, .large = setting->large, .other_scene = setting->other_scene};
     const struct window_driver driver = {.context = &person,
+                                         .state = &person.state,
                                          .open = person_open,
                                          .close = person_close,
                                          .poll = person_poll,
                                          .descriptor = person_descriptor,
                                          .show = person_show,
-                                         .status = person_status,
-                                         .form = person_form,
-                                         .trace = person_trace,
-                                         .nodes = person_nodes,
-                                         .fly = person_fly,
-                                         .full_screen = person_full_screen};
+                                         .nodes = person_nodes};
     struct arena arena = {0};
     struct options options;
     struct error error;
@@ -277,8 +253,8 @@ TEST(window_outlines_what_is_picked_by_its_silhouette) {
      * wide. */
     double radius = HIGH / 2.0 * tan(asin(1.0 / 6)) / tan(20 * M_PI / 180);
     bool turns[12] = {false};
-    for (uint32_t i = 0; i < person.line_count; i++) {
-        const struct window_line *line = &person.lines[i];
+    for (uint32_t i = 0; i < person.state.line_count; i++) {
+        const struct window_line *line = &person.state.lines[i];
         double dx = (double)(line->x0 + line->x1) / 2 - WIDE / 2.0, dy = (double)(line->y0 + line->y1) / 2 - HIGH / 2.0;
         bool straight = line->x0 >= line->x1 && line->x0 <= line->x1; /* an upright side of pixels */
         straight = straight || (line->y0 >= line->y1 && line->y0 <= line->y1);
