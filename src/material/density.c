@@ -191,6 +191,19 @@ double density_at(const struct density *density, struct vec3 p, double time, dou
     return value > high ? high : 0;
 }
 
+double density_value(const struct density *density, struct vec3 p, double time) {
+    uint64_t cell = 0, stride = 1;
+    if (!box_contains(&density->box, p))
+        return 0;
+    for (int k = 0; k < 3 && density->kind != DENSITY_BOX; k++) {
+        double n = density->cells.count[k];
+        double at = floor((vec3_get(p, k) - vec3_get(density->cells.corner, k)) / vec3_get(density->cells.size, k) * n);
+        cell += stride * (uint64_t)fmin(fmax(at, 0), n - 1);
+        stride *= density->cells.count[k];
+    }
+    return density_at(density, p, time, density->kind == DENSITY_BOX ? 1 : (double)density->bounds[cell][1]);
+}
+
 bool density_excess(const struct density *density, struct vec3 *point, double *value) {
     if (atomic_load(&density->excess->noted) < 2)
         return false;

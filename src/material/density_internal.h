@@ -5,6 +5,8 @@
 #include "material/density.h"
 #include "material/fog_cells_internal.h"
 
+/* At any point. */
+double density_value(const struct density *density, struct vec3 p, double time);
 /* At a point of a cell whose bound is `high`. */
 double density_at(const struct density *density, struct vec3 p, double time, double high);
 

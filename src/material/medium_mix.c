@@ -32,6 +32,10 @@ bool medium_mix_scatters(const struct medium_mix *mix) {
     return any;
 }
 
+double medium_density(const struct medium *medium, struct vec3 p, double time) {
+    return medium->density ? density_value(medium->density, p, time) : 1;
+}
+
 /* --- along a line --- */
 
 /* Pieces of the line in which all bounds are constant. */

@@ -18,6 +18,9 @@ void medium_stack_mix(const struct medium_stack *stack, struct medium_mix *out);
 /* Whether one of them scatters. */
 bool medium_mix_scatters(const struct medium_mix *mix);
 
+/* The factor of the coefficients of a medium at a point. */
+double medium_density(const struct medium *medium, struct vec3 p, double time);
+
 /* What happens to a path along a line. */
 struct medium_track {
     const struct medium *scatterer; /* the one that scatters it after `distance`; NULL: it comes to the end */

@@ -9,8 +9,8 @@
 
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
+#include "render/media_light.h"
 #include "render/path_light_internal.h"
-#include "world/joint.h"
 #include "world/world_describe.h"
 
 /* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
@@ -82,37 +82,6 @@ static uint64_t stretch_key(const struct path *path, uint64_t stretch) {
     return random_combine(random_combine(path->sampler.key, path->dimension | SAMPLER_STRETCH), stretch);
 }
 
-/* What the media on a shadow ray leave over t up to `end`, through the invisible surfaces of media. */
-static struct colour left_of_light(const struct world *world, const struct ray *shadow, double end,
-                                   const struct path *path, struct world_scratch *scratch) {
-    struct medium_stack media;
-    struct ray rest = *shadow;
-    struct colour left = colour_all(1);
-    double length = vec3_length(shadow->direction);
-    bool met = true;
-    medium_stack_copy(&media, shadow->media);
-    rest.media = &media;
-    for (uint64_t stretch = 0; met; stretch++) {
-        struct hit hit;
-        struct joint joint = {.joined = JOINED_NOT};
-        rest.t_max = end;
-        met = world_nearest_surface(world, &rest, scratch, &hit);
-        if (met && world_touches(world, &hit))
-            world_join_path(world, &rest, &media, scratch, &hit, &joint);
-        if (joint.joined == JOINED_AWAY)
-            continue;
-        left = colour_mul(
-            left, medium_ray_left(MEDIUM_RAY_SHADOW, &rest, (met ? hit.t : end) * length, stretch_key(path, stretch)));
-        if (!met)
-            break;
-        rest = joint_ray_through_hole(&joint, &hit, &rest, &media);
-        rest.direction = shadow->direction;
-        (void)joint_pass_invisible(world, &joint, &hit, &media);
-        end -= hit.t;
-    }
-    return left;
-}
-
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
                                   const struct path *path, struct path_shadow *shadow) {
     const struct world_lights *lights = &tracer->lights;
@@ -127,8 +96,10 @@ struct colour path_light_arriving(const struct path_tracer *tracer, struct integ
     } else {
         radiance = colour_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
-    if (tracer->has_fillings && !colour_is_black(radiance))
-        return colour_mul(radiance, left_of_light(lights->world, &shadow->ray, end, path, state->scratch));
+    if (tracer->has_fillings && !colour_is_black(radiance)) {
+        uint64_t key = stretch_key(path, 0);
+        return colour_mul(radiance, media_left(lights->world, &shadow->ray, end, &key, state->scratch));
+    }
     if (colour_is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
     return colour_mul(radiance, medium_ray_left(MEDIUM_RAY_SHADOW, &shadow->ray,

@@ -127,6 +127,12 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
+/* How far it comes, and the medium that scatters it there, or NULL. */
+struct path_stretch {
+    double distance;
+    const struct medium *medium;
+};
+
 /* The random numbers of the media along the path's ray. */
 static uint64_t medium_key(const struct path *path) {
     return random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM);
@@ -134,7 +140,7 @@ static uint64_t medium_key(const struct path *path) {
 
 /* Passes the medium over a distance. Returns the one that scatters the path, after *distance, or NULL. */
 static const struct medium *pass_single(const struct integrator_state *state, struct path *path,
-                                       const struct medium *medium, enum medium_ray kind, double *distance) {
+                                        const struct medium *medium, enum medium_ray kind, double *distance) {
     struct medium_effect effect;
     if (medium->scatters) {
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
@@ -176,11 +182,10 @@ static __attribute__((noinline)) const struct medium *pass_mix(const struct inte
     return track.scatterer;
 }
 
-/* Adds everything between the origin of the ray and its end: area lights, media. *distance: to the hit, the light or
- * where the medium *scatterer scatters. */
+/* Adds everything between the origin of the ray and its end: area lights, media. out: set unless it ends at
+ * its hit without a medium. */
 static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
-                             const struct hit *hit, struct path_watch *watch, double *distance,
-                             const struct medium **scatterer) {
+                             const struct hit *hit, struct path_watch *watch, struct path_stretch *out) {
     double end = hit ? hit->t : path->ray.t_max;
     struct colour radiance;
     bool seen = false;
@@ -193,17 +198,17 @@ static enum travelled travel(const struct path_tracer *tracer, const struct inte
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
     if (!seen && !path_is_affected(tracer, kind, &path->ray))
         return ENDS_AT_HIT;
-    *distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
+    out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     const struct medium *medium = medium_stack_current(path->ray.media);
-    *scatterer =
-        medium->mixed ? pass_mix(state, path, kind, distance) : pass_single(state, path, medium, kind, distance);
-    if (*scatterer)
+    out->medium = medium->mixed ? pass_mix(state, path, kind, &out->distance)
+                                : pass_single(state, path, medium, kind, &out->distance);
+    if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
         return ENDS_AT_HIT;
     const struct path_parts *parts = parts_of(state);
-    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + *distance : 0);
-    watch_arrival(watch, path, *distance);
+    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + out->distance : 0);
+    watch_arrival(watch, path, out->distance);
     add_light(state, path, radiance);
     watch_stage(watch, path, STAGE_EMISSION);
     (void)watch_end(watch, PATH_SEES_LIGHT);
@@ -392,20 +397,20 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
 
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
-                                                  struct path *path, const struct medium *medium, double distance,
+                                                  struct path *path, const struct path_stretch *end,
                                                   struct path_shadow *shadow, struct path_watch *watch) {
     struct vec3 direction = vec3_normalize(path->ray.direction);
-    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
+    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
     watch_medium(watch);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
     if (parts && path->sight)
-        set_features(state, path, medium_albedo(medium), vec3_all(0), parts->travelled + distance);
+        set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct path_vertex vertex = {.ray = &path->ray,
-                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &medium->phase},
+                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
                                        .sight = path->sight,
                                        .thrown = path->thrown};
@@ -572,14 +577,13 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
 #endif
     /* The way to it, then the surface or the sky there. */
-    double distance;
-    const struct medium *scatterer;
-    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance, &scatterer);
+    struct path_stretch end;
+    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &end);
     if (to == ENDS_AT_LIGHT)
         return false;
-    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? distance : 0);
+    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? end.distance : 0);
     if (to == ENDS_IN_MEDIUM)
-        return meet_medium(tracer, state, path, scatterer, distance, shadow, watch);
+        return meet_medium(tracer, state, path, &end, shadow, watch);
     if (met)
         return meet_surface(tracer, state, path, &at, shadow, watch);
     leave_scene(tracer, state, path);

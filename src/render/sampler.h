@@ -141,7 +141,7 @@ static inline uint64_t sampler_right_eye(const struct sampler *sampler) {
 
 /* Keys below that of a ray: for its child rays, and for the lights at its hit. The facets of a rough surface have keys
  * below SAMPLER_ROUGH. */
-enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE };
+enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE, SAMPLER_IN_MEDIUM };
 static inline uint64_t sampler_branch(uint64_t ray_key, enum sampler_branch branch) {
     return random_combine(ray_key, (uint64_t)UINT32_MAX + (uint64_t)branch);
 }

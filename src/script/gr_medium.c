@@ -1,4 +1,6 @@
-/* Media: what absorbs, scatters and emits light, and its density by place. */
+/* See gr_medium_internal.h. Media: what absorbs, scatters and emits light, and its density by place. */
+#include "script/gr_medium_internal.h"
+
 #include "call/context.h"
 #include "formats/voxels.h"
 #include "material/density.h"

@@ -2,6 +2,7 @@
 #ifndef GRAY_SCRIPT_ROWS_INTERNAL_H
 #define GRAY_SCRIPT_ROWS_INTERNAL_H
 
+#include "script/gr_medium_internal.h"
 #include "script/table_internal.h"
 
 #include <math.h>
@@ -46,9 +47,6 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_MEDIUM, SHAPE_FIRST 
 static inline enum node_walls walls_of(const struct script_value *thin_walled) {
     return !thin_walled->given ? WALLS_BY_SHAPE : thin_walled->boolean ? WALLS_THIN : WALLS_OF_SOLID;
 }
-/* The material of a surface with the medium behind it, or of one of them alone. False: no memory. */
-bool choose_material(struct script_context *context, const struct script_value *material,
-                     const struct script_value *medium, const struct material **out, struct error *error);
 static inline bool set_shape_fields(struct script_context *context, const struct script_value *args, struct node *node,
                                     struct error *error) {
     node->walls = walls_of(&args[SHAPE_THIN_WALLED]);
