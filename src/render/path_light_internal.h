@@ -14,6 +14,7 @@ struct path_vertex {
     uint32_t substitute;  /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;           /* of a line of sight, on which mirrors show only visible lights */
     struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
+    bool sealed;          /* no lamp reaches it */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */
