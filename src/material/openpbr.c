@@ -12,7 +12,10 @@
  * From inside of a solid, the layers are behind the surface. What they do not reflect in the direction of the refracted
  * view leaves through them; the rest is turned back, as by a mirror with the facets of the surface. Each passage has
  * the square root of the coat's colour. The opaque part of a base that transmits light has no reflecting surface on
- * this side: light inside is already in it. */
+ * this side: light inside is already in it.
+ *
+ * Light under the surface takes the place of diffuse light (subsurface.h): the layers above take their share where the
+ * view goes in, none where it comes out. */
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
@@ -34,6 +37,9 @@ struct openpbr openpbr_defaults(void) {
                             .specular_weight = 1,
                             .specular_ior = 1.5,
                             .transmission_colour = {1, 1, 1},
+                            .subsurface_colour = {0.8, 0.8, 0.8},
+                            .subsurface_radius = 1,
+                            .subsurface_radius_scale = {1, 0.5, 0.25},
                             .coat_colour = {1, 1, 1},
                             .coat_ior = 1.6,
                             .coat_darkening = 1,
@@ -66,8 +72,8 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
     struct phong *out = &material->phong, numbers = *out;
     bool textured = textures[INPUT_KD] != NULL;
     double metal = !textured ? v->base_metalness : v->base_metalness > 0.5, through = (1 - metal) * numbers.refract;
-    if (!v->classic || textures[INPUT_METALNESS] || textures[INPUT_REFRACT] || v->film_weight > 0 ||
-        textures[INPUT_FILM_WEIGHT])
+    if (!v->classic || textures[INPUT_METALNESS] || textures[INPUT_REFRACT] || textures[INPUT_SUBSURFACE_WEIGHT] ||
+        textures[INPUT_SUBSURFACE_COLOUR] || v->film_weight > 0 || textures[INPUT_FILM_WEIGHT])
         return;
     material->has_layers = false;
     double coat = v->coat_weight * reflectance(v->coat_ior);
@@ -75,7 +81,8 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
     double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers.roughness;
     double width = fmax(roughness * roughness, 0.03), exponent = 2 / (width * width) - 2, share = fmin(gloss + coat, 1);
     double weight = fmin(share * (exponent + 8) / 8, largest);
-    struct colour colour = colour_min(colour_scale(numbers.kd, v->base_weight), colour_all(1));
+    struct colour colour = colour_scale(numbers.kd, v->base_weight * (1 - v->subsurface_weight));
+    colour = colour_min(colour_add_scaled(colour, v->subsurface_colour, v->subsurface_weight), colour_all(1));
     out->shininess = exponent / 4;
     if (through > 0) {
         double reflected = v->thin_walled ? 2 * gloss / (1 + gloss) : gloss;
@@ -119,6 +126,9 @@ static void read_textures(const struct surface_tables *tables, const struct surf
         {INPUT_SPECULAR_ANISOTROPY, false, offsetof(struct openpbr, specular_anisotropy)},
         {INPUT_SPECULAR_IOR, false, offsetof(struct openpbr, specular_ior)},
         {INPUT_TRANSMISSION_COLOUR, true, offsetof(struct openpbr, transmission_colour)},
+        {INPUT_SUBSURFACE_WEIGHT, false, offsetof(struct openpbr, subsurface_weight)},
+        {INPUT_SUBSURFACE_COLOUR, true, offsetof(struct openpbr, subsurface_colour)},
+        {INPUT_SUBSURFACE_RADIUS, false, offsetof(struct openpbr, subsurface_radius)},
         {INPUT_COAT_WEIGHT, false, offsetof(struct openpbr, coat_weight)},
         {INPUT_COAT_COLOUR, true, offsetof(struct openpbr, coat_colour)},
         {INPUT_COAT_ROUGHNESS, false, offsetof(struct openpbr, coat_roughness)},
@@ -353,6 +363,40 @@ static void add_diffuse(struct layering *l, struct colour left) {
     add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, colour_mul(left, multiple), v->base_diffuse_roughness);
 }
 
+/* The mean free path below a radius is too short for points near the hit to differ. */
+static const double fewest_offsets = 64;
+
+/* Where the light that goes under the surface comes out: elsewhere, if someone walks there; of a thin wall, on both
+ * sides; else here, as of the radius 0. */
+static void add_subsurface(struct layering *l, const struct hit *hit, bool walks, struct colour left) {
+    const struct openpbr *v = l->values;
+    struct colour colour = colour_min(v->subsurface_colour, colour_all(1));
+    struct colour radius = colour_scale(v->subsurface_radius_scale, v->subsurface_radius);
+    double longest = colour_max_abs(radius);
+    struct colour all = darken(l, colour_mul(left, colour), colour, l->coat_inside);
+    if (walks && v->thin_walled) {
+        add_matt(l, LOBE_DIFFUSE, colour_scale(all, (1 - v->subsurface_anisotropy) / 2), 0);
+        add_matt(l, LOBE_DIFFUSE_THROUGH, colour_scale(all, (1 + v->subsurface_anisotropy) / 2), 0);
+        return;
+    }
+    bool goes_in = walks && hit->front && !(hit->behind > 0) && longest > fewest_offsets * hit->offset;
+    add_matt(l, goes_in ? LOBE_SUBSURFACE : LOBE_DIFFUSE, all, 0);
+    l->bsdf->subsurface =
+        (struct subsurface){colour, colour_max(radius, colour_all(longest / 1024)), v->subsurface_anisotropy};
+}
+
+/* Diffuse light, and that from under the surface in its place. */
+static void add_opaque(struct layering *l, const struct hit *hit, bool walks, struct colour left) {
+    double share = fmin(l->values->subsurface_weight, 1);
+    if (share > 0) {
+        l->bsdf->albedo =
+            colour_add_scaled(colour_scale(l->bsdf->albedo, 1 - share), l->values->subsurface_colour, share);
+        add_subsurface(l, hit, walks, colour_scale(left, share));
+    }
+    if (share < 1)
+        add_diffuse(l, share > 0 ? colour_scale(left, 1 - share) : left);
+}
+
 /* A smooth surface transmits the light that it does not reflect. */
 static void add_smooth_passage(struct layering *l, const struct hit *hit, struct colour left) {
     struct bsdf *bsdf = l->bsdf;
@@ -423,7 +467,7 @@ static struct colour rough_reflects(const struct layering *l, struct bsdf_facets
 }
 
 /* The fraction of the surface that transmits light, and the rest, which is diffuse under a glossy layer. */
-static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
+static void add_dielectric(struct layering *l, const struct hit *hit, bool walks, double eta, double roughness) {
     const struct openpbr *v = l->values;
     struct colour all = colour_scale(l->left, 1 - v->base_metalness);
     double clear = l->inputs->refract;
@@ -460,9 +504,9 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         if (clear > 0)
             add_rough_passage(l, facets, colour_scale(all, clear), lost);
     }
-    /* Under the reflection is the diffuse base. */
+    /* Under the reflection is the opaque base. */
     if (opaque > 0)
-        add_diffuse(l, l->inside ? colour_scale(all, opaque) : colour_mul(all, colour_scale(rest, opaque)));
+        add_opaque(l, hit, walks, l->inside ? colour_scale(all, opaque) : colour_mul(all, colour_scale(rest, opaque)));
 }
 
 /* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would
@@ -519,6 +563,6 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     if (l.inside && is_solid)
         turn_back(&l, eta, roughness);
     add_metal(&l, roughness);
-    add_dielectric(&l, hit, eta, roughness);
+    add_dielectric(&l, hit, context->walks, eta, roughness);
     add(&l, LOBE_MIRROR, l.mirror, 1);
 }

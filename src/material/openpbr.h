@@ -14,6 +14,10 @@ struct openpbr {
     double base_weight, base_diffuse_roughness, base_metalness;
     double specular_weight, specular_anisotropy, specular_ior;
     struct colour transmission_colour;
+    struct colour transmission_scattering; /* inside of the solid, per unit */
+    double transmission_anisotropy;        /* mean cosine of that */
+    double subsurface_weight, subsurface_radius, subsurface_anisotropy;
+    struct colour subsurface_colour, subsurface_radius_scale;
     double coat_weight, coat_roughness, coat_anisotropy, coat_ior, coat_darkening;
     struct colour coat_colour;
     double fuzz_weight, fuzz_roughness;

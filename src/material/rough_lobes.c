@@ -435,6 +435,8 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
         return facets_multiple(bsdf, lobe, wi) * n_i / PI;
+    case LOBE_DIFFUSE_THROUGH:
+        return n_i / PI;
         SIMPLE_LOBES(LIST_LABEL)
         break;
     }
@@ -476,6 +478,7 @@ double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct v
     case LOBE_OREN_NAYAR_MULTIPLE:
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
+    case LOBE_DIFFUSE_THROUGH:
         return n_i / PI;
     case LOBE_GLOSS:
     case LOBE_METAL:
@@ -508,6 +511,7 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_OREN_NAYAR_MULTIPLE:
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
+    case LOBE_DIFFUSE_THROUGH:
         *direction = cosine_sample(*transmits ? vec3_negate(bsdf->side) : bsdf->side, u);
         break;
     case LOBE_GLOSS:

@@ -138,9 +138,9 @@ TEST(the_emission_of_a_medium_is_seen_by_both_integrators) {
 /* --- media that fill solids --- */
 
 static struct medium filling_of(double absorption, double scattering, double g) {
-    struct medium medium = medium_of(colour_all(absorption), colour_all(scattering), g);
-    medium.fills = true;
-    return medium;
+    return medium_filling(&(struct medium_input){.absorption = colour_all(absorption),
+                                                 .scattering = colour_all(scattering),
+                                                 .phase = {PHASE_HENYEY_GREENSTEIN, g}});
 }
 
 static struct material *filled(struct stage *s, const struct medium *medium) {
@@ -177,7 +177,7 @@ TEST(white_media_in_solids_are_invisible_in_uniform_light) {
 }
 
 /* Slabs in a row before a glowing wall: what is left is the product, by both integrators; their invisible surfaces
- * count neither as depth nor as refraction. A slab inside another one takes its place. */
+ * count neither as depth nor as refraction. A slab inside another one adds to it. */
 TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     const struct medium thin = filling_of(0.3, 0, 0), dense = filling_of(1.1, 0, 0);
     struct stage s;
@@ -192,7 +192,7 @@ TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     s.camera.fov = 0.01;
     for (int inside = 0; inside < 2; inside++) {
         s.camera.eye = vec3_make(0, 0, inside ? 0 : 10);
-        double depth = inside ? 1.1 * 0.25 + 0.3 * 0.75 : 1.1 * (0.5 + 0.5) + 0.3 * (1 + 1.5);
+        double depth = inside ? 1.1 * 0.25 + 0.3 : 1.1 * (0.5 + 0.5) + 0.3 * (1 + 2);
         for (int i = 0; i < 2; i++) {
             s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
             s.settings.reflect_limit = s.settings.refract_limit = 0;
