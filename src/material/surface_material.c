@@ -191,7 +191,14 @@ struct medium surface_medium(const struct surface_material *surface) {
         inside.scattering = openpbr->transmission_scattering;
         inside.phase.g = openpbr->transmission_anisotropy;
     }
-    return medium_inside(ior, tint, &inside);
+    struct medium medium = medium_inside(ior, tint, &inside);
+    medium.dispersion = numbers->dispersion;
+    return medium;
+}
+
+bool surface_disperses(const struct surface_material *surface) {
+    bool thin = surface->has_layers && surface->openpbr.thin_walled;
+    return surface->phong.dispersion.amount > 0 && !thin && surface_passes(surface);
 }
 
 bool surface_divides_media(const struct surface_material *surface) {

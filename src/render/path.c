@@ -6,6 +6,7 @@
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 #include "render/sample_internal.h"
+#include "world/world_describe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -105,6 +106,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     for (uint32_t i = 0; i < world->material_count; i++)
         tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
     tracer->in_medium = world_outside(world)->affects != 0;
+    tracer->disperses = world_disperses(world);
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||

@@ -28,6 +28,7 @@ struct path_tracer {
     bool built;        /* the lights are prepared */
     bool has_fillings; /* media inside invisible surfaces */
     bool in_medium;    /* the medium around all solids affects rays */
+    bool disperses;    /* indices of refraction depend on the wavelength */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;

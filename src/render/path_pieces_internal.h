@@ -18,6 +18,7 @@
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
 #include "math/range.h"
+#include "math/spectrum.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
@@ -74,6 +75,13 @@ static float in_unit(double x) {
     return x >= 1 ? 1 : x > 0 ? (float)x : 0;
 }
 
+/* The weight as for white light. */
+static struct colour neutral_weight(const struct path *path) {
+    if (!(path->media.wavelength > 0))
+        return path->weight;
+    return colour_share(path->weight, spectrum_weight((double)path->media.wavelength));
+}
+
 /* The end of a line of sight. distance: along the last ray of the path. */
 static void set_features(const struct integrator_state *state, const struct path *path, struct colour albedo,
                          struct vec3 normal, double distance) {
@@ -81,7 +89,7 @@ static void set_features(const struct integrator_state *state, const struct path
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct colour behind = colour_mul(path->weight, albedo);
+    const struct colour behind = colour_mul(neutral_weight(path), albedo);
     const struct colour a =
         parts->reflected > 0 ? colour_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
     const float features[PATH_GLOW] = {in_unit(a.r),
@@ -106,7 +114,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
         set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
     } else if (guide.refracted > 0 && parts->reflected == 0) {
         parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
-        parts->seen = colour_scale(path->weight, parts->reflected);
+        parts->seen = colour_scale(neutral_weight(path), parts->reflected);
     }
 }
 
@@ -564,6 +572,10 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
             watch_ray(watch, state->observer, path, &at.hit);
 #endif
             return come_out(tracer, state, path, &at.hit, shadow, watch);
+        }
+        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+            double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
+            path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
         }
         if (world_touches(world, &at.hit))
             world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);
