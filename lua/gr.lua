@@ -1238,15 +1238,15 @@ function gr.glyphs(font, text) end
 ---@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that transmits light.
 ---@field transmission_color? gr.triple|string|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of transmitted light, after the distance transmission_depth.
 ---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Distance inside the solid after which white light has transmission_color; 0: at the surface.
----@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid. Not implemented: must be black.
----@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): No effect, because transmission_scatter is black.
+---@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid along the distance transmission_depth.
+---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, > -1 and < 1; default 0): Mean cosine of that scattering.
 ---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not implemented.
 ---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not implemented.
----@field subsurface_weight? number subsurface_weight (a number, >= 0; default 0): Not implemented.
----@field subsurface_color? gr.triple|string subsurface_color (a colour {r, g, b}, >= 0; default {0.8, 0.8, 0.8}): Not implemented.
----@field subsurface_radius? number subsurface_radius (a number, >= 0; default 1): Not implemented.
----@field subsurface_radius_scale? gr.triple|string subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not implemented.
----@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Not implemented.
+---@field subsurface_weight? number|gr.texture|function subsurface_weight (a number or a texture, 0 to 1; default 0): Share of the diffuse base whose light is scattered under the surface.
+---@field subsurface_color? gr.triple|string|gr.texture|function subsurface_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): The colour that a large solid shows by it.
+---@field subsurface_radius? number|gr.texture|function subsurface_radius (a number or a texture, >= 0; default 1): Mean free path under the surface; 0 is Lambert's diffuse light.
+---@field subsurface_radius_scale? gr.triple|string subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Factors of subsurface_radius by channel.
+---@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, > -1 and < 1; default 0): Mean cosine of that scattering.
 ---@field coat_weight? number|gr.texture|function coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
 ---@field coat_color? gr.triple|string|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
 ---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
@@ -1258,9 +1258,9 @@ function gr.glyphs(font, text) end
 ---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz; a rough fuzz is visible farther from the rim.
 ---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 means radiance 1.
 ---@field emission_color? gr.triple|string|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
----@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not implemented.
----@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not implemented.
----@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not implemented.
+---@field thin_film_weight? number|gr.texture|function thin_film_weight (a number or a texture, 0 to 1; default 0): Share of the base with a film that shows colours of interference.
+---@field thin_film_thickness? number|gr.texture|function thin_film_thickness (a number or a texture, >= 0; default 0.5): Its thickness in micrometres; 0: no film.
+---@field thin_film_ior? number thin_film_ior (a number, > 0; default 1.4): Its index of refraction.
 ---@field geometry_opacity? number|gr.texture|function geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
 ---@field geometry_normal? string|gr.texture|function geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.

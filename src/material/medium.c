@@ -49,8 +49,8 @@ void medium_put_inside(struct medium *medium, const struct medium *inner) {
     medium->affects = affects_all;
 }
 
-struct medium medium_inside(double ior, struct colour tint, struct colour absorption) {
-    struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
+struct medium medium_inside(double ior, struct colour tint, const struct medium_input *in) {
+    struct medium medium = medium_scattering(in);
     medium.ior = ior;
     medium.tint = tint;
     return medium;

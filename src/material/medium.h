@@ -54,8 +54,8 @@ struct medium medium_filling(const struct medium_input *in);
 struct medium medium_without_solid(const struct medium *filling);
 /* Adds what is in the same solid, which must outlive it. */
 void medium_put_inside(struct medium *medium, const struct medium *inner);
-/* Inside of a solid, without scattering and emission. */
-struct medium medium_inside(double ior, struct colour tint, struct colour absorption);
+/* The same inside of a solid with an index. */
+struct medium medium_inside(double ior, struct colour tint, const struct medium_input *in);
 
 /* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
  * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and

@@ -60,6 +60,8 @@ static inline bool surface_has_holes(const struct surface_material *surface) {
 bool surface_is_transparent(const struct surface_material *surface);
 /* Whether light may pass the surface of the solid at some points. */
 bool surface_passes(const struct surface_material *surface);
+/* Whether some light is scattered under it (LOBE_SUBSURFACE) where the caller follows that. */
+bool surface_walks(const struct surface_material *surface);
 /* The inside of a solid, by the numbers. */
 struct medium surface_medium(const struct surface_material *surface);
 /* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */

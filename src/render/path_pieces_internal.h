@@ -22,6 +22,7 @@
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
+#include "render/subsurface_walk.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -344,6 +345,31 @@ static __attribute__((noinline)) void send_in_medium(struct ray *ray, struct vec
     ray->skip_primitive = ray->skip_part = 0;
 }
 
+/* Goes under the surface, on to where it comes out: the path's ray ends there. No scattering of the path, until it is
+ * scattered out. */
+static __attribute__((noinline)) bool walk_below(struct integrator_state *state, struct path *path,
+                                                 const struct path_vertex *vertex, const struct bsdf_sample *sample,
+                                                 struct path_watch *watch) {
+    const struct subsurface *under = &vertex->at.bsdf->subsurface;
+    struct subsurface_walk walk = {.world = state->job->world,
+                                   .scratch = state->scratch,
+                                   .primitive = vertex->hit->primitive,
+                                   .under = *under,
+                                   .key = random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM),
+                                   .ray = hit_ray(vertex->hit, &path->ray, sample->direction, &path->media),
+                                   .weight = colour_mul(path->weight, colour_share(sample->weight, under->colour))};
+    if (!subsurface_walk(&walk))
+        return watch_end(watch, walk.scatterings > 0 ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
+    path->weight = walk.weight;
+    path->kind = RAY_BELOW;
+    watch_walk(watch, walk.scatterings);
+    if (walk.comes_out) {
+        path->ray = walk.ray;
+        path->met = (struct packet_answer){.primitive = walk.primitive, .crossing = walk.crossing};
+    }
+    return true;
+}
+
 /* Continues in a direction that the BSDF or the phase function samples. */
 static inline __attribute__((always_inline)) bool scatter(const struct path_tracer *tracer,
                                                           struct integrator_state *state, struct path *path,
@@ -355,6 +381,8 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
         return watch_end(watch, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    if (sample.flags & BSDF_BELOW)
+        return walk_below(state, path, vertex, &sample, watch);
     /* A shading normal may reflect into the surface. */
     if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return watch_end(watch, PATH_IS_ABSORBED);
@@ -444,6 +472,7 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
     const struct material_context context = {.specular = state->job->settings.specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
+                                             .walks = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
     if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
@@ -468,6 +497,26 @@ struct path_hit {
     struct hit hit;
     struct joint joint;
 };
+
+/* The vertex where the path comes out from under a surface. False: the path ends here. */
+static __attribute__((noinline)) bool come_out(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, struct hit *hit, struct path_shadow *shadow,
+                                               struct path_watch *watch) {
+    struct bsdf bsdf;
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .receiver = &path->scatter};
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->hits++;
+    material_eval_matt(&state->job->world->surfaces, hit, &bsdf);
+    path->scatter = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, hit->offset),
+                                            bsdf.side, hit->primitive};
+    vertex.at = (struct interaction){.bsdf = &bsdf, .lobes = 1, .wo = hit->view};
+    if (tracer->photon_lights) {
+        add_photons(tracer, state, path, &vertex);
+        vertex.thrown = colour_add(path->received, path->thrown);
+        watch_stage(watch, path, STAGE_PHOTONS);
+    }
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
+}
 
 /* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -534,8 +583,10 @@ static void begin(struct path *path, const struct integrator_state *state, const
     path->sampler.key = key;
 }
 
-/* What the ray hits first. */
+/* What the ray hits first; one that comes out from under a surface knows it. */
 static void extend(const struct integrator_state *state, struct path *path) {
+    if (path->kind == RAY_BELOW)
+        return;
     if (!world_nearest_crossing(state->job->world, &path->ray, state->scratch, &path->met.primitive,
                                 &path->met.crossing))
         path->met.primitive = WORLD_NOTHING;
@@ -554,6 +605,12 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
+        if (path->kind == RAY_BELOW) {
+#if OBSERVED
+            watch_ray(watch, state->observer, path, &at.hit);
+#endif
+            return come_out(tracer, state, path, &at.hit, shadow, watch);
+        }
         if (world_touches(world, &at.hit))
             world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);
         if (at.joint.joined == JOINED_AWAY) {

@@ -334,7 +334,7 @@ static struct colour incident_radiance(struct integrator_state *state, const str
     struct path dimmed;
     bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct colour left = air.transmittance;
-    OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
+    OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight, 0});
     if (affected) {
         dimmed = path_on(path, colour_max_abs(left));
         path = &dimmed;

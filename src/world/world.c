@@ -357,6 +357,13 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     return s.found;
 }
 
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing) {
+    struct ray ray_object = primitive_ray(world, primitive, ray);
+    scratch->rays++;
+    return !ray_skips(ray, primitive) && world_ask_nearest(world, primitive, &ray_object, scratch, crossing);
+}
+
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
     struct joint joint;
     return world_nearest_surface(world, ray, scratch, hit) &&
