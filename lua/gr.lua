@@ -1937,6 +1937,7 @@ function gr.medium(scattering, absorption) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2023,6 +2024,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2221,6 +2223,7 @@ function node:translate(x, y, z) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
