@@ -443,7 +443,8 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+        path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
@@ -462,12 +463,15 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
+    const struct medium_stack *media = &path->media;
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
                                        .sight = path->sight,
                                        .thrown = path->thrown,
-                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL};
+                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
+                                       .sealed = tracer->sealed && media->count > 0 &&
+                                                 tracer->sealed[media->solids[media->count - 1]]};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
