@@ -261,6 +261,17 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
     return -1;
 }
 
+/* The character of a key for a tool, or 0. */
+static char typed_char(guint value) {
+    guint32 c = gdk_keyval_to_unicode(value);
+    if (value == GDK_KEY_BackSpace)
+        return '\b';
+    if (value == GDK_KEY_Return || value == GDK_KEY_KP_Enter)
+        return '\r';
+    c = c == ',' ? '.' : c;
+    return c > 0 && c < 128 && strchr("xyz0123456789.-", (int)c) ? (char)c : '\0';
+}
+
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
     (void)keys, (void)code;
@@ -269,6 +280,11 @@ static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, 
     if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
         send_held_key(gui, held, true);
         return held != FLY_FAST && held != FLY_SLOW;
+    }
+    char typed = gui->state.types && plain ? typed_char(value) : '\0';
+    if (typed != '\0') {
+        gui_send_event(gui, &(struct window_event){.kind = WINDOW_TYPE, .typed = typed});
+        return GDK_EVENT_STOP;
     }
     int action = action_of(gui, value, state);
     if (action >= 0)

@@ -532,7 +532,7 @@ static void show_state(struct gui *gui) {
     gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(gui->progress), CLAMP(state->share, 0, 1));
     gtk_progress_bar_set_text(GTK_PROGRESS_BAR(gui->progress), state->state);
     gtk_label_set_text(GTK_LABEL(gui->figures), state->figures);
-    gtk_label_set_text(GTK_LABEL(gui->notice), state->notice);
+    gtk_label_set_text(GTK_LABEL(gui->notice), state->types ? state->tool : state->notice);
     gtk_label_set_text(GTK_LABEL(gui->error_text), state->message);
     gtk_revealer_set_reveal_child(GTK_REVEALER(gui->error_bar), state->message[0] != '\0');
     show_timeline(gui);

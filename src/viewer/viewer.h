@@ -103,13 +103,16 @@ struct viewer_edit {
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
-    bool joins; /* the next change by the mouse is part of the last one */
+    int axis;       /* that the tool is for, from 1; 0: it is free */
+    bool handle;    /* the tool ends when the button is released */
+    char typed[24]; /* the number for the tool */
+    bool joins;     /* the next change by the mouse is part of the last one */
 };
 
 /* Lights of the scene as they are reported, in parts. */
 struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
-    uint32_t room, count, known;
+    uint32_t count, known;
 };
 
 /* The trace of a pixel. */

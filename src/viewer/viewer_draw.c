@@ -225,6 +225,9 @@ static void describe_work(const struct viewer *viewer, struct window_state *stat
 
 /* What the widgets show. */
 static void describe(struct viewer *viewer, double now) {
+    static const char *const tools[] = {
+        [TOOL_NONE] = "", [TOOL_MOVE] = "Move", [TOOL_TURN] = "Turn", [TOOL_SIZE] = "Size"};
+    static const char axes[] = " xyz";
     struct window_state *state = viewer->window.driver->state;
     state->flies = viewer->input.flies;
     state->action_on = viewer_needs_met(viewer);
@@ -235,6 +238,9 @@ static void describe(struct viewer *viewer, double now) {
     state->unsaved = viewer->edit.steps.at != viewer->edit.saved_at;
     state->frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0;
     state->frame_count = viewer->player.count;
+    state->types = viewer->edit.tool != TOOL_NONE && !viewer->edit.handle;
+    (void)snprintf(state->tool, sizeof state->tool, "%s%s%.1s %s", tools[viewer->edit.tool],
+                   viewer->edit.axis > 0 ? " along " : "", axes + viewer->edit.axis, viewer->edit.typed);
     describe_state(viewer, state, now);
     describe_work(viewer, state);
     (void)snprintf(state->file, sizeof state->file, "%.250s", viewer->request.file);

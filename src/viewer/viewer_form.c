@@ -3,6 +3,7 @@
 #include "viewer/viewer_internal.h"
 
 #include "light/light_edit.h"
+#include "math/elementary.h"
 #include "session/options_table.h"
 
 #include <math.h>
@@ -90,7 +91,8 @@ static void add_material(const struct viewer *viewer, struct window_form *form) 
         struct window_field *field = add(form, "Material", material_part_name(part),
                                          colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
         double low, high;
-        viewer_material_now(viewer, part, field->numbers);
+        struct change change = viewer_change(viewer, CHANGE_MATERIAL, part);
+        memcpy(field->numbers, change.numbers, sizeof field->numbers);
         material_part_range(part, &low, &high);
         set_range(field, low, high, "");
         if (idle)
@@ -111,20 +113,23 @@ static void add_node(const struct viewer *viewer, struct window_form *form) {
 
 static void add_light(const struct viewer *viewer, struct window_form *form) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    struct change change = viewer_change(viewer, CHANGE_LIGHT, 0);
     if (!light)
         return;
     (void)snprintf(form->title, sizeof form->title, "Light %u of %u: %s", viewer->edit.selection.light,
                    viewer->lights.count, light_kind_name((enum light_kind)light->kind));
     add_pose(viewer, form, light->moves && light->has_position, light->turns, light->sizes);
     struct window_field *field = add(form, "Light", "brightness", FIELD_NUMBER, FIELD_LIGHT_STOPS);
-    field->numbers[0] = viewer_light_stops_now(viewer);
+    field->numbers[0] = el_log2(change.numbers[3]);
     set_range(field, -10, 10, "stops");
     set_help(field, "Above the brightness that the script gives it");
     field = add(form, "Light", "colour", FIELD_COLOUR, FIELD_LIGHT_COLOUR);
-    struct colour colour = viewer_light_colour_now(viewer);
-    field->numbers[0] = colour.r;
-    field->numbers[1] = colour.g;
-    field->numbers[2] = colour.b;
+    /* Before it is brightened. */
+    const double reported[3] = {light->colour.r, light->colour.g, light->colour.b};
+    for (int i = 0; i < 3; i++)
+        field->numbers[i] = change.colours              ? change.numbers[COLOUR_AT + i]
+                            : change.numbers[3 + i] > 0 ? reported[i] / change.numbers[3 + i]
+                                                        : 0;
     set_range(field, 0, HUGE_VAL, "");
 }
 
@@ -205,33 +210,34 @@ void viewer_make_form(const struct viewer *viewer, struct window_form *form) {
         add_settings(viewer, form);
 }
 
-static struct vec3 vector_of(const struct window_event *event) {
-    return vec3_make(event->numbers[0], event->numbers[1], event->numbers[2]);
-}
-
 /* Fields of the selection. */
 static void set_selected(struct viewer *viewer, const struct window_event *event) {
-    static const double no_turn[3] = {0, 0, 0};
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
     viewer->edit.joins = event->joins;
     switch (event->field) {
     case FIELD_POSITION:
-        viewer_move_selection(viewer, vector_of(event));
+        viewer_move(viewer, vec3_sub(vec3_make(numbers[0], numbers[1], numbers[2]), viewer_selection_position(viewer)));
         return;
     case FIELD_ROTATION:
-        viewer_turn_selection(viewer, event->numbers, 1);
+        for (int i = 0; i < 3; i++) {
+            if (numbers[i] < 0 || numbers[i] > 0)
+                viewer_turn(viewer, axes[i], numbers[i]);
+        }
         return;
     case FIELD_SCALE:
-        viewer_turn_selection(viewer, no_turn, event->numbers[0]);
+        viewer_scale(viewer, vec3_all(numbers[0]));
         return;
     case FIELD_LIGHT_STOPS:
-        viewer_brighten_light(viewer, event->numbers[0]);
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, 3, factors);
         return;
     case FIELD_LIGHT_COLOUR:
-        viewer_light_colour(viewer, colour_make(event->numbers[0], event->numbers[1], event->numbers[2]));
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, COLOUR_AT, numbers);
         return;
     default:
         if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
-            viewer_set_material(viewer, (enum material_part)(event->field - FIELD_MATERIAL), event->numbers);
+            viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0,
+                               numbers);
     }
 }
 

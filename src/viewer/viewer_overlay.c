@@ -282,6 +282,26 @@ static void draw_symbol(const struct drawing *drawing, uint32_t number) {
     }
 }
 
+/* Of the selection, where nothing is being done with it; while a handle is held, that handle. */
+static void draw_handles(const struct drawing *drawing) {
+    const struct viewer *viewer = drawing->viewer;
+    for (enum edit_tool tool = TOOL_MOVE; tool <= TOOL_SIZE; tool++) {
+        for (int axis = 0; axis < 3; axis++) {
+            bool free = viewer->edit.tool == TOOL_NONE,
+                 held = viewer->edit.tool == tool && (viewer->edit.axis == 0 || viewer->edit.axis == axis + 1);
+            enum line_colour colour = (enum line_colour)(LINE_COLOUR_X + axis);
+            double points[HANDLE_POINTS][2], density = viewer->window.layout.density;
+            if (!(free || held) || !viewer_handle(viewer, &drawing->frame, tool, axis, points))
+                continue;
+            for (int i = 1; i < HANDLE_POINTS; i++)
+                draw(drawing, points[i - 1][0], points[i - 1][1], points[i][0], points[i][1], colour);
+            const double *end = points[HANDLE_POINTS - 1];
+            if (tool != TOOL_TURN)
+                draw_ring(drawing, end[0], end[1], (tool == TOOL_MOVE ? 2.5 : 4) * density, colour);
+        }
+    }
+}
+
 void viewer_make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
     viewer->window.driver->state->line_count = 0;
@@ -294,6 +314,7 @@ void viewer_make_lines(struct viewer *viewer) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     if (viewer->edit.selection.kind == SELECTED_LIGHT && light)
         draw_light(&drawing, light);
+    draw_handles(&drawing);
 }
 
 void viewer_destroy_overlay(struct viewer *viewer) {

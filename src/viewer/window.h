@@ -21,6 +21,7 @@ enum window_event_kind {
     WINDOW_RELEASE, /* the same */
     WINDOW_LEAVE,   /* the picture has lost the keyboard: no key is pressed */
     WINDOW_SIZE,    /* x, y: the size for the picture; density: pixels per dot of the desktop */
+    WINDOW_TYPE,    /* the character `typed` for a tool: an axis, a digit; backspace; return */
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
@@ -33,6 +34,7 @@ struct window_event {
     enum fly_camera_key key;
     int button;
     bool down, control, shift; /* control, shift: held */
+    char typed;
     double x, y, dx, dy, density;
     enum window_action action;
     uint32_t field;
@@ -86,8 +88,9 @@ struct window_state {
     bool has_scene;                             /* else the page without a scene */
     bool flies;                                 /* letters move the camera */
     bool full_screen;                           /* the whole screen */
+    bool types;                                 /* a tool is chosen: letters and digits are for it */
     bool halted, busy, playing, loops, unsaved; /* unsaved: edits */
-    char file[256], state[64], figures[288], frame[64];
+    char file[256], state[64], figures[288], frame[64], tool[64];
     char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
     double share;                   /* of the work, 0 to 1 */
     uint32_t action_on;             /* by enum action_need, as bits: what there is */

@@ -67,7 +67,7 @@ static void edit_in_locale(const char *name) {
     drive("scene.lua --exposure 0.5",
           "titled 'out.png - ready'\n"
           "xdotool mousemove 600 460 click 1 sleep 0.5 key g\n"
-          "xdotool mousemove 600 460 mousedown 1 mousemove 620 460 sleep 0.1 mousemove 700 460 sleep 0.3 mouseup 1\n"
+          "xdotool mousemove 620 460 sleep 0.1 mousemove 700 460 sleep 0.3 click 1\n"
           "sleep 0.3; titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua\n"
           "xdotool key ctrl+z sleep 0.3 key ctrl+s; until_file out-changes2.lua; xdotool key ctrl+q",
           0);
