@@ -97,9 +97,42 @@ static void add_row(struct node_rows *out, const struct node *node) {
         *c = (unsigned char)*c < 32 || *c == 127 ? '?' : *c;
 }
 
+/* Whether the text is in it, in any case of ASCII. */
+static bool has_text(const char *name, const char *text) {
+    size_t length = strlen(text);
+    for (; *name; name++) {
+        size_t i = 0;
+        while (i < length && name[i] && (name[i] | 32) == (text[i] | 32))
+            i++;
+        if (i == length)
+            return true;
+    }
+    return false;
+}
+
+/* The first nodes with the text, each once for its place in the tree, within a million nodes. */
+static void search(const struct node *root, const char *text, struct node_rows *out) {
+    struct child_iterator levels[NODE_LEVELS];
+    uint32_t depth = 1, visited = 0;
+    levels[0] = children_from(root, 0);
+    while (depth > 0 && out->count < NODE_ROWS && visited++ < 1000000) {
+        const struct node *node = next_child(&levels[depth - 1]);
+        if (!node)
+            depth--;
+        else if (has_text(node->name, text) || has_text(kind_of(node), text))
+            add_row(out, node);
+        if (node && depth < NODE_LEVELS)
+            levels[depth++] = children_from(node, 0);
+    }
+}
+
 void node_list_rows(const struct node *root, const struct node_query *query, struct node_rows *out) {
     const struct node *node = node_list_find(root, query), *child;
     memset(out, 0, sizeof *out);
+    if (query->search[0] != '\0') {
+        search(root, query->search, out);
+        return;
+    }
     if (query->depth == 0 && query->first == 0)
         add_row(out, root);
     if (!node)

@@ -7,12 +7,14 @@
 
 #include <stdint.h>
 
-enum { NODE_LEVELS = 32, NODE_ROWS = 32, NODE_NAME = 64 };
+enum { NODE_LEVELS = 32, NODE_ROWS = 32, NODE_NAME = 64, NODE_SEARCH = 32 };
 
 /* A node by the numbers of children from the root on, which is child 0 of what has depth 0; or, with depth 0, by its
- * serial, if that is not 0; and its first child that is wanted. Operands of solids are children after the others. */
+ * serial, if that is not 0; and its first child that is wanted. Operands of solids are children after the others. With
+ * a text the rows are the nodes whose name or kind has it, in any case. */
 struct node_query {
     uint32_t depth, serial, first, path[NODE_LEVELS];
+    char search[NODE_SEARCH];
 };
 struct node_row {
     uint32_t serial, children;

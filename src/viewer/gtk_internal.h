@@ -36,6 +36,9 @@ struct gui {
     GtkTextBuffer *trace_text;
     GtkSingleSelection *node_selection; /* its model is the tree */
     GPtrArray *open_nodes;              /* the lists of children; not owned */
+    GPtrArray *node_items;              /* the rows on the screen; not owned */
+    GtkWidget *node_list, *found, *tree_pages;
+    struct node_query revealed; /* the node to which the tree is to be opened; depth 0: none */
     struct picture_tiles tiles;
     struct share memory;       /* of the shared state ... */
     struct window_state state; /* ... and what it was last */

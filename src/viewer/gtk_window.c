@@ -16,6 +16,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+void gui_name(GtkWidget *widget, const char *name) {
+    gtk_widget_set_tooltip_text(widget, name);
+    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+}
+
 /* To the viewer. */
 
 /* Without a viewer there is nothing to show. */
@@ -280,8 +285,7 @@ static GtkWidget *action_button(const struct gui *gui, const char *icon, const c
     GtkWidget *button = gtk_button_new_from_icon_name(icon);
     char *full = g_strdup_printf("win.%s", name);
     (void)gui;
-    gtk_widget_set_tooltip_text(button, tip);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(button), GTK_ACCESSIBLE_PROPERTY_LABEL, tip, -1);
+    gui_name(button, tip);
     gtk_actionable_set_action_name(GTK_ACTIONABLE(button), full);
     gtk_widget_set_focus_on_click(button, FALSE);
     g_free(full);
@@ -539,6 +543,7 @@ static void show_state(struct gui *gui) {
     if (strcmp(was.trace, state->trace) != 0)
         gtk_text_buffer_set_text(gui->trace_text, state->trace, -1);
     gtk_widget_set_visible(gui->trace_box, state->trace[0] != '\0');
+    gui_tree_show(gui, &was);
     gui_form_show(gui);
     gui_picture_draw(gui);
 }

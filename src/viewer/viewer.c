@@ -296,7 +296,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_NODES:
-        viewer->window.driver->nodes(viewer->window.driver->context, &viewer->command.node, &reply->nodes);
+        viewer->rows = reply->nodes;
+        viewer_receive_nodes(viewer, &viewer->command.node, &viewer->rows);
         return;
     case REPLY_PIXEL_TRACE:
         return;

@@ -231,6 +231,7 @@ struct viewer {
     struct viewer_pass pass;
     struct viewer_edit edit;
     struct viewer_nodes nodes;
+    struct node_rows rows; /* the last ones that have come */
     struct viewer_lights lights;
     struct viewer_trace trace;
     struct viewer_overlay overlay;

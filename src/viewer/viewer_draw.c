@@ -247,6 +247,14 @@ static void describe(struct viewer *viewer, double now) {
     (void)snprintf(state->message, sizeof state->message, "%s", viewer->message);
     (void)snprintf(state->notice, sizeof state->notice, "%s", viewer->window.notice.text);
     (void)snprintf(state->trace, sizeof state->trace, "%s", viewer->trace.text);
+    state->selected = (struct node_query){0};
+    if (viewer->edit.selection.kind == SELECTED_NODE)
+        state->selected = viewer->edit.selection.picked.path;
+    state->hidden_count = 0;
+    for (uint32_t i = 0; i < viewer->edit.steps.now.count && state->hidden_count < WINDOW_HIDDEN; i++) {
+        if (viewer->edit.steps.now.items[i].kind == CHANGE_GONE)
+            state->hidden[state->hidden_count++] = viewer->edit.steps.now.items[i].serial;
+    }
     viewer_make_form(viewer, &state->form);
 }
 

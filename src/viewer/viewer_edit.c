@@ -148,8 +148,8 @@ static uint32_t light_at(const struct viewer *viewer, double x, double y) {
 
 /* Changes. */
 
-static void make(struct viewer *viewer, const struct change *change) {
-    if (!edits_make(&viewer->edit.steps, change, true, viewer->edit.joins) ||
+static void make(struct viewer *viewer, const struct change *change, bool present) {
+    if (!edits_make(&viewer->edit.steps, change, present, viewer->edit.joins) ||
         !change_list_set(&viewer->edit.pending, change, true))
         viewer_show_message(viewer, "gray: no more changes can be stored");
     viewer_halt(viewer, false);
@@ -157,9 +157,9 @@ static void make(struct viewer *viewer, const struct change *change) {
     viewer->display.hud_dirty = true;
 }
 
-static void make_alone(struct viewer *viewer, const struct change *change) {
+static void make_step(struct viewer *viewer, const struct change *change, bool present) {
     viewer->edit.joins = false;
-    make(viewer, change);
+    make(viewer, change, present);
     viewer->edit.joins = false;
 }
 
@@ -222,7 +222,7 @@ void viewer_set_numbers(struct viewer *viewer, enum change_kind kind, enum mater
     /* Other inputs of a material may have an effect now. */
     if (kind == CHANGE_MATERIAL && !(picked->idle_parts >> part & 1))
         picked->idle_parts = 0;
-    make(viewer, &change);
+    make(viewer, &change, true);
 }
 
 /* Poses. */
@@ -283,7 +283,7 @@ static void transform_node(struct viewer *viewer, const struct transform *in_wor
     if (!transform_from_affine(&after.forward, &checked)) /* scaled so small that it has no inverse */
         return;
     memcpy(change.numbers, after.forward.m, sizeof after.forward.m);
-    make(viewer, &change);
+    make(viewer, &change, true);
 }
 
 /* The linear part of the map, about the position of the light. An environment is rotated about the y axis only. */
@@ -307,7 +307,7 @@ static void turn_light(struct viewer *viewer, const struct affine *map) {
     change.turns = true;
     for (int i = 0; i < TURN_NUMBERS; i++)
         change.numbers[TURN_AT + i] = after.m[i / 3][i % 3];
-    make(viewer, &change);
+    make(viewer, &change, true);
 }
 
 void viewer_move(struct viewer *viewer, struct vec3 by) {
@@ -574,8 +574,15 @@ void viewer_delete_selection(struct viewer *viewer) {
     if (viewer->edit.selection.kind == SELECTED_NOTHING)
         return;
     struct change change = viewer_change(viewer, light ? CHANGE_DARK : CHANGE_GONE, 0);
-    make_alone(viewer, &change);
+    make_step(viewer, &change, true);
     viewer->edit.selection.kind = SELECTED_NOTHING;
+}
+
+void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name) {
+    struct change change = {.kind = CHANGE_GONE, .serial = serial};
+    (void)snprintf(change.name, sizeof change.name, "%s", name);
+    bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
+    make_step(viewer, &change, shown);
 }
 
 /* The position of new nodes: the last clicked point, or in front of the camera. */
@@ -597,8 +604,8 @@ static void add_node(struct viewer *viewer, struct change change, const struct a
     (void)snprintf(pose.name, sizeof pose.name, "%s", added_kind_name(change.added));
     (void)map_to_parent(world_from_parent, map, &by);
     memcpy(pose.numbers, by.forward.m, sizeof by.forward.m);
-    make_alone(viewer, &change);
-    make_alone(viewer, &pose);
+    make_step(viewer, &change, true);
+    make_step(viewer, &pose, true);
     viewer->edit.selection.kind = SELECTED_NOTHING;
     viewer_select_node(viewer, &(struct node_query){.serial = pose.serial});
 }
@@ -643,10 +650,10 @@ static void add_light(struct viewer *viewer, uint32_t source, struct vec3 positi
         viewer_show_message(viewer, "gray: the window shows at most 4,096 lights");
         return;
     }
-    make_alone(viewer, &change);
+    make_step(viewer, &change, true);
     held.serial = viewer->lights.count + 1;
     if (changed)
-        make_alone(viewer, &held);
+        make_step(viewer, &held, true);
     viewer_select_light(viewer, viewer->lights.count + 1);
 }
 
@@ -680,12 +687,12 @@ void viewer_make_own_material(struct viewer *viewer) {
     struct change change = viewer_change(viewer, CHANGE_OWN, 0);
     change.number = viewer->scene.owned + count_of(viewer, CHANGE_OWN);
     change.source = picked->material_serial;
-    make_alone(viewer, &change);
+    make_step(viewer, &change, true);
     picked->material_serial = OWN_SERIAL - change.number;
     picked->can_own = false;
     for (int i = 0; i < count; i++) {
         held[i].serial = picked->material_serial;
-        make_alone(viewer, &held[i]);
+        make_step(viewer, &held[i], true);
     }
 }
 

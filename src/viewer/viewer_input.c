@@ -1,6 +1,8 @@
 /* Actions, keys and the mouse. */
 #include "viewer/viewer_internal.h"
 
+#include "light/light_edit.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -384,6 +386,47 @@ static void handle_wheel(struct viewer *viewer, const struct window_event *event
     viewer_change_view(viewer);
 }
 
+/* The tree: what the render process does not know. */
+
+static void want_rows(struct viewer *viewer, const struct node_query *query) {
+    struct node_rows rows = {0};
+    if (!viewer->block)
+        return;
+    if (query->depth == 0 || query->path[0] != SECTION_LIGHTS) {
+        if (viewer->nodes.count < NODE_QUERIES)
+            viewer->nodes.wanted[viewer->nodes.count++] = *query;
+        return;
+    }
+    for (uint32_t i = query->first; i < viewer->lights.known && rows.count < NODE_ROWS; i++) {
+        struct node_row *row = &rows.rows[rows.count++];
+        (void)snprintf(row->name, sizeof row->name, "%u", i + 1);
+        (void)snprintf(row->kind, sizeof row->kind, "%s",
+                       light_kind_name((enum light_kind)viewer->lights.items[i].kind));
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, &rows);
+}
+
+static void select_row(struct viewer *viewer, const struct node_query *query) {
+    bool light = query->depth == 2 && query->path[0] == SECTION_LIGHTS;
+    if (light && query->path[1] < viewer->lights.known)
+        viewer_select_light(viewer, query->path[1] + 1);
+    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES))
+        viewer_select_node(viewer, query);
+    else
+        viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->display.hud_dirty = true;
+}
+
+/* Beside the root of the scene. */
+void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows) {
+    if (query->depth == 0 && query->search[0] == '\0' && rows->count == 1) {
+        rows->count = WINDOW_SECTIONS;
+        rows->rows[SECTION_LIGHTS] = (struct node_row){.children = viewer->lights.count, .name = "Lights", .kind = " "};
+        rows->rows[SECTION_CAMERA] = (struct node_row){.name = "Camera", .kind = " "};
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, rows);
+}
+
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
     switch (event->kind) {
     case WINDOW_CLOSE:
@@ -418,11 +461,14 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         viewer_do(viewer, event->action);
         return;
     case WINDOW_NODES:
-        if (viewer->block && viewer->nodes.count < NODE_QUERIES)
-            viewer->nodes.wanted[viewer->nodes.count++] = event->node;
+        want_rows(viewer, &event->node);
         return;
     case WINDOW_SELECT:
-        viewer_select_node(viewer, &event->node);
+        select_row(viewer, &event->node);
+        return;
+    case WINDOW_HIDE:
+        if (viewer->block)
+            viewer_hide(viewer, event->node.serial, event->text);
         return;
     case WINDOW_TYPE:
         type(viewer, event->typed);

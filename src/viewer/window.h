@@ -25,6 +25,7 @@ enum window_event_kind {
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
+    WINDOW_HIDE,    /* the node with the serial of `node` and the name `text` is hidden, or shown again */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
 enum { WINDOW_LEFT = 1, WINDOW_MIDDLE = 2, WINDOW_RIGHT = 4 };
@@ -41,6 +42,7 @@ struct window_event {
     double numbers[3];
     bool joins;
     struct node_query node;
+    char text[NODE_NAME];
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -81,7 +83,9 @@ struct window_line {
     float x0, y0, x1, y1;
     enum line_colour colour;
 };
-enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384 };
+enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384, WINDOW_HIDDEN = 256 };
+/* The rows of the tree: the node, then the lights, which have a list below them, and the camera. */
+enum window_section { SECTION_NODES, SECTION_LIGHTS, SECTION_CAMERA, WINDOW_SECTIONS };
 
 /* Everything that the window shows but the picture and the rows of the tree. */
 struct window_state {
@@ -95,8 +99,10 @@ struct window_state {
     double share;                   /* of the work, 0 to 1 */
     uint32_t action_on;             /* by enum action_need, as bits: what there is */
     uint32_t frame_index, frame_count;
-    char trace[WINDOW_TRACE];                 /* of a pixel, or empty */
-    int left, top, shown_width, shown_height; /* where the picture goes */
+    char trace[WINDOW_TRACE];                     /* of a pixel, or empty */
+    int left, top, shown_width, shown_height;     /* where the picture goes */
+    struct node_query selected;                   /* the node that is selected; depth 0: none */
+    uint32_t hidden_count, hidden[WINDOW_HIDDEN]; /* serials of nodes */
     struct window_form form;
     uint32_t line_count;
     struct window_line lines[WINDOW_LINES];
