@@ -124,9 +124,10 @@ static int parse_number(GtkSpinButton *button, double *out, gpointer data) {
 /* As few digits as the number needs. */
 static gboolean show_number(GtkSpinButton *button, gpointer data) {
     char text[G_ASCII_DTOSTR_BUF_SIZE];
+    double value = gtk_spin_button_get_value(button);
     (void)data;
     gtk_editable_set_text(GTK_EDITABLE(button),
-                          g_ascii_formatd(text, sizeof text, "%.6g", gtk_spin_button_get_value(button)));
+                          g_ascii_formatd(text, sizeof text, "%.6g", fabs(value) < 1e-9 ? 0 : value));
     return TRUE;
 }
 

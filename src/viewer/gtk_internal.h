@@ -30,8 +30,9 @@ struct gui {
     struct channel channel;
     GtkApplication *application;
     GtkWidget *window, *pages, *picture, *start, *inspector, *inspector_title;
-    GtkWidget *progress, *figures, *notice, *error_bar, *error_text, *timeline, *frame_scale, *frame_label,
-        *play_button;
+    GtkWidget *progress, *figures, *notice, *timeline, *frame_scale, *frame_label, *play_button;
+    GtkWidget *error_bar, *error_text, *error_line, *error_render, *change_bar, *busy, *busy_text, *integrator;
+    GtkWidget *tree_pane, *inspector_pane, *trace_pane;
     GtkWidget *trace, *trace_box;
     GtkTextBuffer *trace_text;
     GtkSingleSelection *node_selection; /* its model is the tree */
@@ -46,7 +47,8 @@ struct gui {
     GFile *next_scene;         /* the scene to open if the user agrees to lose the edits; else NULL */
 
     enum window_key_set key_set;
-    bool updates; /* widgets are set by the program, not by the user */
+    gint64 tool_begun; /* when a tool was chosen: what is typed at once is for it */
+    bool updates;      /* widgets are set by the program, not by the user */
     struct form_row rows[FORM_FIELDS];
     uint32_t row_count;
     uint64_t form_subject;

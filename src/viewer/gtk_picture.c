@@ -281,9 +281,14 @@ static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, 
         send_held_key(gui, held, true);
         return held != FLY_FAST && held != FLY_SLOW;
     }
-    char typed = gui->state.types && plain ? typed_char(value) : '\0';
+    bool types = gui->state.types || g_get_monotonic_time() - gui->tool_begun < 300000;
+    char typed = types && plain ? typed_char(value) : '\0';
     if (typed != '\0') {
         gui_send_event(gui, &(struct window_event){.kind = WINDOW_TYPE, .typed = typed});
+        return GDK_EVENT_STOP;
+    }
+    if (value == GDK_KEY_A && plain && (gui->state.action_on >> NEEDS_PICTURE & 1)) {
+        g_action_group_activate_action(G_ACTION_GROUP(gui->window), "add", NULL);
         return GDK_EVENT_STOP;
     }
     int action = action_of(gui, value, state);

@@ -146,6 +146,7 @@ static void make_row(GtkSignalListItemFactory *factory, GtkListItem *item, gpoin
     gtk_label_set_ellipsize(GTK_LABEL(label), PANGO_ELLIPSIZE_END);
     gtk_widget_set_hexpand(label, TRUE);
     gtk_button_set_has_frame(GTK_BUTTON(eye), FALSE);
+    gtk_widget_add_css_class(eye, "eye");
     g_signal_connect(eye, "clicked", G_CALLBACK(toggle_eye), data);
     gtk_box_append(GTK_BOX(box), label);
     gtk_box_append(GTK_BOX(box), eye);

@@ -126,7 +126,8 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
                               .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
-                              .stepped = now};
+                              .stepped = now,
+                              .begun = now};
     viewer->window.driver = driver;
     viewer->window.large.shown = false;
     viewer->window.large.refused_width = 0;
@@ -169,6 +170,13 @@ bool viewer_has_tiles(const struct viewer *viewer) {
     const struct viewer_pass *pass = &viewer->pass;
     return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.samples == 0 &&
            pass->view.width == 0 && !pass->edited;
+}
+
+bool viewer_delays_change(struct viewer *viewer, double now) {
+    static const double long_time = 30; /* seconds */
+    double end = viewer->finished > 0 ? viewer->finished : now;
+    viewer->window.changed = viewer->window.open && viewer->begun > 0 && end - viewer->begun > long_time;
+    return viewer->window.changed;
 }
 
 void viewer_keep(struct viewer *viewer) {

@@ -24,7 +24,8 @@ enum viewer_action {
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
-    VIEWER_RUN_AGAIN,      /* the scripts must run again, which have ended */
+    VIEWER_RUN_AGAIN,      /* the scripts must run again */
+    VIEWER_END_SCRIPTS,    /* they must end */
     VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
     VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
     VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
@@ -198,6 +199,7 @@ struct viewer_window {
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
+    bool changed;                  /* a file has changed that an older picture was made of */
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
@@ -225,6 +227,7 @@ struct viewer {
     char message[512];          /* an error, or empty */
     char note[160];             /* for the log, or empty */
     double built;               /* when the world was built; 0: already reported */
+    double begun, finished;     /* the picture; 0: not yet */
 
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
@@ -267,6 +270,8 @@ bool viewer_has_tiles(const struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* Whether a changed file must wait until the user wants the picture to be made again: it has taken long. */
+bool viewer_delays_change(struct viewer *viewer, double now);
 /* Nothing happens before the user does something. */
 bool viewer_rests(const struct viewer *viewer);
 /* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;

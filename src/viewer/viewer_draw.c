@@ -232,6 +232,11 @@ static void describe(struct viewer *viewer, double now) {
     state->flies = viewer->input.flies;
     state->action_on = viewer_needs_met(viewer);
     state->halted = viewer->pass.halted;
+    if (viewer->finished <= 0 && viewer->block && viewer_is_idle(viewer))
+        viewer->finished = now;
+    state->waits = viewer->window.waits;
+    state->changed = viewer->window.changed;
+    state->runs = viewer->name[0] == '\0' && !viewer->window.waits && now - viewer->window.script_began > 0.3;
     state->busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer));
     state->playing = viewer->player.playing;
     state->loops = viewer->player.loops;
@@ -255,7 +260,7 @@ static void describe(struct viewer *viewer, double now) {
         if (viewer->edit.steps.now.items[i].kind == CHANGE_GONE)
             state->hidden[state->hidden_count++] = viewer->edit.steps.now.items[i].serial;
     }
-    viewer_make_form(viewer, &state->form);
+    viewer_make_form(viewer, state);
 }
 
 /* The window. */

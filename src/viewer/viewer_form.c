@@ -18,9 +18,10 @@ enum field_number {
     FIELD_SCALE,
     FIELD_LIGHT_STOPS,
     FIELD_LIGHT_COLOUR,
-    FIELD_LIGHT_NUMBER,
     FIELD_EXPOSURE,
     FIELD_FOV,
+    FIELD_EYE,
+    FIELD_DIRECTION,
     FIELD_MATERIAL, /* and the parts of a material */
     FIELD_SETTING = FIELD_MATERIAL + MATERIAL_PART_PARTS,
 };
@@ -133,32 +134,36 @@ static void add_light(const struct viewer *viewer, struct window_form *form) {
     set_range(field, 0, HUGE_VAL, "");
 }
 
-/* Every setting of the picture that has an option, as script and command line have set it, but those that have a field
- * of their own or no single number. */
+/* As script and command line have set it. */
+static void describe_setting(const struct viewer *viewer, int index, struct window_field *field) {
+    const struct setting *row = &setting_table[index];
+    size_t dashes = strspn(row->option, "-");
+    bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
+    bool words = !flag && !number && row->words && row->words[0] != '\0';
+    uint64_t bits = setting_bits(row, &viewer->request.settings);
+    *field = (struct window_field){.kind = flag    ? FIELD_FLAG
+                                           : words ? FIELD_CHOICE
+                                                   : FIELD_NUMBER,
+                                   .number = FIELD_SETTING + (uint32_t)index,
+                                   .numbers[0] = (double)bits};
+    (void)snprintf(field->group, sizeof field->group, "%s", option_group_title(row->group));
+    (void)snprintf(field->name, sizeof field->name, "%.*s", (int)strcspn(row->option + dashes, "|"),
+                   row->option + dashes);
+    if (number)
+        memcpy(&field->numbers[0], &bits, sizeof bits);
+    set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    if (words)
+        (void)snprintf(field->text, sizeof field->text, "%s", row->words);
+    set_help(field, row->help);
+}
+
+/* Every setting of the picture that has an option, but those that have a field of their own or no single number. */
 static void add_settings(const struct viewer *viewer, struct window_form *form) {
     for (int i = 0; i < setting_count; i++) {
         const struct setting *row = &setting_table[i];
         bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
-        char name[32];
-        if (!row->option || row->kind == SETTING_LAYERS || row->kind == SETTING_CROP || own)
-            continue;
-        size_t dashes = strspn(row->option, "-");
-        (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(row->option + dashes, "|"), row->option + dashes);
-        bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
-        bool words = !flag && !number && row->words && row->words[0] != '\0';
-        struct window_field *field = add(form, option_group_title(row->group), name,
-                                         flag    ? FIELD_FLAG
-                                         : words ? FIELD_CHOICE
-                                                 : FIELD_NUMBER,
-                                         FIELD_SETTING + (uint32_t)i);
-        uint64_t bits = setting_bits(row, &viewer->request.settings);
-        field->numbers[0] = (double)bits;
-        if (number)
-            memcpy(&field->numbers[0], &bits, sizeof bits);
-        set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
-        if (words)
-            (void)snprintf(field->text, sizeof field->text, "%s", row->words);
-        set_help(field, row->help);
+        if (row->option && row->kind != SETTING_LAYERS && row->kind != SETTING_CROP && !own)
+            describe_setting(viewer, i, add(form, "", "", FIELD_TEXT, FIELD_NONE));
     }
 }
 
@@ -180,11 +185,13 @@ static void add_picture(const struct viewer *viewer, struct window_form *form) {
     field = add(form, "Picture", "angle of view", FIELD_NUMBER, FIELD_FOV);
     field->numbers[0] = viewer->fly_camera.pose.fov;
     set_range(field, 0.01, 170, "degrees");
-    if (viewer->lights.known > 0) {
-        field = add(form, "Picture", "select light", FIELD_NUMBER, FIELD_LIGHT_NUMBER);
-        field->numbers[0] = viewer->edit.selection.kind == SELECTED_LIGHT ? viewer->edit.selection.light : 0;
-        set_range(field, 0, viewer->lights.known, "#");
-    }
+    struct camera camera = fly_camera_current(&viewer->fly_camera);
+    field = add(form, "Picture", "eye", FIELD_VECTOR, FIELD_EYE);
+    set_vector(field, camera.eye);
+    set_help(field, "Where the camera is");
+    field = add(form, "Picture", "direction", FIELD_VECTOR, FIELD_DIRECTION);
+    set_vector(field, camera.view);
+    set_help(field, "The direction in which the camera looks");
 }
 
 /* Another selection has other widgets. */
@@ -196,7 +203,11 @@ static uint64_t subject_of(const struct viewer *viewer) {
     return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
 }
 
-void viewer_make_form(const struct viewer *viewer, struct window_form *form) {
+void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
+    struct window_form *form = &state->form;
+    state->integrator.number = FIELD_NONE;
+    if (viewer->name[0] != '\0')
+        describe_setting(viewer, SETTING_INDEX(integrator), &state->integrator);
     form->count = 0;
     form->subject = subject_of(viewer);
     form->title[0] = '\0';
@@ -258,9 +269,11 @@ void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
             viewer_change_view(viewer);
         }
         return;
-    case FIELD_LIGHT_NUMBER:
-        if (viewer->block && number >= 1 && number <= viewer->lights.known)
-            viewer_select_light(viewer, (uint32_t)number);
+    case FIELD_EYE:
+    case FIELD_DIRECTION:
+        if (viewer->block && fly_camera_place(&viewer->fly_camera, event->field == FIELD_EYE,
+                                              vec3_make(number, event->numbers[1], event->numbers[2])))
+            viewer_change_view(viewer);
         return;
     default:
         if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)

@@ -36,8 +36,9 @@ void viewer_halt(struct viewer *viewer, bool on) {
 
 /* From coarse to fine; a script that has ended runs again. */
 static void render_again(struct viewer *viewer) {
-    if (!viewer->block && viewer->window.waits)
+    if (viewer->window.changed || (!viewer->block && viewer->window.waits))
         viewer->action = VIEWER_RUN_AGAIN;
+    viewer->window.changed = false;
     if (!viewer->block)
         return;
     viewer->pass.from_coarse = viewer->pass.outdated = true;
@@ -118,6 +119,10 @@ static void type(struct viewer *viewer, char c) {
 
 /* Ends what is going on, from the inside out: flying, the selection and the trace, rendering. */
 static void escape(struct viewer *viewer) {
+    if (!viewer->block) {
+        viewer->action = viewer->window.waits ? VIEWER_NOTHING : VIEWER_END_SCRIPTS;
+        return;
+    }
     bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->trace.text[0] != '\0';
     if (viewer->input.flies || has_tool(viewer)) {
         fly(viewer, false);
@@ -362,7 +367,11 @@ static void handle_release(struct viewer *viewer, const struct window_event *eve
     viewer->input.pressed = 0;
     if (viewer->edit.handle)
         end_tool(viewer, true);
-    if (viewer->block && clicks && !is_drag(viewer))
+    if (!viewer->block || !clicks || is_drag(viewer))
+        return;
+    if (viewer_click_cube(viewer, event->x, event->y))
+        viewer_change_view(viewer);
+    else
         viewer_click(viewer, event->x, event->y, event->control);
 }
 

@@ -94,6 +94,9 @@ struct window_state {
     bool full_screen;                           /* the whole screen */
     bool types;                                 /* a tool is chosen: letters and digits are for it */
     bool halted, busy, playing, loops, unsaved; /* unsaved: edits */
+    bool waits;   /* no script runs, so nothing is rendered until a file changes or the user wants it */
+    bool changed; /* a file has changed, but the picture would be lost: the user decides */
+    bool runs;    /* the scripts run, and there is no picture yet */
     char file[256], state[64], figures[288], frame[64], tool[64];
     char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
     double share;                   /* of the work, 0 to 1 */
@@ -104,6 +107,7 @@ struct window_state {
     struct node_query selected;                   /* the node that is selected; depth 0: none */
     uint32_t hidden_count, hidden[WINDOW_HIDDEN]; /* serials of nodes */
     struct window_form form;
+    struct window_field integrator; /* number 0: none */
     uint32_t line_count;
     struct window_line lines[WINDOW_LINES];
 };

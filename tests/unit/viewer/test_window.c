@@ -1039,3 +1039,52 @@ TEST(window_handles_move_turn_and_scale_along_their_axis_only) {
     CHECK_NEAR(m[4], sin(M_PI / 4), 1e-9);
     end(&t);
 }
+
+/* The cube is in the upper right corner; the middle of a face looks along its axis. */
+TEST(window_looks_along_the_axis_of_the_face_of_the_view_cube_that_is_clicked) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    viewer_turn(&t.viewer, vec3_make(0, 1, 0), 90); /* nothing is selected: it does nothing */
+    CHECK_EQ_INT(t.viewer.edit.steps.count, 0);
+    fly_camera_orbit(&t.viewer.fly_camera, 0.2, 0.1);
+    viewer_change_view(&t.viewer);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    finish_pass(&t, 0.02, false);
+    struct camera_frame frame;
+    CHECK(viewer_camera_frame(&t.viewer, &frame));
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 a = {axis == 0, axis == 1, axis == 2}, toward = vec3_negate(frame.forward);
+        double sign = vec3_dot(a, toward) > 0 ? 1 : -1;
+        double x = 800 - 46 + 22 * sign * vec3_dot(a, frame.unit_right),
+               y = 46 + 22 * sign * vec3_dot(a, frame.unit_down);
+        CHECK(viewer_click_cube(&t.viewer, x, y));
+        struct camera camera = fly_camera_current(&t.viewer.fly_camera);
+        CHECK_NEAR(apart(camera.view, vec3_scale(a, -sign)), 0, 1e-9);
+    }
+    CHECK(!viewer_click_cube(&t.viewer, 800 - 46, 120) && !viewer_click_cube(&t.viewer, 400, 280));
+    end(&t);
+}
+
+TEST(window_offers_a_changed_file_when_the_picture_has_taken_long) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    CHECK(!viewer_delays_change(&t.viewer, t.now) && !viewer_delays_change(&t.viewer, t.now + 1000));
+    viewer_end(&t.viewer);
+    mem_free(t.block);
+    begin(&t);
+    go_to_the_fine_pass(&t);
+    finish_pass(&t, 60, false);
+    CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
+    CHECK(viewer_delays_change(&t.viewer, t.now + 1));
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    t.now += 0.3;
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.fake.state.changed);
+    do_action(&t.fake, DO_RENDER);
+    CHECK_EQ_INT(step(&t), VIEWER_RUN_AGAIN);
+    CHECK(!t.viewer.window.changed);
+    end(&t);
+}
