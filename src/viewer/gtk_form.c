@@ -161,7 +161,7 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
         gtk_widget_set_size_request(slider, 70, -1);
         gtk_widget_set_hexpand(slider, TRUE);
         gtk_box_append(GTK_BOX(box), slider);
-        gtk_accessible_update_property(GTK_ACCESSIBLE(slider), GTK_ACCESSIBLE_PROPERTY_LABEL, field->name, -1);
+        gui_label(slider, field->name);
     }
     if (field->kind == FIELD_COLOUR) {
         row->inputs[0] = gtk_color_button_new();
@@ -198,7 +198,7 @@ static void add_row(struct gui *gui, GtkGrid *grid, int at, struct form_row *row
     gtk_widget_add_css_class(label, "dim-label");
     for (int i = 0; i < 3 && row->inputs[i] && field->kind != FIELD_TEXT; i++) {
         char *name = field->kind == FIELD_VECTOR ? g_strdup_printf("%s %s", text, axes[i]) : g_strdup(text);
-        gtk_accessible_update_property(GTK_ACCESSIBLE(row->inputs[i]), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+        gui_label(row->inputs[i], name);
         g_free(name);
     }
     if (field->help[0] != '\0') {
@@ -230,6 +230,7 @@ static GtkGrid *add_group(GtkBox *box, const char *name) {
     gtk_widget_set_margin_top(grid, 4);
     gtk_widget_set_margin_start(grid, 12);
     gtk_expander_set_child(GTK_EXPANDER(expander), grid);
+    gui_label(expander, name);
     gtk_expander_set_expanded(GTK_EXPANDER(expander), !g_hash_table_contains(folded, name));
     g_signal_connect(expander, "notify::expanded", G_CALLBACK(note_fold), folded);
     gtk_box_append(box, expander);

@@ -159,7 +159,7 @@ static void gray_picture_init(GrayPicture *picture) {
     gtk_widget_set_hexpand(widget, TRUE);
     gtk_widget_set_vexpand(widget, TRUE);
     gtk_widget_set_size_request(widget, 160, 120);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, "Picture", -1);
+    gui_label(widget, "Picture");
 }
 
 /* The mouse. */

@@ -16,9 +16,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+void gui_label(GtkWidget *widget, const char *name) {
+    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+    if (GTK_IS_DROP_DOWN(widget)) /* its button */
+        gui_label(gtk_widget_get_first_child(widget), name);
+}
+
 void gui_name(GtkWidget *widget, const char *name) {
     gtk_widget_set_tooltip_text(widget, name);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+    gui_label(widget, name);
 }
 
 /* To the viewer. */
@@ -408,7 +414,7 @@ static GtkWidget *make_timeline(struct gui *gui) {
     gui->frame_scale = gtk_scale_new_with_range(GTK_ORIENTATION_HORIZONTAL, 0, 1, 1);
     gui->frame_label = gtk_label_new("");
     gtk_widget_set_hexpand(gui->frame_scale, TRUE);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(gui->frame_scale), GTK_ACCESSIBLE_PROPERTY_LABEL, "Frame", -1);
+    gui_label(gui->frame_scale, "Frame");
     g_signal_connect(gui->frame_scale, "value-changed", G_CALLBACK(frame_moved), gui);
     gtk_box_append(GTK_BOX(gui->timeline), gui->play_button);
     gtk_box_append(GTK_BOX(gui->timeline),
@@ -467,7 +473,9 @@ static GtkWidget *text_label(const char *text) {
 /* A bar below the picture with an icon, a text and buttons. */
 static GtkWidget *make_bar(const char *icon, GtkWidget *text, GtkWidget *first, GtkWidget *second) {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8), *bar = gtk_revealer_new();
-    gtk_box_append(GTK_BOX(box), gtk_image_new_from_icon_name(icon));
+    GtkWidget *image = gtk_image_new_from_icon_name(icon);
+    gui_label(image, second ? "Problem" : "Notice");
+    gtk_box_append(GTK_BOX(box), image);
     gtk_box_append(GTK_BOX(box), text);
     gtk_box_append(GTK_BOX(box), first);
     if (second)
@@ -547,8 +555,7 @@ static GtkWidget *make_trace(struct gui *gui) {
     gui->trace_text = gtk_text_view_get_buffer(GTK_TEXT_VIEW(view));
     gtk_text_view_set_editable(GTK_TEXT_VIEW(view), FALSE);
     gtk_text_view_set_monospace(GTK_TEXT_VIEW(view), TRUE);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(view), GTK_ACCESSIBLE_PROPERTY_LABEL, "How the pixel got its colour",
-                                   -1);
+    gui_label(view, "How the pixel got its colour");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(gui->trace_box), view);
     gtk_widget_set_size_request(gui->trace_box, -1, 180);
     gtk_widget_set_visible(gui->trace_box, FALSE);

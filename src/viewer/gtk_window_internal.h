@@ -4,7 +4,8 @@
 
 #include "viewer/gtk_internal.h"
 
-/* The name for screen readers, and the tooltip. */
+/* The name for screen readers; gui_name also sets the tooltip. */
+void gui_label(GtkWidget *widget, const char *name);
 void gui_name(GtkWidget *widget, const char *name);
 void gui_send_event(struct gui *gui, const struct window_event *event);
 void gui_send_action(struct gui *gui, enum window_action action);

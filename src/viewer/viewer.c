@@ -293,6 +293,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
+        if (viewer->command.change.kind == CHANGE_ADD || viewer->command.change.kind == CHANGE_ADD_LIGHT)
+            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         if (!reply->unbuilt || reply->light_count > 0)
             viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
@@ -496,6 +498,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit &&
+           (!viewer->window.logs_notes || viewer->note[0] == '\0') &&
            viewer->window.driver->poll(viewer->window.driver->context, &event))
         viewer_handle_event(viewer, &event);
     /* A fine pass of an outdated view is being stopped: it would show the previous view. */

@@ -306,6 +306,7 @@ void viewer_do(struct viewer *viewer, enum window_action action) {
     if (action != DO_ESCAPE && action != DO_MOVE && action != DO_TURN && action != DO_SIZE)
         end_tool(viewer, true);
     viewer->display.hud_dirty = true;
+    (void)snprintf(viewer->note, sizeof viewer->note, "window: %s", window_action_table[action].name);
     do_action(viewer, action);
 }
 
