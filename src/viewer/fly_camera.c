@@ -155,7 +155,7 @@ void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction) {
     pose->position = vec3_add_scaled(fly_camera->centre, direction, -distance);
 }
 
-bool fly_camera_place(struct fly_camera *fly_camera, bool eye, struct vec3 v) {
+bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v) {
     struct pose *pose = &fly_camera->pose;
     if (!vec3_finite(v) || (!eye && !(vec3_length(v) > 0)))
         return false;

@@ -50,7 +50,7 @@ void fly_camera_pan(struct fly_camera *fly_camera, double x, double y);
  * the centre for each step; never beyond the centre. */
 void fly_camera_dolly(struct fly_camera *fly_camera, double x, double y, double steps);
 /* Puts the eye there, or looks in that direction; false: it is none. */
-bool fly_camera_place(struct fly_camera *fly_camera, bool eye, struct vec3 v);
+bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v);
 /* Looks along a direction at the centre, from the same distance; up is y, or -z where that is the direction. */
 void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction);
 /* Moves back or forth until the box fills the picture, which becomes the centre. A box without a size: not at all. */

@@ -1041,7 +1041,7 @@ TEST(window_handles_move_turn_and_scale_along_their_axis_only) {
 }
 
 /* The cube is in the upper right corner; the middle of a face looks along its axis. */
-TEST(window_looks_along_the_axis_of_the_face_of_the_view_cube_that_is_clicked) {
+TEST(window_turns_to_the_face_of_the_view_cube_that_is_clicked) {
     struct table t;
     begin(&t);
     enlarge(&t);
