@@ -6,6 +6,7 @@
 
 #include "math/box.h"
 #include "settings/settings.h"
+#include "window/window.h"
 
 struct quaternion {
     double w, x, y, z;
@@ -17,7 +18,6 @@ struct pose {
     double fov;             /* degrees */
 };
 
-enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 enum { FLY_VIEWS = 64 };
 
 struct fly_camera {

@@ -13,7 +13,7 @@
 #include "viewer/edits.h"
 #include "viewer/fly_camera.h"
 #include "viewer/preview_messages.h"
-#include "viewer/window.h"
+#include "window/window.h"
 
 enum viewer_action {
     VIEWER_NOTHING,

@@ -272,7 +272,7 @@ void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
     case FIELD_EYE:
     case FIELD_DIRECTION:
         if (viewer->block && fly_camera_put(&viewer->fly_camera, event->field == FIELD_EYE,
-                                              vec3_make(number, event->numbers[1], event->numbers[2])))
+                                            vec3_make(number, event->numbers[1], event->numbers[2])))
             viewer_change_view(viewer);
         return;
     default:

@@ -2,7 +2,7 @@
  * what it does. */
 #include "tests/harness.h"
 
-#include "viewer/actions.h"
+#include "window/actions.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* What other widgets report to the viewer. */
-#ifndef GRAY_VIEWER_GTK_WINDOW_INTERNAL_H
-#define GRAY_VIEWER_GTK_WINDOW_INTERNAL_H
+#ifndef GRAY_WINDOW_GTK_WINDOW_INTERNAL_H
+#define GRAY_WINDOW_GTK_WINDOW_INTERNAL_H
 
-#include "viewer/gtk_internal.h"
+#include "window/gtk_internal.h"
 
 /* The name for screen readers; gui_name also sets the tooltip. */
 void gui_label(GtkWidget *widget, const char *name);

@@ -1,6 +1,6 @@
 /* What a user can ask the window for, once: menus, keys, the list of keys and tooltips are made from these rows. */
-#ifndef GRAY_VIEWER_ACTIONS_H
-#define GRAY_VIEWER_ACTIONS_H
+#ifndef GRAY_WINDOW_ACTIONS_H
+#define GRAY_WINDOW_ACTIONS_H
 
 #include "base/list.h"
 

@@ -2,13 +2,13 @@
  * user does goes there as notes (window_channel.h). gtk_window.c has the window and its menus, gtk_picture.c the
  * picture and its input, gtk_form.c the inspector, gtk_tree.c the tree of nodes, gtk_start.c the page without a scene.
  */
-#ifndef GRAY_VIEWER_GTK_INTERNAL_H
-#define GRAY_VIEWER_GTK_INTERNAL_H
+#ifndef GRAY_WINDOW_GTK_INTERNAL_H
+#define GRAY_WINDOW_GTK_INTERNAL_H
 
 #define GDK_VERSION_MIN_REQUIRED GDK_VERSION_4_8
 #define GDK_VERSION_MAX_ALLOWED GDK_VERSION_4_8
 
-#include "viewer/window_channel.h"
+#include "window/window_channel.h"
 
 #include <gtk/gtk.h>
 

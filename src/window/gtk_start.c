@@ -1,7 +1,7 @@
 /* The page without a scene: files that were opened lately, and the demos, as cards. */
-#include "viewer/gtk_start_internal.h"
+#include "window/gtk_start_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <string.h>
 

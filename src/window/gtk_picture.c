@@ -1,8 +1,8 @@
 /* The picture: its tiles as textures, whose bytes are copies, because those of a texture must not change. Input is read
  * from raw events: the gestures of GTK 4.8 lose drags of the middle and the right button under Wayland. */
-#include "viewer/gtk_picture_internal.h"
+#include "window/gtk_picture_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,13 +1,13 @@
 /* The window: menus, header, panels around the picture, and what comes from the viewer. Numbers and letters are those
  * of the C locale; only texts of GTK are translated. */
 #define _GNU_SOURCE
-#include "viewer/gtk_window.h"
+#include "window/gtk_window.h"
 
-#include "viewer/gtk_form_internal.h"
-#include "viewer/gtk_picture_internal.h"
-#include "viewer/gtk_start_internal.h"
-#include "viewer/gtk_tree_internal.h"
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_form_internal.h"
+#include "window/gtk_picture_internal.h"
+#include "window/gtk_start_internal.h"
+#include "window/gtk_tree_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <glib-unix.h>
 #include <locale.h>

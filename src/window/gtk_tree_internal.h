@@ -1,8 +1,8 @@
 /* The tree of nodes. */
-#ifndef GRAY_VIEWER_GTK_TREE_INTERNAL_H
-#define GRAY_VIEWER_GTK_TREE_INTERNAL_H
+#ifndef GRAY_WINDOW_GTK_TREE_INTERNAL_H
+#define GRAY_WINDOW_GTK_TREE_INTERNAL_H
 
-#include "viewer/gtk_internal.h"
+#include "window/gtk_internal.h"
 
 GtkWidget *gui_tree_new(struct gui *gui);
 void gui_tree_show(struct gui *gui, const struct window_state *was);      /* what is selected and hidden */

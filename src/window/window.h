@@ -1,16 +1,18 @@
 /* The interface to a window: it shows a picture with lines over it, has widgets for everything else, and reports input.
  * The driver of window_channel.c has the window in another process; tests have their own. All positions are pixels of
  * the screen, from the upper left corner of the place for the picture. */
-#ifndef GRAY_VIEWER_WINDOW_H
-#define GRAY_VIEWER_WINDOW_H
+#ifndef GRAY_WINDOW_WINDOW_H
+#define GRAY_WINDOW_WINDOW_H
 
 #include "base/error.h"
 #include "inspect/node_list.h"
-#include "viewer/actions.h"
-#include "viewer/fly_camera.h"
+#include "window/actions.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* Keys that move the camera while they are held. */
+enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 
 enum window_event_kind {
     WINDOW_CLOSE,

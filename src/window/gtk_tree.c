@@ -1,8 +1,8 @@
 /* Each open node has a list model of its children. The row of the node states how many there are. The model asks the
  * viewer for rows when they come into view, NODE_ROWS at a time. Closed nodes have no model. */
-#include "viewer/gtk_tree_internal.h"
+#include "window/gtk_tree_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* The inspector: widgets for the fields of a form. Another subject makes them anew; else only values change, and not in
  * a widget in which the user types. */
-#include "viewer/gtk_form_internal.h"
+#include "window/gtk_form_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <math.h>
 #include <string.h>
