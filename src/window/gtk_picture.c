@@ -240,8 +240,23 @@ static void send_held_key(struct gui *gui, int key, bool down) {
     gui_send_event(gui, &(struct window_event){.kind = WINDOW_KEY, .key = (enum fly_camera_key)key, .down = down});
 }
 
+/* What the key is without Shift: 0 in place of a parenthesis. */
+static guint without_shift(const struct gui *gui, guint value, guint code) {
+    GdkKeymapKey *keys = NULL;
+    guint *values = NULL;
+    int count = 0;
+    if (gdk_display_map_keycode(gtk_widget_get_display(gui->window), code, &keys, &values, &count)) {
+        for (int i = 0; i < count; i++)
+            value = keys[i].level == 0 && keys[i].group == 0 ? values[i] : value;
+    }
+    g_free(keys);
+    g_free(values);
+    return value;
+}
+
 /* The action of a key in the chosen set, or -1. */
-static int action_of(const struct gui *gui, guint value, GdkModifierType state) {
+static int action_of(const struct gui *gui, guint value, guint code, GdkModifierType state) {
+    guint plain = without_shift(gui, value, code);
     state &= GDK_CONTROL_MASK | GDK_SHIFT_MASK | GDK_ALT_MASK;
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         char **keys = g_strsplit(window_action_table[i].keys[gui->key_set], " ", -1);
@@ -251,7 +266,8 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
             GdkModifierType with;
             /* Shift is part of the symbol of keys like plus. */
             bool symbol = value == gdk_keyval_to_lower(value) && value == gdk_keyval_to_upper(value) && value < 128;
-            found = gtk_accelerator_parse(*key, &wanted, &with) && wanted == gdk_keyval_to_lower(value) &&
+            found = gtk_accelerator_parse(*key, &wanted, &with) &&
+                    (wanted == gdk_keyval_to_lower(value) || (wanted == plain && with == state)) &&
                     (with == state || (symbol && with == (state & ~(guint)GDK_SHIFT_MASK)));
         }
         g_strfreev(keys);
@@ -274,7 +290,7 @@ static char typed_char(guint value) {
 
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
-    (void)keys, (void)code;
+    (void)keys;
     bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->state.flies;
     int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : -1;
     if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
@@ -291,7 +307,7 @@ static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, 
         g_action_group_activate_action(G_ACTION_GROUP(gui->window), "add", NULL);
         return GDK_EVENT_STOP;
     }
-    int action = action_of(gui, value, state);
+    int action = action_of(gui, value, code, state);
     if (action >= 0)
         gui_send_action(gui, (enum window_action)action);
     return action >= 0;
