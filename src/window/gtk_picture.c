@@ -290,7 +290,10 @@ static char typed_char(guint value) {
 
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
-    (void)keys;
+    /* Panes of GTK take function keys for themselves. */
+    bool first = gtk_event_controller_get_propagation_phase(GTK_EVENT_CONTROLLER(keys)) == GTK_PHASE_CAPTURE;
+    if (first && (value < GDK_KEY_F2 || value > GDK_KEY_F12))
+        return GDK_EVENT_PROPAGATE;
     bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->state.flies;
     int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : -1;
     if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
@@ -333,6 +336,10 @@ void gui_add_keys(struct gui *gui) {
     g_signal_connect(focus, "leave", G_CALLBACK(leave), gui);
     gtk_event_controller_set_propagation_phase(keys, GTK_PHASE_BUBBLE);
     gtk_widget_add_controller(gui->window, keys);
+    GtkEventController *first = gtk_event_controller_key_new();
+    g_signal_connect(first, "key-pressed", G_CALLBACK(press_key), gui);
+    gtk_event_controller_set_propagation_phase(first, GTK_PHASE_CAPTURE);
+    gtk_widget_add_controller(gui->window, first);
     gtk_widget_add_controller(gui->picture, focus);
 }
 
