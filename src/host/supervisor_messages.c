@@ -169,6 +169,15 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* The scripts end, and the window stays. */
+static void end_scripts(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = true;
+    supervisor->deadline = clock_now() + patience_again;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+}
+
 /* As if its option were given from now on: another child runs the scripts. */
 static void change_setting(struct supervisor *supervisor, const struct viewer_setting *change) {
     setting_store(&setting_table[change->index], &supervisor->own_options->settings, change->number);
@@ -254,6 +263,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
             return;
         case VIEWER_RUN_AGAIN:
             supervisor_restart(supervisor);
+            return;
+        case VIEWER_END_SCRIPTS:
+            end_scripts(supervisor);
             return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
