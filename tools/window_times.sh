@@ -12,7 +12,7 @@ if [ "$1" != inside ]; then
 fi
 shift
 gray=$PWD/build/release/gray
-export SDL_RENDER_DRIVER=software SDL_FRAMEBUFFER_ACCELERATION=0
+export GDK_DEBUG=gl-disable GSK_RENDERER=cairo GTK_A11Y=none
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 said() { # waits until the file has this many lines with the word
@@ -29,12 +29,12 @@ for demo in "$@"; do
     pid=$!
     said 'on the screen' 1 || { kill $pid; continue; }
     for i in 1 2 3 4 5 6 7 8 9 10; do
-        xdotool key r
+        xdotool key F12
         sleep "0.$((5 + 5 * i))"
-        xdotool key x
+        xdotool key ctrl+period
         said 'stopped in' "$i" || break
     done
-    xdotool key r sleep 0.3 key q
+    xdotool key F12 sleep 0.3 key ctrl+q
     wait $pid
     first=$(sed -n 's/.*on the screen \([0-9.]*\) ms.*/\1/p' "$work/said" | head -1)
     stops=$(sed -n 's/.*stopped in \([0-9.]*\) ms.*/\1/p' "$work/said" | sort -n)

@@ -489,6 +489,24 @@ bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *
     return csg_nearest(csg, ray, scratch, &ignored);
 }
 
+/* A surface takes the place of a crossing that the sweep has passed. */
+bool csg_list_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
+                   struct crossing_list *out) {
+    uint32_t used = scratch->used;
+    struct sweep s;
+    struct pending_leaves pending;
+    struct ray leaf_ray = *ray;
+    struct crossing surface;
+    *out = (struct crossing_list){used, 0};
+    if (sweep_begin(&s, csg, ray, &leaf_ray, &pending, scratch)) {
+        out->first = (uint32_t)(s.items - scratch->items);
+        while (sweep_next(&s, &surface))
+            s.items[out->count++] = surface;
+    }
+    scratch->used = scratch->overflow ? used : out->first + out->count;
+    return !scratch->overflow;
+}
+
 /* The postfix program itself, on a stack of bits: independent of the plan but for the leaves' own boxes. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;

@@ -183,6 +183,36 @@ static bool read_volume(struct gltf *g, const json_t *volume, struct model_mater
     return true;
 }
 
+/* KHR_materials_diffuse_transmission: all of the diffuse light that it takes comes through a thin wall; in a solid it
+ * is light under the surface, where KHR_materials_volume_scatter has its colour. Under a transmitting surface that
+ * extension makes a part of the extinction scattering. */
+static bool read_scattering(struct gltf *g, const json_t *extensions, struct model_material *m, const char *where) {
+    const json_t *diffuse = json_object_get(extensions, "KHR_materials_diffuse_transmission");
+    const json_t *scatter = json_object_get(extensions, "KHR_materials_volume_scatter");
+    double tint[3] = {1, 1, 1}, colour[3] = {0, 0, 0}, g_scatter = number_or(scatter, "scatterAnisotropy", 0);
+    struct openpbr *v = &m->layers;
+    struct colour extinction = m->absorption;
+    if (!gltf_numbers(g, diffuse, "diffuseTransmissionColorFactor", tint, 3, where) ||
+        !gltf_numbers(g, scatter, "multiscatterColor", colour, 3, where))
+        return false;
+    g_scatter = fmin(fmax(g_scatter, -0.99), 0.99);
+    v->subsurface_weight = share(diffuse, "diffuseTransmissionFactor", 0);
+    v->subsurface_colour = unit_colour(tint);
+    v->subsurface_anisotropy = v->thin_walled ? 1 : g_scatter;
+    /* Channels without extinction are all but clear. */
+    struct colour least = colour_all(colour_max_abs(extinction) / 1024);
+    v->subsurface_radius_scale = colour_share(colour_all(1), colour_max(extinction, least));
+    if (v->thin_walled || !scatter)
+        return true;
+    v->subsurface_colour = unit_colour(colour);
+    v->transmission_anisotropy = g_scatter;
+    v->transmission_scattering = colour_mul(extinction, colour_make(subsurface_albedo(unit(colour[0]), g_scatter),
+                                                                    subsurface_albedo(unit(colour[1]), g_scatter),
+                                                                    subsurface_albedo(unit(colour[2]), g_scatter)));
+    m->absorption = colour_sub(extinction, v->transmission_scattering);
+    return true;
+}
+
 static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_material *m, const char *where) {
     double colour[3] = {0, 0, 0};
     if (!gltf_numbers(g, sheen, "sheenColorFactor", colour, 3, where))
@@ -226,7 +256,11 @@ static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct mod
         {"KHR_materials_transmission", "transmissionTexture", INPUT_REFRACT, 'r', transmission},
         {"KHR_materials_clearcoat", "clearcoatTexture", INPUT_COAT_WEIGHT, 'r', layers->coat_weight},
         {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", INPUT_COAT_ROUGHNESS, 'g', layers->coat_roughness},
-        {"KHR_materials_sheen", "sheenRoughnessTexture", INPUT_FUZZ_ROUGHNESS, 'a', layers->fuzz_roughness}};
+        {"KHR_materials_sheen", "sheenRoughnessTexture", INPUT_FUZZ_ROUGHNESS, 'a', layers->fuzz_roughness},
+        {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", INPUT_SUBSURFACE_WEIGHT, 'a',
+         layers->subsurface_weight},
+        {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture", INPUT_SUBSURFACE_COLOUR, 'c',
+         layers->subsurface_weight > 0}};
     for (size_t i = 0; i < MODEL_LAYER_MAPS; i++) {
         const json_t *extension = json_object_get(extensions, rows[i].extension);
         if (rows[i].factor == 0 || !json_object_get(extension, rows[i].key))
@@ -268,7 +302,8 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     m->roughness = share(rough, "roughnessFactor", 1);
     m->transmission = share(json_object_get(extensions, "KHR_materials_transmission"), "transmissionFactor", 0);
     const json_t *gloss = json_object_get(extensions, "KHR_materials_pbrSpecularGlossiness");
-    return read_volume(g, volume, m, where) && (!gloss || read_gloss(g, gloss, m, where)) &&
+    return read_volume(g, volume, m, where) && read_scattering(g, extensions, m, where) &&
+           (!gloss || read_gloss(g, gloss, m, where)) &&
            read_sheen(g, json_object_get(extensions, "KHR_materials_sheen"), m, where) &&
            read_layer_maps(g, extensions, m, where) &&
            (gloss || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where));

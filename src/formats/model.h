@@ -39,7 +39,7 @@ struct model_layer_map {
     char channel; /* 'r', 'g', 'a', or 'c': the colour */
     double factor;
 };
-enum { MODEL_LAYER_MAPS = 6 };
+enum { MODEL_LAYER_MAPS = 8 };
 
 /* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {

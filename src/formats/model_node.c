@@ -295,6 +295,8 @@ static bool multiply_by_map(struct scene *scene, const struct model_layer_map *f
     if (!find_map(scene, &from->map, &image, &there, error) || !there)
         return !there;
     image.alpha = from->channel == 'a' ? ALPHA_ONLY : ALPHA_STRAIGHT;
+    if (from->input == INPUT_SUBSURFACE_COLOUR)
+        image.tint = m->openpbr->subsurface_colour;
     struct arena *arena = &scene->arena;
     const struct texture *white = texture_keep(arena, texture_number(1), error);
     const struct texture *part = white ? texture_keep(arena, texture_image(&image, white), error) : NULL;

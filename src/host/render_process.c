@@ -249,8 +249,10 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     report->rays.render_seconds = clock_now() - built;
     report->rays.render_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - built_worked;
     render_process_fill_report(work, job->film, report);
-    if (ok && job->world)
+    if (ok && job->world) {
         render_process_warn_of_nan(process, job->world);
+        render_process_warn_of_density(process, job->world);
+    }
     work->ok = ok;
     if (ok && !is_asked(process->options) && !process->options->check)
         render_process_report_samples(work);

@@ -53,7 +53,7 @@ static void leave_abandoned(struct supervisor *supervisor) {
 /* That becomes readable with an event of the window, or -1. */
 static int window_descriptor(const struct supervisor *supervisor) {
     const struct window_driver *window = supervisor->window;
-    return window && window->descriptor ? window->descriptor(window->context) : -1;
+    return window ? window->descriptor(window->context) : -1;
 }
 
 /* Milliseconds between two looks at the window. */

@@ -14,8 +14,6 @@
 
 /* Seconds that a child has to end when the window is closed; closing must take less than 50 milliseconds. */
 static const double patience_quit = 0.01;
-/* Seconds that the scripts run before the window opens without a picture. */
-static const double patience_open = 0.4;
 /* Seconds for the scripts to end before they run again; afterwards the process is started again. */
 static const double patience_again = 0.3;
 
@@ -221,8 +219,7 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    bool at_once = supervisor->window && supervisor->window->status;
-    if (!supervisor->waits && (at_once || clock_now() - supervisor->viewer.window.script_began > patience_open))
+    if (!supervisor->waits)
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;

@@ -106,6 +106,8 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         text_writer_put(writer,
                         ",\"origin\":%a,\"direction\":%a,\"time\":%j,\"share\":%j,\"media\":%u,\"media_ior\":%j",
                         ray->origin, ray->direction, ray->time, ray->share, ray->media_count, ray->media_ior);
+        if (ray->kind == RAY_BELOW)
+            text_writer_put(writer, ",\"scatterings\":%u", (unsigned)ray->scatterings);
         /* What it meets. */
         bool in_medium = ray->is_vertex && ray->vertex.in_medium;
         text_writer_put(writer, ",\"distance\":%j,\"meets\":\"%s\"", in_medium ? ray->vertex.distance : ray->distance,

@@ -262,7 +262,11 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct text_writer *writer = t->writer;
     text_writer_put(writer, "%iray %u, %s", deep(t) - 2, ray->number,
-                    ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
+                    ray->kind == RAY_HOLE    ? "through the hole"
+                    : ray->kind == RAY_BELOW ? "out from under the surface"
+                                             : inspect_ray(ray->kind));
+    if (ray->scatterings > 0)
+        text_writer_put(writer, " after %u scatterings", (unsigned)ray->scatterings);
     if (ray->parent)
         text_writer_put(writer, ", weight %c", ray->weight);
     if (!ray->begun) {

@@ -82,6 +82,7 @@ struct colour bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 
         case LOBE_REFRACTION:
         case LOBE_GGX_REFLECTION:
         case LOBE_GGX_TRANSMISSION:
+        case LOBE_SUBSURFACE:
             continue;
         }
         sum = colour_add_scaled(sum, lobe->weight, factor);
@@ -241,6 +242,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
         return n_l > 0 ? blinn_pdf(lobe, bsdf->lit, wo, wi) : 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
+    case LOBE_SUBSURFACE:
         return 0;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
@@ -263,6 +265,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
         return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
     case LOBE_MIRROR:
     case LOBE_REFRACTION:
+    case LOBE_SUBSURFACE:
         return 0;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION: {
@@ -344,6 +347,10 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return traced_direction(bsdf, lobe, wo, microfacet_normal(bsdf->side, wo, bsdf->alpha, u), out);
+    case LOBE_SUBSURFACE:
+        out->direction = diffuse_sample(vec3_negate(bsdf->side), u);
+        out->delta = true;
+        return vec3_dot(out->direction, bsdf->geometric_side) < 0;
         ROUGH_LOBES(LIST_LABEL)
         return rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits);
     }
@@ -496,7 +503,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     out->flags = sampled.transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
     /* No other lobe reaches the direction of a mirror. */
     if (sampled.delta) {
-        out->flags |= BSDF_DELTA;
+        out->flags |= BSDF_DELTA | (lobe_flags(lobe->kind) & BSDF_BELOW);
         out->weight = colour_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }

@@ -126,6 +126,9 @@ struct phong {
     X(INPUT_SPECULAR_ANISOTROPY, "specular_roughness_anisotropy", false)                                               \
     X(INPUT_SPECULAR_IOR, "specular_ior", false)                                                                       \
     X(INPUT_TRANSMISSION_COLOUR, "transmission_color", true)                                                           \
+    X(INPUT_SUBSURFACE_WEIGHT, "subsurface_weight", false)                                                             \
+    X(INPUT_SUBSURFACE_COLOUR, "subsurface_color", true)                                                               \
+    X(INPUT_SUBSURFACE_RADIUS, "subsurface_radius", false)                                                             \
     X(INPUT_COAT_WEIGHT, "coat_weight", false)                                                                         \
     X(INPUT_COAT_COLOUR, "coat_color", true)                                                                           \
     X(INPUT_COAT_ROUGHNESS, "coat_roughness", false)                                                                   \
@@ -134,7 +137,9 @@ struct phong {
     X(INPUT_COAT_DARKENING, "coat_darkening", false)                                                                   \
     X(INPUT_FUZZ_WEIGHT, "fuzz_weight", false)                                                                         \
     X(INPUT_FUZZ_COLOUR, "fuzz_color", true)                                                                           \
-    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)
+    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)                                                                   \
+    X(INPUT_FILM_WEIGHT, "thin_film_weight", false)                                                                    \
+    X(INPUT_FILM_THICKNESS, "thin_film_thickness", false)
 #define MATERIAL_INPUTS(X)                                                                                             \
     X(INPUT_KD, "kd", true)                                                                                            \
     X(INPUT_KS, "ks", true)                                                                                            \

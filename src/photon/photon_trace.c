@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "material/bsdf_select.h"
 #include "material/material_eval.h"
+#include "material/medium_mix.h"
 #include "photon/photon_target_internal.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
@@ -94,6 +95,34 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
     return true;
 }
 
+/* Passes the media over a distance. True: one of them has scattered the photon. */
+static bool pass_media(struct photon_path *path, double distance) {
+    struct medium_mix mix;
+    struct medium_track track;
+    if (!medium_affects(MEDIUM_RAY_PHOTON, &path->ray))
+        return false;
+    medium_stack_mix(path->ray.media, &mix);
+    const struct medium_line line = {path->ray.origin, path->ray.direction, distance, path->ray.time};
+    if (!medium_mix_scatters(&mix)) {
+        path->left = colour_mul(path->left, medium_mix_left(&mix, &line, random_combine(path->key, path->draws++)));
+        return false;
+    }
+    double u = draw(path), v = draw(path);
+    const struct medium_draw numbers = {{u, v}, random_combine(path->key, path->draws++)};
+    medium_mix_track(&mix, &line, path->left, numbers, &track);
+    path->left = colour_mul(path->left, track.weight);
+    if (!track.scatterer)
+        return false;
+    u = draw(path), v = draw(path);
+    path->length += track.distance;
+    path->ray.origin = vec3_add_scaled(path->ray.origin, path->ray.direction, track.distance);
+    path->ray.direction =
+        phase_sample(&track.scatterer->phase, vec3_negate(path->ray.direction), (struct sample2){u, v});
+    path->ray.t_min = 0;
+    path->ray.skip_primitive = path->ray.skip_part = 0;
+    return true;
+}
+
 static void store_photon(const struct photon_start *start, const struct photon_target *target,
                          const struct photon_path *path, const struct hit *hit, struct photon *photon) {
     struct colour power = colour_mul(start->power, path->left);
@@ -129,16 +158,18 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct hit hit;
         struct bsdf bsdf;
         joint.joined = JOINED_NOT;
-        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit))
-            return;
+        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit)) {
+            if (!pass_media(&path, INFINITY))
+                return;
+            continue;
+        }
         if (world_touches(s->world, &hit))
             world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint);
         if (joint.joined == JOINED_AWAY)
             continue;
+        if (pass_media(&path, hit.t))
+            continue;
         path.length += hit.t;
-        struct medium_effect effect;
-        if (medium_transmittance(MEDIUM_RAY_PHOTON, &path.ray, hit.t, &effect))
-            path.left = colour_mul(path.left, effect.transmittance);
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,

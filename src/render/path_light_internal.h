@@ -23,11 +23,8 @@ static inline bool path_is_affected(const struct path_tracer *tracer, enum mediu
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {
-    const struct ray *ray;
-    const struct light_receiver *receiver;
-    double pdf;           /* density of its direction by solid angle; 0: the only possible direction */
-    struct colour thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
-    double passed;        /* after holes: the line began at t = -passed */
+    const struct path *path;
+    double passed; /* after holes: the line began at t = -passed */
 };
 
 /* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension selects a
@@ -44,10 +41,9 @@ struct path_choice {
 /* Chooses a light, a point on it and the ray to it. False: nothing is to be sent, but out->part is set. */
 bool path_choose_light(const struct path_tracer *tracer, const struct path_vertex *vertex,
                        const struct path_light_draw *draw, struct path_shadow *out, struct path_choice *choice);
-/* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. receiver: the
- * one that was chosen for. */
+/* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. */
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                                  const struct light_receiver *receiver, struct path_shadow *shadow);
+                                  const struct path *path, struct path_shadow *shadow);
 /* What path_shares returns, for a light in the direction wi, highlights included. */
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
                         struct colour shares[PATH_SCATTERINGS]);

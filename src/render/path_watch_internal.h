@@ -18,6 +18,7 @@ struct path_watch {
         bool in_medium;
     } rays[64];
     int count;
+    int scatterings; /* under the surface that the path has gone through last */
     bool cut; /* the current ray is none of them */
     enum path_end end;
 };
@@ -49,6 +50,11 @@ static inline void watch_medium(struct path_watch *watch) {
         ray->in_medium = true;
 }
 
+static inline void watch_walk(struct path_watch *watch, int scatterings) {
+    if (OBSERVED)
+        watch->scatterings = scatterings;
+}
+
 /* The path ends for this reason: false. */
 static inline bool watch_end(struct path_watch *watch, enum path_end why) {
     if (OBSERVED)
@@ -74,7 +80,8 @@ static void watch_ray(struct path_watch *watch, const struct observer *observer,
     watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
     watch_arrival(watch, path, 0);
     OBSERVE(observer, OBSERVED_RAY_BEGIN,
-            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1)});
+            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1),
+                      path->kind == RAY_BELOW ? watch->scatterings : 0});
 }
 
 /* The end of the current ray: what its hit adds to the path. */

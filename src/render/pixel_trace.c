@@ -111,6 +111,7 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     recorded->direction = ray->direction;
     recorded->time = ray->time;
     recorded->share = seen->share;
+    recorded->scatterings = seen->scatterings;
     recorded->media_count = ray->media ? ray->media->count : 0;
     recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
     recorded->area_light = seen->light;

@@ -4,6 +4,7 @@
 #include "render/aov_values_internal.h"
 #include "render/integrator.h"
 #include "render/integrator_internal.h"
+#include "render/media_light.h"
 
 #include "base/mem.h"
 #include "denoise/film_denoise.h"
@@ -251,6 +252,7 @@ static bool start_workers(struct renderer *renderer, int workers) {
     renderer->workers = mem_alloc_zero((size_t)workers, sizeof *renderer->workers);
     if (!renderer->workers)
         return false;
+    bool dims = media_dim_lights(renderer->job->world);
     for (int i = 0; i < workers; i++) {
         struct worker *worker = &renderer->workers[i];
         if (!world_scratch_init(&worker->scratch, renderer->job->world))
@@ -259,7 +261,8 @@ static bool start_workers(struct renderer *renderer, int workers) {
         worker->state = (struct integrator_state){.job = renderer->job,
                                                   .pool = renderer->pool,
                                                   .scratch = &worker->scratch,
-                                                  .eye_medium_stack = &renderer->eye_medium_stack};
+                                                  .eye_medium_stack = &renderer->eye_medium_stack,
+                                                  .media_dim = dims};
     }
     return true;
 }

@@ -292,6 +292,15 @@ static void check_thin_walls(const struct check *check) {
     }
 }
 
+static void check_subsurface(const struct check *check) {
+    const struct world *world = check->world;
+    for (uint32_t i = 0; i < world->material_count && check->job->settings.integrator == INTEGRATOR_WHITTED; i++)
+        if (surface_walks(&world->surfaces.materials[i]))
+            give(check, FAULT_SUBSURFACE,
+                 "light that is scattered under a surface is shown as diffuse light of subsurface_color; "
+                 "--integrator path follows it");
+}
+
 static void notice_empty(const struct check *check, const struct node *solid) {
     char position[256] = "";
     origin_of(solid, position, sizeof position);
@@ -320,6 +329,7 @@ void scene_check(const struct render_job *job, unsigned *noticed, world_warning 
     }
     check_materials(&check);
     check_thin_walls(&check);
+    check_subsurface(&check);
     if (moves || check_view(&check)) {
         check_size(&check);
         check_light(&check);

@@ -63,6 +63,11 @@ enum {
     { name, KIND_COLOUR, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, otherwise, help }
 #define INDEX(name, otherwise, help)                                                                                   \
     { name, KIND_NUMBER, OPTIONAL | OR_TEXTURE | LOW_OPEN, ABOVE(0), NULL, otherwise, help }
+#define MEAN_COSINE(name)                                                                                              \
+    {                                                                                                                  \
+        name, KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",                                \
+            "Mean cosine of that scattering."                                                                          \
+    }
 #define LATER(name, kind, otherwise)                                                                                   \
     { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not implemented." }
 #define SAMPLES                                                                                                        \
@@ -100,17 +105,18 @@ static const struct script_parameter openpbr_parameters[] = {
         {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
          "Distance inside the solid after which white light has transmission_color; 0: at the surface."},
     [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                              "Scattering inside the solid. Not implemented: must be black."},
-    [TRANSMISSION_SCATTER_ANISOTROPY] = {"transmission_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1),
-                                         NULL, "0", "No effect, because transmission_scatter is black."},
+                              "Scattering inside the solid along the distance transmission_depth."},
+    [TRANSMISSION_SCATTER_ANISOTROPY] = MEAN_COSINE("transmission_scatter_anisotropy"),
     [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
     [TRANSMISSION_DISPERSION_ABBE] = LATER("transmission_dispersion_abbe_number", KIND_NUMBER, "20"),
-    [SUBSURFACE_WEIGHT] = LATER("subsurface_weight", KIND_NUMBER, "0"),
-    [SUBSURFACE_COLOUR] = LATER("subsurface_color", KIND_COLOUR, "{0.8, 0.8, 0.8}"),
-    [SUBSURFACE_RADIUS] = LATER("subsurface_radius", KIND_NUMBER, "1"),
-    [SUBSURFACE_RADIUS_SCALE] = LATER("subsurface_radius_scale", KIND_COLOUR, "{1, 0.5, 0.25}"),
-    [SUBSURFACE_SCATTER_ANISOTROPY] = {"subsurface_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1), NULL,
-                                       "0", "Not implemented."},
+    [SUBSURFACE_WEIGHT] =
+        SHARE("subsurface_weight", "0", "Share of the diffuse base whose light is scattered under the surface."),
+    [SUBSURFACE_COLOUR] = TINT("subsurface_color", "{0.8, 0.8, 0.8}", "The colour that a large solid shows by it."),
+    [SUBSURFACE_RADIUS] = {"subsurface_radius", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1",
+                           "Mean free path under the surface; 0 is Lambert's diffuse light."},
+    [SUBSURFACE_RADIUS_SCALE] = {"subsurface_radius_scale", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{1, 0.5, 0.25}",
+                                 "Factors of subsurface_radius by channel."},
+    [SUBSURFACE_SCATTER_ANISOTROPY] = MEAN_COSINE("subsurface_scatter_anisotropy"),
     [COAT_WEIGHT] = SHARE("coat_weight", "0", "Share of the surface with a clear coat."),
     [COAT_COLOUR] = TINT("coat_color", "{1, 1, 1}", "Colour of light that passed the coat twice."),
     [COAT_ROUGHNESS] = SHARE("coat_roughness", "0", "Roughness of the coat; 0 is polished."),
@@ -124,9 +130,12 @@ static const struct script_parameter openpbr_parameters[] = {
     [EMISSION_LUMINANCE] = {"emission_luminance", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0",
                             "Emitted light, below coat and fuzz; 1 means radiance 1."},
     [EMISSION_COLOUR] = TINT("emission_color", "{1, 1, 1}", "Its colour."),
-    [THIN_FILM_WEIGHT] = LATER("thin_film_weight", KIND_NUMBER, "0"),
-    [THIN_FILM_THICKNESS] = LATER("thin_film_thickness", KIND_NUMBER, "0.5"),
-    [THIN_FILM_IOR] = LATER("thin_film_ior", KIND_NUMBER, "1.4"),
+    [THIN_FILM_WEIGHT] =
+        SHARE("thin_film_weight", "0", "Share of the base with a film that shows colours of interference."),
+    [THIN_FILM_THICKNESS] = {"thin_film_thickness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0.5",
+                             "Its thickness in micrometres; 0: no film."},
+    [THIN_FILM_IOR] = {"thin_film_ior", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1.4",
+                       "Its index of refraction."},
     [GEOMETRY_OPACITY] = SHARE("geometry_opacity", "1", "Opacity of the surface; below 1 it has holes."),
     [GEOMETRY_THIN_WALLED] = {"geometry_thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
                               "Whether the surface is a wall without thickness: nothing is inside."},
@@ -153,11 +162,7 @@ static bool is_there(const struct script_value *args, struct error *error) {
     static const struct {
         int parameter;
         bool colour;
-    } later[] = {{THIN_FILM_WEIGHT, false},
-                 {SUBSURFACE_WEIGHT, false},
-                 {TRANSMISSION_DISPERSION_SCALE, false},
-                 {TRANSMISSION_SCATTER, true},
-                 {GEOMETRY_COAT_NORMAL, false}};
+    } later[] = {{TRANSMISSION_DISPERSION_SCALE, false}, {GEOMETRY_COAT_NORMAL, false}};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
         const struct script_value *value = &args[later[i].parameter];
         bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
@@ -241,6 +246,9 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {SPECULAR_IOR, INPUT_SPECULAR_IOR, false},
                 {TRANSMISSION_WEIGHT, INPUT_REFRACT, true},
                 {TRANSMISSION_COLOUR, INPUT_TRANSMISSION_COLOUR, false},
+                {SUBSURFACE_WEIGHT, INPUT_SUBSURFACE_WEIGHT, true},
+                {SUBSURFACE_COLOUR, INPUT_SUBSURFACE_COLOUR, false},
+                {SUBSURFACE_RADIUS, INPUT_SUBSURFACE_RADIUS, false},
                 {COAT_WEIGHT, INPUT_COAT_WEIGHT, true},
                 {COAT_COLOUR, INPUT_COAT_COLOUR, false},
                 {COAT_ROUGHNESS, INPUT_COAT_ROUGHNESS, true},
@@ -250,6 +258,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {FUZZ_WEIGHT, INPUT_FUZZ_WEIGHT, true},
                 {FUZZ_COLOUR, INPUT_FUZZ_COLOUR, false},
                 {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
+                {THIN_FILM_WEIGHT, INPUT_FILM_WEIGHT, true},
+                {THIN_FILM_THICKNESS, INPUT_FILM_THICKNESS, false},
                 {EMISSION_COLOUR, INPUT_EMISSION, false},
                 {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
     /* A texture of each input. */
@@ -304,6 +314,12 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->specular_anisotropy = args[SPECULAR_ANISOTROPY].number;
     out->specular_ior = number_or(&args[SPECULAR_IOR], out->specular_ior);
     out->transmission_colour = colour_or(&args[TRANSMISSION_COLOUR], out->transmission_colour);
+    out->transmission_anisotropy = args[TRANSMISSION_SCATTER_ANISOTROPY].number;
+    out->subsurface_weight = args[SUBSURFACE_WEIGHT].number;
+    out->subsurface_colour = colour_or(&args[SUBSURFACE_COLOUR], out->subsurface_colour);
+    out->subsurface_radius = number_or(&args[SUBSURFACE_RADIUS], out->subsurface_radius);
+    out->subsurface_radius_scale = colour_or(&args[SUBSURFACE_RADIUS_SCALE], out->subsurface_radius_scale);
+    out->subsurface_anisotropy = args[SUBSURFACE_SCATTER_ANISOTROPY].number;
     out->coat_weight = args[COAT_WEIGHT].number;
     out->coat_colour = colour_or(&args[COAT_COLOUR], out->coat_colour);
     out->coat_roughness = args[COAT_ROUGHNESS].number;
@@ -313,6 +329,9 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->fuzz_weight = args[FUZZ_WEIGHT].number;
     out->fuzz_colour = colour_or(&args[FUZZ_COLOUR], out->fuzz_colour);
     out->fuzz_roughness = number_or(&args[FUZZ_ROUGHNESS], out->fuzz_roughness);
+    out->film_weight = args[THIN_FILM_WEIGHT].number;
+    out->film_thickness = number_or(&args[THIN_FILM_THICKNESS], out->film_thickness);
+    out->film_ior = number_or(&args[THIN_FILM_IOR], out->film_ior);
     out->classic = args[OPENPBR_CLASSIC].boolean;
     out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
     out->tangent = args[GEOMETRY_TANGENT].vector;
@@ -327,14 +346,18 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
     phong->has_ior = phong->refract > 0 && !out->thin_walled;
     phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
-    /* With a depth, the colour is that of light after this length. */
+    /* With a depth, the colour is that of light after this length: its extinction. Where scattering alone is more,
+     * gray absorption is added. */
     double depth = args[TRANSMISSION_DEPTH].number;
     struct colour colour = out->transmission_colour;
     if (!(depth > 0) || !phong->has_ior)
         return;
     out->deep = true;
-    phong->absorption =
+    out->transmission_scattering = colour_scale(args[TRANSMISSION_SCATTER].colour, 1 / depth);
+    struct colour extinction =
         colour_make(absorption(colour.r, depth), absorption(colour.g, depth), absorption(colour.b, depth));
+    struct colour rest = colour_sub(extinction, out->transmission_scattering);
+    phong->absorption = colour_sub(rest, colour_all(fmin(fmin(fmin(rest.r, rest.g), rest.b), 0)));
 }
 
 static bool openpbr(struct script_context *context, const struct script_value *args, struct script_result *result,

@@ -69,6 +69,10 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
     X(DO_ROLL_LEFT, "roll-left", "Roll L_eft", MENU_VIEW, NEEDS_PICTURE, "bracketleft", "bracketleft", "By 5 degrees") \
     X(DO_ROLL_RIGHT, "roll-right", "Roll R_ight", MENU_VIEW, NEEDS_PICTURE, "bracketright", "bracketright",            \
       "By 5 degrees")                                                                                                  \
+    X(DO_VIEW_BACK, "view-back", "_Previous View", MENU_VIEW, NEEDS_PICTURE, "<Alt>Left", "<Alt>Left",                 \
+      "Return to where the camera was before")                                                                         \
+    X(DO_VIEW_FORWARD, "view-forward", "_Next View", MENU_VIEW, NEEDS_PICTURE, "<Alt>Right", "<Alt>Right",             \
+      "The view from which you returned")                                                                              \
     X(DO_FLY, "fly", "Fl_y", MENU_VIEW, NEEDS_PICTURE, "grave", "grave",                                               \
       "W, A, S, D, E and Q fly, a held button looks about; Shift is fast, Ctrl slow; Esc ends it")                     \
     X(DO_BOXES, "boxes", "_Boxes of the Objects", MENU_VIEW, NEEDS_PICTURE, "b", "b", "Draw the box of every object")  \

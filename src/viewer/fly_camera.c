@@ -65,7 +65,9 @@ static struct vec3 forward_of(const struct pose *pose) {
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds) {
     memset(fly_camera, 0, sizeof *fly_camera);
     fly_camera->pose = (struct pose){camera->eye, looking(camera->view, camera->up), camera->fov};
-    fly_camera->home = fly_camera->pose;
+    fly_camera->home = fly_camera->views[0] = fly_camera->pose;
+    fly_camera->view_count = 1;
+    fly_camera->changed_at = -HUGE_VAL;
     fly_camera_measure(fly_camera, bounds);
 }
 
@@ -175,13 +177,24 @@ void fly_camera_home(struct fly_camera *fly_camera) {
     fly_camera->pose = fly_camera->home;
 }
 
-void fly_camera_save(struct fly_camera *fly_camera, int number) {
-    fly_camera->views[number] = fly_camera->pose;
-    fly_camera->saved[number] = true;
+void fly_camera_note(struct fly_camera *fly_camera, double now) {
+    static const double still = 0.5; /* seconds */
+    bool goes_on = now - fly_camera->changed_at < still;
+    if (!goes_on && fly_camera->view == FLY_VIEWS - 1)
+        memmove(fly_camera->views, fly_camera->views + 1, (FLY_VIEWS - 1) * sizeof *fly_camera->views);
+    else if (!goes_on)
+        fly_camera->view++;
+    fly_camera->changed_at = now;
+    fly_camera->views[fly_camera->view] = fly_camera->pose;
+    fly_camera->view_count = fly_camera->view + 1;
 }
 
-bool fly_camera_recall(struct fly_camera *fly_camera, int number) {
-    if (fly_camera->saved[number])
-        fly_camera->pose = fly_camera->views[number];
-    return fly_camera->saved[number];
+bool fly_camera_recall(struct fly_camera *fly_camera, bool forth) {
+    int view = fly_camera->view + (forth ? 1 : -1);
+    if (view < 0 || view >= fly_camera->view_count)
+        return false;
+    fly_camera->view = view;
+    fly_camera->changed_at = -HUGE_VAL; /* the next movement is another view */
+    fly_camera->pose = fly_camera->views[view];
+    return true;
 }

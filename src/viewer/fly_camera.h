@@ -18,20 +18,21 @@ struct pose {
 };
 
 enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
-enum { FLY_VIEWS = 10 };
+enum { FLY_VIEWS = 64 };
 
 struct fly_camera {
     struct pose pose, home;
-    double speed;        /* world units a second */
-    struct vec3 centre;  /* that orbits go round */
-    bool down[FLY_KEYS]; /* which keys are held */
-    bool saved[FLY_VIEWS];
-    struct pose views[FLY_VIEWS];
+    double speed;                 /* world units a second */
+    struct vec3 centre;           /* that orbits go round */
+    bool down[FLY_KEYS];          /* which keys are held */
+    struct pose views[FLY_VIEWS]; /* in the order of time */
+    int view_count, view;         /* view: the one that the pose belongs to */
+    double changed_at;
 };
 
 /* camera: its view is a direction. bounds: of the scene; a flight through it takes four seconds. */
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
-/* Sets speed and centre for other bounds; the camera and stored views do not change. */
+/* Sets speed and centre for other bounds; the camera does not move. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
 /* The camera at its current position. */
 struct camera fly_camera_current(const struct fly_camera *fly_camera);
@@ -57,7 +58,9 @@ void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box);
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees);
 void fly_camera_level(struct fly_camera *fly_camera);
 void fly_camera_home(struct fly_camera *fly_camera);
-void fly_camera_save(struct fly_camera *fly_camera, int number); /* 0..9 */
-bool fly_camera_recall(struct fly_camera *fly_camera, int number);
+/* The pose has changed: a view of its own, if the camera stood before, else a later one of the same movement. */
+void fly_camera_note(struct fly_camera *fly_camera, double now);
+/* Takes the view before this one, or, forth, the one after it. False: there is none. */
+bool fly_camera_recall(struct fly_camera *fly_camera, bool forth);
 
 #endif

@@ -255,24 +255,24 @@ static void make_form(struct gui *gui, uint32_t count) {
     gui->row_count = count;
 }
 
-void gui_form_receive(struct gui *gui, const struct window_order *order) {
-    if (order->kind == ORDER_FIELD && order->index < FORM_FIELDS) {
-        gui->rows[order->index].field = order->body.field;
-        return;
-    }
-    gtk_label_set_text(GTK_LABEL(gui->inspector_title), order->body.text[0] != '\0' ? order->body.text : "Picture");
-    if (order->subject != gui->form_subject || order->index != gui->row_count) {
-        gui->form_subject = order->subject;
-        make_form(gui, MIN(order->index, FORM_FIELDS));
-        return;
-    }
-    for (uint32_t i = 0; i < gui->row_count; i++) {
+void gui_form_show(struct gui *gui) {
+    const struct window_form *form = &gui->state.form;
+    bool other = form->subject != gui->form_subject || form->count != gui->row_count;
+    gtk_label_set_text(GTK_LABEL(gui->inspector_title), form->title[0] != '\0' ? form->title : "Picture");
+    for (uint32_t i = 0; i < form->count; i++) {
+        struct form_row *row = &gui->rows[i];
+        bool changed = memcmp(&row->field, &form->fields[i], sizeof row->field) != 0;
+        row->field = form->fields[i];
+        if (other || !changed)
+            continue;
         GtkWidget *focus = gtk_window_get_focus(GTK_WINDOW(gui->window));
-        GtkWidget *input = gui->rows[i].inputs[0];
-        bool used = focus && gtk_widget_is_ancestor(focus, gtk_widget_get_parent(input));
-        if (!used || gui->rows[i].field.kind == FIELD_COLOUR)
-            show_values(gui, &gui->rows[i]);
+        bool used = focus && gtk_widget_is_ancestor(focus, gtk_widget_get_parent(row->inputs[0]));
+        if (!used || row->field.kind == FIELD_COLOUR)
+            show_values(gui, row);
     }
+    gui->form_subject = form->subject;
+    if (other)
+        make_form(gui, form->count);
 }
 
 GtkWidget *gui_inspector_new(struct gui *gui) {

@@ -5,6 +5,6 @@
 #include "viewer/gtk_internal.h"
 
 GtkWidget *gui_inspector_new(struct gui *gui);
-void gui_form_receive(struct gui *gui, const struct window_order *order); /* of ORDER_FIELD and ORDER_FORM */
+void gui_form_show(struct gui *gui); /* state.form */ /* of ORDER_FIELD and ORDER_FORM */
 
 #endif

@@ -12,10 +12,10 @@
 
 #include <gtk/gtk.h>
 
-/* Picture and overlay: a texture for each tile, so that only those that have changed are drawn again. */
-struct tile_layer {
-    struct window_layer shared;
-    GdkTexture **textures; /* NULL: a tile in which nothing is visible */
+/* The picture: a texture for each tile, so that only those that have changed are drawn again. */
+struct picture_tiles {
+    struct window_picture shared;
+    GdkTexture **textures; /* NULL: not made yet */
     uint32_t *seen;        /* the number of each tile when its texture was made */
     uint32_t count;
 };
@@ -36,13 +36,14 @@ struct gui {
     GtkTextBuffer *trace_text;
     GtkSingleSelection *node_selection; /* its model is the tree */
     GPtrArray *open_nodes;              /* the lists of children; not owned */
-    struct tile_layer layers[2];        /* picture, overlay */
-    graphene_rect_t picture_area;       /* in pixels of the screen, as the layers */
-    double mouse_x, mouse_y;            /* in those of the picture's widget, times the scale */
-    GFile *next_scene;                  /* the scene to open if the user agrees to lose the edits; else NULL */
-    struct window_status status;
+    struct picture_tiles tiles;
+    struct share memory;       /* of the shared state ... */
+    struct window_state state; /* ... and what it was last */
+    double mouse_x, mouse_y;   /* in those of the picture's widget, times the scale */
+    GFile *next_scene;         /* the scene to open if the user agrees to lose the edits; else NULL */
+
     enum window_key_set key_set;
-    bool flies, updates; /* updates: widgets are set by the program, not by the user */
+    bool updates; /* widgets are set by the program, not by the user */
     struct form_row rows[FORM_FIELDS];
     uint32_t row_count;
     uint64_t form_subject;

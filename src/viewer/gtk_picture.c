@@ -9,76 +9,56 @@
 
 /* Textures. */
 
-static void drop_textures(struct tile_layer *layer) {
-    for (uint32_t i = 0; i < layer->count; i++)
-        g_clear_object(&layer->textures[i]);
-    g_clear_pointer(&layer->textures, g_free);
-    g_clear_pointer(&layer->seen, g_free);
-    layer->count = 0;
+static void drop_textures(struct picture_tiles *tiles) {
+    for (uint32_t i = 0; i < tiles->count; i++)
+        g_clear_object(&tiles->textures[i]);
+    g_clear_pointer(&tiles->textures, g_free);
+    g_clear_pointer(&tiles->seen, g_free);
+    tiles->count = 0;
 }
 
-void gui_picture_set_layer(struct gui *gui, int which, const struct window_order *order, int descriptor) {
-    struct tile_layer *layer = &gui->layers[which];
-    drop_textures(layer);
-    layer->shared.bytes = which == 0 ? 3 : 4;
-    if (!window_layer_attach(&layer->shared, order->width, order->height, descriptor))
+void gui_picture_attach(struct gui *gui, const struct window_order *order, int descriptor) {
+    struct picture_tiles *tiles = &gui->tiles;
+    drop_textures(tiles);
+    if (!window_picture_attach(&tiles->shared, order->width, order->height, descriptor))
         return;
-    layer->count = window_layer_tiles(&layer->shared);
-    layer->textures = g_new0(GdkTexture *, layer->count);
-    layer->seen = g_new0(uint32_t, layer->count);
+    tiles->count = window_picture_tiles(&tiles->shared);
+    tiles->textures = g_new0(GdkTexture *, tiles->count);
+    tiles->seen = g_new0(uint32_t, tiles->count);
 }
 
-static void tile_rectangle(const struct tile_layer *layer, uint32_t tile, uint32_t *x, uint32_t *y, int *width,
+static void tile_rectangle(const struct picture_tiles *tiles, uint32_t tile, uint32_t *x, uint32_t *y, int *width,
                            int *height) {
-    uint32_t columns = (layer->shared.width + WINDOW_TILE - 1) / WINDOW_TILE;
+    uint32_t columns = (tiles->shared.width + WINDOW_TILE - 1) / WINDOW_TILE;
     *x = tile % columns * WINDOW_TILE;
     *y = tile / columns * WINDOW_TILE;
-    *width = (int)MIN(WINDOW_TILE, layer->shared.width - *x);
-    *height = (int)MIN(WINDOW_TILE, layer->shared.height - *y);
+    *width = (int)MIN(WINDOW_TILE, tiles->shared.width - *x);
+    *height = (int)MIN(WINDOW_TILE, tiles->shared.height - *y);
 }
 
-/* Whether anything in these pixels of four bytes is visible. */
-static bool is_visible(const uint8_t *pixels, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        if (pixels[4 * i + 3] != 0)
-            return true;
-    }
-    return false;
-}
-
-static void make_texture(struct tile_layer *layer, uint32_t tile) {
-    uint32_t x, y, bytes = layer->shared.bytes;
+static void make_texture(struct picture_tiles *tiles, uint32_t tile) {
+    uint32_t x, y;
     int width, height;
-    tile_rectangle(layer, tile, &x, &y, &width, &height);
-    size_t row = (size_t)width * bytes;
+    tile_rectangle(tiles, tile, &x, &y, &width, &height);
+    size_t row = 3 * (size_t)width;
     uint8_t *copy = g_malloc(row * (size_t)height);
-    const uint8_t *pixels = window_layer_pixels(&layer->shared);
+    const uint8_t *pixels = window_picture_pixels(&tiles->shared);
     for (int v = 0; v < height; v++)
-        memcpy(copy + (size_t)v * row, pixels + ((size_t)(y + (uint32_t)v) * layer->shared.width + x) * bytes, row);
-    g_clear_object(&layer->textures[tile]);
-    if (bytes == 4 && !is_visible(copy, (size_t)width * (size_t)height)) {
-        g_free(copy);
-        return;
-    }
+        memcpy(copy + (size_t)v * row, pixels + 3 * ((size_t)(y + (uint32_t)v) * tiles->shared.width + x), row);
     GBytes *owned = g_bytes_new_take(copy, row * (size_t)height);
-    GdkMemoryFormat format = bytes == 3 ? GDK_MEMORY_R8G8B8 : GDK_MEMORY_R8G8B8A8;
-    layer->textures[tile] = gdk_memory_texture_new(width, height, format, owned, row);
+    g_clear_object(&tiles->textures[tile]);
+    tiles->textures[tile] = gdk_memory_texture_new(width, height, GDK_MEMORY_R8G8B8, owned, row);
     g_bytes_unref(owned);
 }
 
-void gui_picture_draw(struct gui *gui, const struct window_order *order) {
-    gui->picture_area = GRAPHENE_RECT_INIT((float)order->left, (float)order->top, (float)order->shown_width,
-                                           (float)order->shown_height);
-    for (int which = 0; which < 2; which++) {
-        struct tile_layer *layer = &gui->layers[which];
-        const _Atomic uint32_t *numbers = window_layer_numbers(&layer->shared);
-        for (uint32_t tile = 0; tile < layer->count; tile++) {
-            uint32_t number = atomic_load_explicit(&numbers[tile], memory_order_acquire);
-            if (number == layer->seen[tile])
-                continue;
-            layer->seen[tile] = number;
-            make_texture(layer, tile);
-        }
+void gui_picture_draw(struct gui *gui) {
+    struct picture_tiles *tiles = &gui->tiles;
+    for (uint32_t tile = 0; tile < tiles->count; tile++) {
+        uint32_t number = atomic_load_explicit(&window_picture_numbers(&tiles->shared)[tile], memory_order_acquire);
+        if (number == tiles->seen[tile] && tiles->textures[tile])
+            continue;
+        tiles->seen[tile] = number;
+        make_texture(tiles, tile);
     }
     gtk_widget_queue_draw(gui->picture);
 }
@@ -92,23 +72,45 @@ struct _GrayPicture {
 };
 G_DEFINE_FINAL_TYPE(GrayPicture, gray_picture, GTK_TYPE_WIDGET)
 
-/* Tiles of a scaled layer begin and end at whole pixels, so that no line shows between them. */
-static void draw_layer(GtkSnapshot *snapshot, const struct tile_layer *layer, const graphene_rect_t *place,
+/* Tiles of a scaled picture begin and end at whole pixels, so that no line shows between them. */
+static void draw_tiles(GtkSnapshot *snapshot, const struct picture_tiles *tiles, const graphene_rect_t *place,
                        double scale) {
-    double zoom_x = (double)place->size.width / layer->shared.width;
-    double zoom_y = (double)place->size.height / layer->shared.height;
-    for (uint32_t tile = 0; tile < layer->count; tile++) {
+    double zoom_x = (double)place->size.width / tiles->shared.width;
+    double zoom_y = (double)place->size.height / tiles->shared.height;
+    for (uint32_t tile = 0; tile < tiles->count; tile++) {
         uint32_t x, y;
         int width, height;
-        if (!layer->textures[tile])
+        if (!tiles->textures[tile])
             continue;
-        tile_rectangle(layer, tile, &x, &y, &width, &height);
+        tile_rectangle(tiles, tile, &x, &y, &width, &height);
         double left = floor((double)place->origin.x + x * zoom_x), top = floor((double)place->origin.y + y * zoom_y);
         double right = floor((double)place->origin.x + (x + (uint32_t)width) * zoom_x);
         double bottom = floor((double)place->origin.y + (y + (uint32_t)height) * zoom_y);
         graphene_rect_t to = GRAPHENE_RECT_INIT((float)(left / scale), (float)(top / scale),
                                                 (float)((right - left) / scale), (float)((bottom - top) / scale));
-        gtk_snapshot_append_texture(snapshot, layer->textures[tile], &to);
+        gtk_snapshot_append_texture(snapshot, tiles->textures[tile], &to);
+    }
+}
+
+/* Each with a dark border, so that it shows on any picture. */
+static void draw_lines(cairo_t *cairo, const struct gui *gui) {
+    static const double colours[][3] = {[LINE_COLOUR_SELECTED] = {1, 0.75, 0.25}, [LINE_COLOUR_LIGHT] = {1, 0.92, 0.47},
+                                        [LINE_COLOUR_FAINT] = {0.78, 0.73, 0.43}, [LINE_COLOUR_X] = {0.95, 0.3, 0.3},
+                                        [LINE_COLOUR_Y] = {0.4, 0.85, 0.3},       [LINE_COLOUR_Z] = {0.35, 0.55, 1}};
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+    for (int over = 0; over < 2; over++) {
+        for (uint32_t i = 0; i < gui->state.line_count; i++) {
+            const struct window_line *line = &gui->state.lines[i];
+            cairo_move_to(cairo, (double)line->x0, (double)line->y0);
+            cairo_line_to(cairo, (double)line->x1, (double)line->y1);
+            if (i + 1 < gui->state.line_count && gui->state.lines[i + 1].colour == line->colour)
+                continue;
+            const double *colour = colours[line->colour % G_N_ELEMENTS(colours)];
+            cairo_set_source_rgba(cairo, over ? colour[0] : 0, over ? colour[1] : 0, over ? colour[2] : 0,
+                                  over ? 1 : 0.4);
+            cairo_set_line_width(cairo, (over ? 1.5 : 3) * gtk_widget_get_scale_factor(gui->picture));
+            cairo_stroke(cairo);
+        }
     }
 }
 
@@ -116,13 +118,18 @@ static void gray_picture_snapshot(GtkWidget *widget, GtkSnapshot *snapshot) {
     struct gui *gui = GRAY_PICTURE(widget)->gui;
     float width = (float)gtk_widget_get_width(widget), height = (float)gtk_widget_get_height(widget);
     double scale = gtk_widget_get_scale_factor(widget);
-    const struct window_layer *over = &gui->layers[1].shared;
     graphene_rect_t whole = GRAPHENE_RECT_INIT(0, 0, width, height);
-    graphene_rect_t overlay = GRAPHENE_RECT_INIT(0, 0, (float)over->width, (float)over->height);
     gtk_snapshot_push_clip(snapshot, &whole);
     gtk_snapshot_append_color(snapshot, &(GdkRGBA){0.1f, 0.1f, 0.1f, 1}, &whole);
-    draw_layer(snapshot, &gui->layers[0], &gui->picture_area, scale);
-    draw_layer(snapshot, &gui->layers[1], &overlay, scale);
+    graphene_rect_t area = GRAPHENE_RECT_INIT((float)gui->state.left, (float)gui->state.top,
+                                              (float)gui->state.shown_width, (float)gui->state.shown_height);
+    draw_tiles(snapshot, &gui->tiles, &area, scale);
+    if (gui->state.line_count > 0) {
+        cairo_t *cairo = gtk_snapshot_append_cairo(snapshot, &whole);
+        cairo_scale(cairo, 1 / scale, 1 / scale);
+        draw_lines(cairo, gui);
+        cairo_destroy(cairo);
+    }
     gtk_snapshot_pop(snapshot);
 }
 
@@ -201,31 +208,36 @@ static gboolean handle_wheel(GtkEventControllerScroll *scroll, double dx, double
 
 /* Keys. */
 
-/* A key with an effect while it is pressed; letters only while flying. */
+/* The key that flies, or -1; letters only while flying. */
 static int held_key(const struct gui *gui, guint value) {
-    switch (value) {
-    case GDK_KEY_Up:
-        return WINDOW_ARROW_UP;
-    case GDK_KEY_Down:
-        return WINDOW_ARROW_DOWN;
-    case GDK_KEY_Left:
-        return WINDOW_ARROW_LEFT;
-    case GDK_KEY_Right:
-        return WINDOW_ARROW_RIGHT;
-    case GDK_KEY_Shift_L:
-    case GDK_KEY_Shift_R:
-        return WINDOW_SHIFT;
-    case GDK_KEY_Control_L:
-    case GDK_KEY_Control_R:
-        return WINDOW_CONTROL;
-    default:
-        value = gdk_keyval_to_lower(value);
-        return gui->flies && value < 128 && value > 0 && strchr("wasdeq", (int)value) ? (int)value : 0;
+    static const struct {
+        guint value;
+        enum fly_camera_key key;
+        bool letter;
+    } keys[] = {{GDK_KEY_Up, FLY_FORWARD, false},
+                {GDK_KEY_Down, FLY_BACK, false},
+                {GDK_KEY_Left, FLY_LEFT, false},
+                {GDK_KEY_Right, FLY_RIGHT, false},
+                {GDK_KEY_Shift_L, FLY_FAST, false},
+                {GDK_KEY_Shift_R, FLY_FAST, false},
+                {GDK_KEY_Control_L, FLY_SLOW, false},
+                {GDK_KEY_Control_R, FLY_SLOW, false},
+                {GDK_KEY_w, FLY_FORWARD, true},
+                {GDK_KEY_s, FLY_BACK, true},
+                {GDK_KEY_a, FLY_LEFT, true},
+                {GDK_KEY_d, FLY_RIGHT, true},
+                {GDK_KEY_e, FLY_UP, true},
+                {GDK_KEY_q, FLY_DOWN, true}};
+    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
+        if (keys[i].value == (keys[i].letter ? gdk_keyval_to_lower(value) : value) &&
+            (gui->state.flies || !keys[i].letter))
+            return (int)keys[i].key;
     }
+    return -1;
 }
 
 static void send_held_key(struct gui *gui, int key, bool down) {
-    gui_send_event(gui, &(struct window_event){.kind = WINDOW_KEY, .key = key, .down = down});
+    gui_send_event(gui, &(struct window_event){.kind = WINDOW_KEY, .key = (enum fly_camera_key)key, .down = down});
 }
 
 /* The action of a key in the chosen set, or -1. */
@@ -252,11 +264,11 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
     (void)keys, (void)code;
-    bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->flies;
-    int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : 0;
-    if (held > 0 && gtk_widget_has_focus(gui->picture)) {
+    bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->state.flies;
+    int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : -1;
+    if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
         send_held_key(gui, held, true);
-        return held != WINDOW_SHIFT && held != WINDOW_CONTROL;
+        return held != FLY_FAST && held != FLY_SLOW;
     }
     int action = action_of(gui, value, state);
     if (action >= 0)
@@ -268,7 +280,7 @@ static void release_key(GtkEventControllerKey *keys, guint value, guint code, Gd
     struct gui *gui = data;
     int held = held_key(gui, value);
     (void)keys, (void)code, (void)state;
-    if (held > 0)
+    if (held >= 0)
         send_held_key(gui, held, false);
 }
 

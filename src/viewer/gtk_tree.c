@@ -164,9 +164,9 @@ static void reset(struct gui *gui) {
 }
 
 void gui_tree_receive(struct gui *gui, const struct window_order *order) {
-    const struct node_query *query = &order->body.nodes.query;
-    const struct node_rows *rows = &order->body.nodes.rows;
-    if (order->on) {
+    const struct node_query *query = &order->query;
+    const struct node_rows *rows = &order->rows;
+    if (order->reset) {
         reset(gui);
         return;
     }

@@ -54,7 +54,7 @@ static void answer_unsaved(GtkDialog *dialog, int answer, gpointer data) {
 /* Not without a question if edits would be lost. */
 static void ask_to_leave(struct gui *gui, GFile *next) {
     g_set_object(&gui->next_scene, next);
-    if (!gui->status.unsaved) {
+    if (!gui->state.unsaved) {
         leave_scene(gui);
         return;
     }
@@ -350,7 +350,7 @@ static char *source_position(const char *message, int *line) {
 static void go_to_line(GtkButton *button, gpointer data) {
     struct gui *gui = data;
     int line = 0;
-    char *path = source_position(gui->status.message, &line), *at = g_strdup_printf("+%d", line);
+    char *path = source_position(gui->state.message, &line), *at = g_strdup_printf("+%d", line);
     const char *editor = g_getenv("VISUAL");
     (void)button;
     if (path && editor && editor[0]) {
@@ -493,85 +493,72 @@ static void enable_actions(struct gui *gui, uint32_t needs) {
     }
 }
 
-static void show_timeline(struct gui *gui, const struct window_status *status) {
-    gtk_widget_set_visible(gui->timeline, status->frame_count > 0);
-    if (status->frame_count == 0)
+static void show_timeline(struct gui *gui) {
+    const struct window_state *state = &gui->state;
+    gtk_widget_set_visible(gui->timeline, state->frame_count > 0);
+    if (state->frame_count == 0)
         return;
     gui->updates = true;
-    gtk_range_set_range(GTK_RANGE(gui->frame_scale), 0, MAX(1, status->frame_count - 1));
-    gtk_range_set_value(GTK_RANGE(gui->frame_scale), status->frame_index);
+    gtk_range_set_range(GTK_RANGE(gui->frame_scale), 0, MAX(1, state->frame_count - 1));
+    gtk_range_set_value(GTK_RANGE(gui->frame_scale), state->frame_index);
     gui->updates = false;
-    gtk_label_set_text(GTK_LABEL(gui->frame_label), status->frame);
+    gtk_label_set_text(GTK_LABEL(gui->frame_label), state->frame);
     gtk_button_set_icon_name(GTK_BUTTON(gui->play_button),
-                             status->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic");
+                             state->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic");
 }
 
-static void show_status(struct gui *gui, const struct window_status *status) {
-    char *title = g_strdup_printf("%s - %s", status->file[0] ? status->file : "gray", status->state);
-    if (status->action_on != gui->status.action_on)
-        enable_actions(gui, status->action_on);
-    gui->status = *status;
-    gtk_window_set_title(GTK_WINDOW(gui->window), title);
-    gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(gui->progress), CLAMP(status->share, 0, 1));
-    gtk_progress_bar_set_text(GTK_PROGRESS_BAR(gui->progress), status->state);
-    gtk_label_set_text(GTK_LABEL(gui->figures), status->figures);
-    gtk_label_set_text(GTK_LABEL(gui->notice), status->notice);
-    gtk_label_set_text(GTK_LABEL(gui->error_text), status->message);
-    gtk_revealer_set_reveal_child(GTK_REVEALER(gui->error_bar), status->message[0] != '\0');
-    show_timeline(gui, status);
-    g_free(title);
-}
-
-static void show_trace(struct gui *gui, const char *text) {
-    gtk_text_buffer_set_text(gui->trace_text, text, -1);
-    gtk_widget_set_visible(gui->trace_box, text[0] != '\0');
-}
-
-static void show_page(struct gui *gui, bool scene) {
-    gtk_stack_set_visible_child_name(GTK_STACK(gui->pages), scene ? "scene" : "start");
-    if (scene) {
-        gtk_widget_grab_focus(gui->picture);
-        gui_picture_send_size(gui);
+static void show_page(struct gui *gui) {
+    gtk_stack_set_visible_child_name(GTK_STACK(gui->pages), gui->state.has_scene ? "scene" : "start");
+    if (!gui->state.has_scene)
         return;
-    }
-    show_status(gui, &(struct window_status){.action_on = 1u << NEEDS_NOTHING});
-    gtk_window_set_title(GTK_WINDOW(gui->window), "gray");
+    gtk_widget_grab_focus(gui->picture);
+    gui_picture_send_size(gui);
+}
+
+static void show_state(struct gui *gui) {
+    static struct window_state was; /* large */
+    struct window_state *state = &gui->state;
+    was = *state;
+    window_shared_read(gui->memory.block, state);
+    if (was.has_scene != state->has_scene)
+        show_page(gui);
+    if (was.action_on != state->action_on)
+        enable_actions(gui, state->action_on | 1u << NEEDS_NOTHING);
+    if (was.full_screen != state->full_screen)
+        (state->full_screen ? gtk_window_fullscreen : gtk_window_unfullscreen)(GTK_WINDOW(gui->window));
+    char *title = state->file[0] ? g_strdup_printf("%s - %s", state->file, state->state) : g_strdup("gray");
+    gtk_window_set_title(GTK_WINDOW(gui->window), title);
+    g_free(title);
+    gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(gui->progress), CLAMP(state->share, 0, 1));
+    gtk_progress_bar_set_text(GTK_PROGRESS_BAR(gui->progress), state->state);
+    gtk_label_set_text(GTK_LABEL(gui->figures), state->figures);
+    gtk_label_set_text(GTK_LABEL(gui->notice), state->notice);
+    gtk_label_set_text(GTK_LABEL(gui->error_text), state->message);
+    gtk_revealer_set_reveal_child(GTK_REVEALER(gui->error_bar), state->message[0] != '\0');
+    show_timeline(gui);
+    if (strcmp(was.trace, state->trace) != 0)
+        gtk_text_buffer_set_text(gui->trace_text, state->trace, -1);
+    gtk_widget_set_visible(gui->trace_box, state->trace[0] != '\0');
+    gui_form_show(gui);
+    gui_picture_draw(gui);
 }
 
 static void obey(struct gui *gui, const struct window_order *order, int descriptor) {
+    struct error ignored;
     switch (order->kind) {
-    case ORDER_OPEN:
-    case ORDER_CLOSE:
-        show_page(gui, order->kind == ORDER_OPEN);
+    case ORDER_STATE:
+        if (!share_attach(&gui->memory, descriptor, sizeof(struct window_shared), &ignored))
+            end_process(gui);
         return;
     case ORDER_PICTURE:
-    case ORDER_OVERLAY:
-        gui_picture_set_layer(gui, order->kind == ORDER_OVERLAY, order, descriptor);
+        gui_picture_attach(gui, order, descriptor);
         return;
-    case ORDER_DRAW:
-        gui_picture_draw(gui, order);
-        return;
-    case ORDER_STATUS:
-        show_status(gui, &order->body.status);
-        return;
-    case ORDER_FORM:
-    case ORDER_FIELD:
-        gui_form_receive(gui, order);
+    case ORDER_SHOW:
+        if (gui->memory.block)
+            show_state(gui);
         return;
     case ORDER_NODES:
         gui_tree_receive(gui, order);
-        return;
-    case ORDER_TRACE:
-        show_trace(gui, order->body.text);
-        return;
-    case ORDER_FULL_SCREEN:
-        if (gtk_window_is_fullscreen(GTK_WINDOW(gui->window)))
-            gtk_window_unfullscreen(GTK_WINDOW(gui->window));
-        else
-            gtk_window_fullscreen(GTK_WINDOW(gui->window));
-        return;
-    case ORDER_FLY:
-        gui->flies = order->on;
         return;
     }
 }

@@ -22,7 +22,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .exposure = viewer->request.settings.tone.exposure,
                               .divide = divide,
                               .plain = plain,
-                              .headlight = plain && viewer_has_widgets(viewer) && !viewer_plays(viewer),
+                              .headlight = plain && !viewer_plays(viewer),
                               .own = !viewer->camera_moved};
 }
 
@@ -56,8 +56,7 @@ static void close_window(struct viewer *viewer) {
     mem_free(viewer->window.drawn);
     viewer_destroy_overlay(viewer);
     viewer_destroy_large(viewer);
-    mem_free(viewer->window.panel.canvas.rgba);
-    viewer->window.image = viewer->window.drawn = viewer->window.panel.canvas.rgba = NULL;
+    viewer->window.image = viewer->window.drawn = NULL;
     viewer->window.light = NULL;
     viewer->window.layout = (struct window_layout){0};
     viewer->window.open = false;
@@ -84,17 +83,16 @@ static bool fit_images(struct viewer *viewer, struct error *error) {
         close_window(viewer);
         return false;
     }
-    viewer->display.fits_window = viewer->window.dirty = true;
-    if (!viewer_resize(viewer, layout.width, layout.height, layout.density))
-        viewer_show_message(viewer, "gray: out of memory for a window of this size");
+    viewer->window.dirty = true;
+    viewer_resize(viewer, layout.width, layout.height, layout.density);
     return true;
 }
 
-static bool open_window(struct viewer *viewer, const char *title, struct error *error) {
+static bool open_window(struct viewer *viewer, struct error *error) {
     if (!make_images(viewer, error))
         return false;
-    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, viewer->request.width,
-                                                      viewer->request.height, title, error);
+    viewer->window.driver->state->has_scene = true;
+    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, error);
     return viewer->window.open;
 }
 
@@ -108,7 +106,7 @@ bool viewer_open(struct viewer *viewer, const struct window_driver *driver, cons
     (void)snprintf(viewer->request.file, sizeof viewer->request.file, "%s", title);
     viewer->display.tiles = 1;
     fly_camera_begin(&viewer->fly_camera, &camera, &unknown);
-    return open_window(viewer, title, error);
+    return open_window(viewer, error);
 }
 
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
@@ -142,7 +140,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         forget_work(&before);
     viewer_player_begin(viewer, &before);
     resized = resized || viewer->display.tiles != before.display.tiles; /* before: maybe a window without picture */
-    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
+    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, error))
         return false;
     memset(viewer->window.drawn, 0, viewer->display.tiles);
     return true;
@@ -267,8 +265,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer->built = reply->built;
         viewer->scene = *reply;
         viewer->nodes.count = 0;
-        if (viewer_has_widgets(viewer))
-            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
+        viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PASS:
@@ -381,7 +378,6 @@ static void command_nodes(struct viewer *viewer) {
 static void command_pixel_trace(struct viewer *viewer) {
     viewer->trace.requested = false;
     viewer->trace.text[0] = '\0';
-    viewer->trace.line = 0;
     viewer->command = (struct preview_command){.kind = COMMAND_PIXEL_TRACE,
                                                .view = current_view(viewer, 1, false),
                                                .x = viewer->trace.x,
@@ -412,14 +408,12 @@ static bool begin_draft(struct viewer *viewer, double now) {
 }
 
 bool viewer_shows_denoised(const struct viewer *viewer) {
-    return viewer_has_widgets(viewer) && (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
+    return (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
 }
 
 static enum viewer_action next_command(struct viewer *viewer, double now) {
     if (viewer_large_is_outdated(viewer) && !viewer->pass.outdated)
         viewer_drop_large(viewer);
-    bool first = viewer->pass.from_coarse && !viewer_has_widgets(viewer);
-    uint32_t divide = first ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
         viewer->edit.click_waits = viewer->trace.requested = false;
@@ -437,7 +431,7 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         return VIEWER_NOTHING;
     } else if (viewer->pass.outdated) {
         viewer->pass.from_coarse = false;
-        begin_pass(viewer, divide, true, false, now);
+        begin_pass(viewer, viewer->pass.divide, true, false, now);
     } else if (viewer->lights.known < viewer->lights.count) {
         viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights.known};
     } else if (!viewer->pass.view.plain &&

@@ -1,8 +1,8 @@
 /* A picture in a window: shows it while it is rendered, takes input, and decides what the render process does next. The
  * render process renders one pass after the other (coarse ones first, and while the camera moves), replies after each,
  * and waits for the next command. The supervisor does not wait: it draws the window from the film in its current state.
- * viewer.c decides, viewer_input.c reads keys and mouse, viewer_edit.c and viewer_lights.c change the scene,
- * viewer_player.c plays animations, viewer_draw.c, viewer_hud.c and viewer_panel.c draw. */
+ * viewer.c decides, viewer_input.c reads keys and mouse, viewer_form.c has the inputs of the inspector, viewer_edit.c
+ * and viewer_lights.c change the scene, viewer_player.c plays animations, viewer_draw.c and viewer_overlay.c draw. */
 #ifndef GRAY_VIEWER_VIEWER_H
 #define GRAY_VIEWER_VIEWER_H
 
@@ -12,16 +12,8 @@
 #include "session/control.h"
 #include "viewer/edits.h"
 #include "viewer/fly_camera.h"
-#include "viewer/panel.h"
 #include "viewer/preview_messages.h"
 #include "viewer/window.h"
-
-/* An edge between a pixel that shows the selected node and one that does not: the left or the upper edge of the pixel
- * (x, y). */
-struct outline_side {
-    uint32_t x, y;
-    bool upright;
-};
 
 enum viewer_action {
     VIEWER_NOTHING,
@@ -111,49 +103,43 @@ struct viewer_edit {
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
-    enum material_part part; /* of the material, for which the panel has sliders */
-    bool joins;              /* the next change by the mouse is part of the last one */
+    bool joins; /* the next change by the mouse is part of the last one */
 };
 
 /* Lights of the scene as they are reported, in parts. */
 struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
     uint32_t room, count, known;
-    double colour_max;   /* of the sliders of a light's colour */
-    bool listed;         /* whether a list of them is shown ... */
-    uint32_t list_first; /* ... and its first light */
 };
 
 /* The trace of a pixel. */
 struct viewer_trace {
-    bool requested;   /* of the pixel x, y of the whole picture; it was not sent yet */
-    double x, y;      /* pixels of the whole picture */
-    char text[16384]; /* empty: none is shown */
-    int line;         /* the first one shown */
+    bool requested;          /* of the pixel x, y of the whole picture; it was not sent yet */
+    double x, y;             /* pixels of the whole picture */
+    char text[WINDOW_TRACE]; /* empty: none is shown */
 };
 
-/* The part of the overlay that the render process makes (viewer_overlay.c). */
+/* What is drawn over the picture (viewer_overlay.c): the render process makes lines of pixels, and the outline. */
 struct viewer_overlay {
     enum overlay kind;               /* which lines are wanted */
     float (*lines)[4];               /* over the image, where has_lines; owned */
     bool has_lines;                  /* lines are visible, possibly those of another view */
     bool lines_fresh, outline_fresh; /* those of the view in full detail, or a failed request */
-    struct outline_side *sides;      /* the outline; owned */
-    uint32_t side_count, side_room;
+    struct window_line *outline;     /* in pixels of the picture; owned */
+    uint32_t outline_count;          /* 0: there is none, or it is too long */
 };
 
 /* The content of the screen, of this picture. */
 struct viewer_display {
-    size_t tiles;     /* room in window.drawn */
-    int panel_height; /* of the panel of the selection, in the last frame */
-    bool hud_dirty;   /* the drawing over the image is out of date */
+    size_t tiles;   /* room in window.drawn */
+    bool hud_dirty; /* the lines over the image, and the widgets, are out of date */
     double shown_at, figures_at;
-    bool fits_window; /* the window should get the size of the picture */
 };
 
 /* The mouse. */
 struct viewer_input {
-    bool grabbed;            /* flying: the mouse turns the camera (with widgets: while a button is held) */
+    double x, y;             /* where it is */
+    bool flies;              /* letters move the camera, and a held button turns it */
     int pressed;             /* the button that is down on the picture, or 0 */
     bool dragged, shift;     /* the mouse has moved since; shift was held */
     double press_x, press_y; /* where */
@@ -217,8 +203,7 @@ struct viewer_window {
     uint8_t *drawn;                /* by tile: the state in which it is on the image, or 0; owned */
     bool dirty;                    /* the image was changed since it was shown */
     struct window_layout layout;
-    struct panel panel; /* its canvas is owned */
-    bool hides_hud;     /* nothing is drawn over the picture */
+    bool hides_lines; /* over the picture */
     struct viewer_notice notice;
     struct viewer_large large;
 };
@@ -267,7 +252,7 @@ struct viewer_picture {
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
                   double now, struct error *error);
 void viewer_end(struct viewer *viewer);
-/* Opens it before the first picture, with the probable size of that picture; it shows how long the script has run. */
+/* Opens it before the first picture, with the probable size of that picture. */
 bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
                  uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */

@@ -237,7 +237,7 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
     uint32_t number;
     viewer->edit.joins = false;
     viewer->display.hud_dirty = true;
-    if (!viewer->window.hides_hud && !operand && viewer_near_light(viewer, x, y, &number)) {
+    if (!viewer->window.hides_lines && !operand && viewer_near_light(viewer, x, y, &number)) {
         viewer_select_light(viewer, number);
         return;
     }

@@ -191,18 +191,18 @@ static uint64_t subject_of(const struct viewer *viewer) {
     return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
 }
 
-void viewer_show_form(struct viewer *viewer) {
-    static struct window_form form; /* large */
-    form = (struct window_form){.subject = subject_of(viewer)};
+void viewer_make_form(const struct viewer *viewer, struct window_form *form) {
+    form->count = 0;
+    form->subject = subject_of(viewer);
+    form->title[0] = '\0';
     if (viewer->block && viewer->edit.selection.kind == SELECTED_NODE)
-        add_node(viewer, &form);
+        add_node(viewer, form);
     else if (viewer->block && viewer->edit.selection.kind == SELECTED_LIGHT)
-        add_light(viewer, &form);
+        add_light(viewer, form);
     if (viewer->name[0] != '\0')
-        add_picture(viewer, &form);
+        add_picture(viewer, form);
     if (viewer->name[0] != '\0' && viewer->edit.selection.kind == SELECTED_NOTHING)
-        add_settings(viewer, &form);
-    viewer->window.driver->form(viewer->window.driver->context, &form);
+        add_settings(viewer, form);
 }
 
 static struct vec3 vector_of(const struct window_event *event) {

@@ -6,7 +6,7 @@
 #include "viewer/viewer.h"
 
 /* The form as it is now, to the window. */
-void viewer_show_form(struct viewer *viewer);
+void viewer_make_form(const struct viewer *viewer, struct window_form *form);
 void viewer_set_field(struct viewer *viewer, const struct window_event *event);
 
 #endif

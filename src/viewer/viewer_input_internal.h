@@ -10,7 +10,5 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Stops rendering and building, and keeps the image; or continues. */
 void viewer_halt(struct viewer *viewer, bool on);
-void viewer_choose_tool(struct viewer *viewer, enum edit_tool tool); /* or none, if it is already chosen */
-void viewer_render(struct viewer *viewer);                           /* renders renders again, from coarse to fine */
 
 #endif

@@ -9,12 +9,8 @@
 #include "viewer/viewer_large_internal.h"
 #include "viewer/viewer_lights_internal.h"
 #include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_panel_internal.h"
 #include "viewer/viewer_player_internal.h"
 
-static inline bool viewer_has_widgets(const struct viewer *viewer) {
-    return viewer->window.driver->status != NULL;
-}
 /* The picture is complete, and there is nothing to do. */
 bool viewer_is_idle(const struct viewer *viewer);
 bool viewer_is_enlarging(const struct viewer *viewer); /* the same, but for the pixels of a larger window */

@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The largest distance of a click from a light, and the smallest distance of its mark from the border, in dots of
- * letters. */
+/* The largest distance of a click from a light, and the smallest distance of its mark from the border, in dots of the
+ * desktop. */
 enum { MARKER = 8, MARGIN = 12 };
 enum { LIGHT_LIMIT = 4096 }; /* the window ignores further ones */
 
@@ -60,14 +60,12 @@ static double largest(struct colour v) {
 
 /* Markers. */
 
-/* The part of the picture beside the menu and within the margin. */
+/* The part of the picture within the margin. */
 static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
     const struct window_layout *layout = &viewer->window.layout;
-    int scale = viewer->window.panel.canvas.scale;
-    double margin = MARGIN * scale,
-           menu = (viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel) ? 30 : 15);
+    double margin = MARGIN * layout->density;
     *left = fmax(layout->left, 0) + margin;
-    *top = fmax(layout->top, menu * scale) + margin;
+    *top = fmax(layout->top, 0) + margin;
     *right = fmin(layout->left + layout->shown_width, layout->width) - margin;
     *bottom = fmin(layout->top + layout->shown_height, layout->height) - margin;
     return *left < *right && *top < *bottom;
@@ -107,7 +105,7 @@ bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame 
 
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number) {
     struct camera_frame frame;
-    double best = MARKER * viewer->window.panel.canvas.scale, u, v;
+    double best = MARKER * viewer->window.layout.density, u, v;
     bool found = false, seen;
     if (!viewer_camera_frame(viewer, &frame))
         return false;
@@ -130,7 +128,6 @@ void viewer_select_light(struct viewer *viewer, uint32_t number) {
     viewer->edit.selection = (struct selection){.kind = SELECTED_LIGHT, .light = number};
     viewer->edit.joins = false;
     viewer->display.hud_dirty = true;
-    viewer->lights.colour_max = fmax(1, largest(viewer_light_colour_now(viewer)));
 }
 
 void viewer_next_light(struct viewer *viewer, bool back) {

@@ -1,10 +1,15 @@
-/* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection is drawn
- * over it. While the camera moves, there are fewer lines with coarse depth, and the outline is a box; both are made
- * again before the finest pass continues. */
+/* What is drawn over the picture. The lines of --overlay are part of the image that is shown and saved; the outline of
+ * the selection and the symbols of lights are lines that the window draws over it. While the camera moves, there are
+ * fewer lines of --overlay with coarse depth, and the outline is a box; both are made again before the finest pass
+ * continues. */
 #include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
+#include "light/light_edit.h"
+#include "math/elementary.h"
+#include "math/frame.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { BOXES_WALKING = 1500 };
@@ -58,49 +63,54 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
     viewer->window.large.stale = viewer->window.large.shown;
 }
 
-static bool add_side(struct viewer *viewer, uint32_t x, uint32_t y, bool upright) {
-    if (viewer->overlay.side_count == viewer->overlay.side_room) {
-        uint32_t room = viewer->overlay.side_room ? 2 * viewer->overlay.side_room : 1024;
-        struct outline_side *more = mem_resize_array(viewer->overlay.sides, room, sizeof *more);
-        if (!more)
-            return false;
-        viewer->overlay.sides = more;
-        viewer->overlay.side_room = room;
+/* The outline. */
+
+struct silhouette {
+    const uint8_t *shows;
+    uint32_t width;
+    struct film_rectangle area; /* outside it the node is not visible */
+};
+
+/* Whether the node is visible on one side of the line `across` and not on the other, beside the pixel `along` it. */
+static bool is_edge(const struct silhouette *s, bool upright, uint32_t across, uint32_t along) {
+    bool sides[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t x = upright ? across - i : along, y = upright ? along : across - i;
+        bool inside = x >= s->area.x0 && x < s->area.x1 && y >= s->area.y0 && y < s->area.y1;
+        sides[i] = inside && s->shows[(size_t)y * s->width + x];
     }
-    viewer->overlay.sides[viewer->overlay.side_count++] = (struct outline_side){x, y, upright};
-    return true;
+    return sides[0] != sides[1];
 }
 
-/* Edges between a pixel that shows the node and one that does not. There are none at the borders of the picture. */
-static void take_outline(struct viewer *viewer, const struct view_overlay_buffers *buffers,
-                         struct film_rectangle area) {
-    uint32_t width = viewer->request.width, height = viewer->request.height;
-    bool ok = true;
-    viewer->overlay.side_count = 0;
-    area.x1 = area.x1 < width ? area.x1 : width;
-    area.y1 = area.y1 < height ? area.y1 : height;
-    for (uint32_t y = area.y0; ok && y < area.y1; y++) {
-        const uint8_t *row = buffers->shows + (size_t)y * width;
-        for (uint32_t x = area.x0; ok && x < area.x1; x++) {
-            bool left = x > area.x0 && row[x - 1], above = y > area.y0 && row[(ptrdiff_t)x - (ptrdiff_t)width];
-            if (x > 0 && left != (row[x] != 0))
-                ok = add_side(viewer, x, y, true);
-            if (ok && y > 0 && above != (row[x] != 0))
-                ok = add_side(viewer, x, y, false);
+/* The edges between a pixel that shows the node and one that does not, in runs. There are none at the borders of the
+ * picture. An outline of too many runs is none. */
+static void take_outline(struct viewer *viewer, const struct silhouette *s) {
+    enum { LIMIT = WINDOW_LINES / 2 };
+    struct viewer_overlay *overlay = &viewer->overlay;
+    if (!overlay->outline)
+        overlay->outline = mem_alloc_zero(LIMIT, sizeof *overlay->outline);
+    for (int upright = 0; upright < 2; upright++) {
+        uint32_t first = upright ? s->area.x0 : s->area.y0, last = upright ? s->area.x1 : s->area.y1;
+        uint32_t end = upright ? viewer->request.width : viewer->request.height;
+        uint32_t from = upright ? s->area.y0 : s->area.x0, to = upright ? s->area.y1 : s->area.x1;
+        for (uint32_t across = first > 0 ? first : 1; across <= last && across < end; across++) {
+            for (uint32_t along = from, run; along < to; along = run + 1) {
+                for (run = along; run < to && is_edge(s, upright, across, run);)
+                    run++;
+                float a = (float)along, b = (float)run, c = (float)across;
+                if (run > along && overlay->outline && overlay->outline_count < LIMIT)
+                    overlay->outline[overlay->outline_count++] =
+                        upright ? (struct window_line){c, a, c, b, LINE_COLOUR_SELECTED}
+                                : (struct window_line){a, c, b, c, LINE_COLOUR_SELECTED};
+            }
         }
-        /* The node is not visible beyond the last pixel of the area. */
-        if (ok && area.x1 < width && area.x1 > area.x0 && row[area.x1 - 1])
-            ok = add_side(viewer, area.x1, y, true);
     }
-    for (uint32_t x = area.x0; ok && area.y1 < height && area.y1 > area.y0 && x < area.x1; x++)
-        if (buffers->shows[(size_t)(area.y1 - 1) * width + x])
-            ok = add_side(viewer, x, area.y1, false);
-    viewer->overlay.side_count = ok ? viewer->overlay.side_count : 0;
+    overlay->outline_count = overlay->outline_count < LIMIT ? overlay->outline_count : 0;
 }
 
 void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
                             const struct view_overlay *overlay) {
-    struct view_overlay_buffers buffers;
+    struct view_overlay_buffers buffers = {0};
     struct view_overlay_request now = viewer_overlay_request(viewer, false);
     if (overlay->stopped)
         return;
@@ -112,39 +122,186 @@ void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_req
         viewer->overlay.lines_fresh = request->lines.cell == 1 && request->lines.limit == OVERLAY_BOXES;
     }
     if (request->outline && request->serial == now.serial && request->route == now.route) {
-        viewer->overlay.side_count = 0;
+        struct silhouette s = {buffers.shows, viewer->request.width, overlay->outline};
+        s.area.x1 = s.area.x1 < s.width ? s.area.x1 : s.width;
+        s.area.y1 = s.area.y1 < viewer->request.height ? s.area.y1 : viewer->request.height;
+        viewer->overlay.outline_count = 0;
         if (overlay->has_outline)
-            take_outline(viewer, &buffers, overlay->outline);
+            take_outline(viewer, &s);
         viewer->overlay.outline_fresh = true;
     }
     viewer->display.hud_dirty = true;
 }
 
-bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour) {
-    const struct canvas *canvas = &viewer->window.panel.canvas;
-    const struct window_layout *buffers = &viewer->window.layout;
-    double zoom = buffers->shown_width / viewer->request.width;
-    int thick = canvas->scale + 1, long_side = (int)(zoom + 0.999);
-    if (!viewer->overlay.outline_fresh || viewer->pass.outdated || viewer->edit.pending.count > 0 ||
-        viewer->overlay.side_count == 0)
-        return false;
-    for (uint32_t i = 0; i < viewer->overlay.side_count; i++) {
-        const struct outline_side *side = &viewer->overlay.sides[i];
-        int x = (int)(buffers->left + side->x * zoom), y = (int)(buffers->top + side->y * zoom);
-        if (side->upright)
-            canvas_box(canvas, x - thick / 2, y - thick / 2, thick, long_side + thick, colour);
-        else
-            canvas_box(canvas, x - thick / 2, y - thick / 2, long_side + thick, thick, colour);
+/* Lines over the picture. */
+
+struct drawing {
+    struct viewer *viewer;
+    struct camera_frame frame;
+};
+
+/* Lines beyond the limit are not drawn. */
+static void draw(const struct drawing *drawing, double x0, double y0, double x1, double y1, enum line_colour colour) {
+    struct window_state *state = drawing->viewer->window.driver->state;
+    if (state->line_count < WINDOW_LINES)
+        state->lines[state->line_count++] = (struct window_line){(float)x0, (float)y0, (float)x1, (float)y1, colour};
+}
+
+/* In short pieces, since a line is not straight in every projection, and may begin behind the camera. */
+static void draw_edge(const struct drawing *drawing, struct vec3 a, struct vec3 b, enum line_colour colour) {
+    enum { PIECES = 12 };
+    double x0 = 0, y0 = 0, x1, y1;
+    bool had = false, straight = drawing->viewer->request.settings.lens.projection == PROJECTION_PERSPECTIVE;
+    int pieces = straight && viewer_project(drawing->viewer, &drawing->frame, a, &x0, &y0) &&
+                         viewer_project(drawing->viewer, &drawing->frame, b, &x1, &y1)
+                     ? 1
+                     : PIECES;
+    for (int i = 0; i <= pieces; i++) {
+        struct vec3 p = vec3_add_scaled(a, vec3_sub(b, a), (double)i / pieces);
+        bool has = viewer_project(drawing->viewer, &drawing->frame, p, &x1, &y1);
+        if (has && had)
+            draw(drawing, x0, y0, x1, y1, colour);
+        had = has;
+        x0 = x1;
+        y0 = y1;
     }
-    return true;
+}
+
+/* A circle about an axis (unit). */
+static void draw_circle(const struct drawing *drawing, struct vec3 centre, struct vec3 axis, double radius,
+                        enum line_colour colour) {
+    enum { SIDES = 24 };
+    struct vec3 right, up, from = centre;
+    frame_tangents(axis, &right, &up);
+    for (int i = 0; i <= SIDES; i++) {
+        double sine, cosine;
+        el_sincos(2 * PI * i / SIDES, &sine, &cosine);
+        struct vec3 to = vec3_add_scaled(vec3_add_scaled(centre, right, radius * cosine), up, radius * sine);
+        if (i > 0)
+            draw_edge(drawing, from, to, colour);
+        from = to;
+    }
+}
+
+static void draw_ring(const struct drawing *drawing, double x, double y, double radius, enum line_colour colour) {
+    enum { SIDES = 16 };
+    for (int i = 0; i < SIDES; i++) {
+        double s0, c0, s1, c1;
+        el_sincos(2 * PI * i / SIDES, &s0, &c0);
+        el_sincos(2 * PI * (i + 1) / SIDES, &s1, &c1);
+        draw(drawing, x + radius * c0, y + radius * s0, x + radius * c1, y + radius * s1, colour);
+    }
+}
+
+/* False: the outline is out of date, or there is none. */
+static bool draw_outline(const struct drawing *drawing) {
+    const struct viewer *viewer = drawing->viewer;
+    const struct window_layout *layout = &viewer->window.layout;
+    double zoom = layout->shown_width / viewer->request.width;
+    if (!viewer->overlay.outline_fresh || viewer->pass.outdated || viewer->edit.pending.count > 0)
+        return false;
+    for (uint32_t i = 0; i < viewer->overlay.outline_count; i++) {
+        const struct window_line *line = &viewer->overlay.outline[i];
+        draw(drawing, layout->left + (double)line->x0 * zoom, layout->top + (double)line->y0 * zoom,
+             layout->left + (double)line->x1 * zoom, layout->top + (double)line->y1 * zoom, LINE_COLOUR_SELECTED);
+    }
+    return viewer->overlay.outline_count > 0;
+}
+
+static void draw_node(const struct drawing *drawing) {
+    const struct picked *picked = &drawing->viewer->edit.selection.picked;
+    struct vec3 corners[8];
+    double x, y;
+    if (viewer_project(drawing->viewer, &drawing->frame, viewer_moved_point(drawing->viewer, picked->position), &x, &y))
+        draw_ring(drawing, x, y, 3 * drawing->viewer->window.layout.density, LINE_COLOUR_SELECTED);
+    /* Large parts of an operand may be invisible: its box shows its position. */
+    if ((draw_outline(drawing) && picked->solid == 0) || !picked->has_box)
+        return;
+    for (int i = 0; i < 8; i++)
+        corners[i] = viewer_moved_point(drawing->viewer, picked->corners[i]);
+    for (int i = 0; i < 8; i++) {
+        for (int axis = 1; axis < 8; axis *= 2) {
+            if (!(i & axis))
+                draw_edge(drawing, corners[i], corners[i | axis], LINE_COLOUR_SELECTED);
+        }
+    }
+}
+
+/* The extent and direction of the selected light. */
+static void draw_light(const struct drawing *drawing, const struct light_info *light) {
+    struct vec3 at = light->position, a = vec3_scale(light->edge1, 0.5), b = vec3_scale(light->edge2, 0.5);
+    double extent = 0.2 * vec3_length(vec3_sub(at, drawing->frame.eye));
+    struct vec3 corners[4] = {vec3_add(at, vec3_add(a, b)), vec3_add(at, vec3_sub(a, b)), vec3_sub(at, vec3_add(a, b)),
+                              vec3_sub(at, vec3_sub(a, b))};
+    uint32_t has = light->properties;
+    for (int i = 0; (has & LIGHT_HAS_EDGES) && i < 4; i++)
+        draw_edge(drawing, corners[i], corners[(i + 1) % 4], LINE_COLOUR_SELECTED);
+    if (has & LIGHT_HAS_RADIUS) {
+        struct vec3 to_eye = vec3_normalize(vec3_sub(drawing->frame.eye, at));
+        draw_circle(drawing, at, has & LIGHT_HAS_DIRECTION ? light->direction : to_eye, light->radius,
+                    LINE_COLOUR_SELECTED);
+    }
+    if (has & LIGHT_HAS_CONE) {
+        double along = light->cos_outer, aside = sqrt(fmax(0, 1 - along * along));
+        draw_circle(drawing, vec3_add_scaled(at, light->direction, extent * along), light->direction, extent * aside,
+                    LINE_COLOUR_SELECTED);
+    }
+    if (!(has & LIGHT_HAS_DIRECTION))
+        return;
+    /* An arrow; that of a light without a position goes through the middle of the view. */
+    double half = 0.15 * vec3_length(vec3_sub(drawing->viewer->fly_camera.centre, drawing->frame.eye));
+    struct vec3 from = at, tip = vec3_add_scaled(at, light->direction, extent), right, up;
+    if (!light->has_position) {
+        from = vec3_add_scaled(drawing->viewer->fly_camera.centre, light->direction, -half);
+        tip = vec3_add_scaled(from, light->direction, 2 * half);
+        frame_tangents(light->direction, &right, &up);
+        struct vec3 back = vec3_add_scaled(tip, light->direction, -0.3 * half);
+        draw_edge(drawing, vec3_add_scaled(back, right, 0.12 * half), tip, LINE_COLOUR_SELECTED);
+        draw_edge(drawing, vec3_add_scaled(back, right, -0.12 * half), tip, LINE_COLOUR_SELECTED);
+    }
+    draw_edge(drawing, from, tip, LINE_COLOUR_SELECTED);
+}
+
+/* A small lamp: a ring with a cross, of a light far away with rays. */
+static void draw_symbol(const struct drawing *drawing, uint32_t number) {
+    const struct viewer *viewer = drawing->viewer;
+    const struct light_info *light = viewer_light(viewer, number);
+    bool chosen = viewer->edit.selection.kind == SELECTED_LIGHT && viewer->edit.selection.light == number, seen;
+    double x, y, r = 5 * viewer->window.layout.density;
+    if (!viewer_light_marker(viewer, &drawing->frame, number, &x, &y, &seen))
+        return;
+    enum line_colour colour = chosen ? LINE_COLOUR_SELECTED : seen ? LINE_COLOUR_LIGHT : LINE_COLOUR_FAINT;
+    draw_ring(drawing, x, y, chosen ? 1.5 * r : r, colour);
+    draw(drawing, x - r / 2, y, x + r / 2, y, colour);
+    if (!(light->properties & LIGHT_IS_ENVIRONMENT))
+        draw(drawing, x, y - r / 2, x, y + r / 2, colour);
+    bool distant = !light->has_position && (light->properties & LIGHT_HAS_DIRECTION);
+    for (int ray = 0; distant && ray < 4; ray++) {
+        double u = ray < 2 ? r : -r, v = ray % 2 ? r : -r;
+        draw(drawing, x + u, y + v, x + 1.6 * u, y + 1.6 * v, colour);
+    }
+}
+
+void viewer_make_lines(struct viewer *viewer) {
+    struct drawing drawing = {.viewer = viewer};
+    viewer->window.driver->state->line_count = 0;
+    if (!viewer->block || viewer->window.hides_lines || !viewer_camera_frame(viewer, &drawing.frame))
+        return;
+    if (viewer->edit.selection.kind == SELECTED_NODE)
+        draw_node(&drawing);
+    for (uint32_t i = 1; i <= viewer->lights.known; i++)
+        draw_symbol(&drawing, i);
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    if (viewer->edit.selection.kind == SELECTED_LIGHT && light)
+        draw_light(&drawing, light);
 }
 
 void viewer_destroy_overlay(struct viewer *viewer) {
     mem_free(viewer->overlay.lines);
-    mem_free(viewer->overlay.sides);
+    mem_free(viewer->overlay.outline);
     viewer->overlay.lines = NULL;
-    viewer->overlay.sides = NULL;
-    viewer->overlay.side_room = viewer->overlay.side_count = 0;
+    viewer->overlay.outline = NULL;
+    viewer->overlay.outline_count = 0;
     viewer->overlay.has_lines = false;
     viewer_invalidate_overlay(viewer);
 }

@@ -1,4 +1,4 @@
-/* Outlines and fields that the render process computes for the picture. */
+/* What is drawn over the picture. */
 #ifndef GRAY_VIEWER_VIEWER_OVERLAY_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_OVERLAY_INTERNAL_H
 
@@ -10,8 +10,7 @@ bool viewer_needs_overlay(const struct viewer *viewer);
 struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, bool walking);
 void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
                             const struct view_overlay *overlay);
-/* False if the outline is out of date. */
-bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour);
+void viewer_make_lines(struct viewer *viewer); /* outline and symbols: window.lines */
 void viewer_destroy_overlay(struct viewer *viewer);
 
 #endif

@@ -66,7 +66,6 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
     viewer->input = before->input;
     viewer->pass.divide = before->pass.divide;
     viewer->pass.from_coarse = false;
-    viewer->lights.listed = before->lights.listed;
     memcpy(viewer->fly_camera.down, before->fly_camera.down, sizeof viewer->fly_camera.down);
 }
 

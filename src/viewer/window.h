@@ -1,52 +1,37 @@
-/* The interface to a window: it shows a picture with a drawing over it, and reports input. The driver
- * decides on the library (SDL 2 in main_gui.c); tests have their own driver. All positions are pixels of the
- * screen, from the upper left corner of the window. */
+/* The interface to a window: it shows a picture with lines over it, has widgets for everything else, and reports input.
+ * The driver of window_channel.c has the window in another process; tests have their own. All positions are pixels of
+ * the screen, from the upper left corner of the place for the picture. */
 #ifndef GRAY_VIEWER_WINDOW_H
 #define GRAY_VIEWER_WINDOW_H
 
 #include "base/error.h"
 #include "inspect/node_list.h"
 #include "viewer/actions.h"
+#include "viewer/fly_camera.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 enum window_event_kind {
     WINDOW_CLOSE,
-    WINDOW_KEY,     /* key; down or up; repeats are left out */
-    WINDOW_MOVE,    /* x, y: position of the mouse; dx, dy: its motion, also while it is grabbed */
+    WINDOW_KEY,     /* the key that flies, `key`, is down or up; repeats are left out */
+    WINDOW_MOVE,    /* x, y: position of the mouse; dx, dy: its motion */
     WINDOW_WHEEL,   /* y: steps away from the user */
     WINDOW_PRESS,   /* button at x, y */
     WINDOW_RELEASE, /* the same */
-    WINDOW_LEAVE,   /* the window has lost the keyboard: no key is pressed */
-    WINDOW_SIZE,    /* x, y: the size of the window in pixels; density: pixels per dot of a letter */
+    WINDOW_LEAVE,   /* the picture has lost the keyboard: no key is pressed */
+    WINDOW_SIZE,    /* x, y: the size for the picture; density: pixels per dot of the desktop */
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
-
-/* Letters and digits are their own small ASCII codes. */
-enum window_key {
-    WINDOW_ESCAPE = 256,
-    WINDOW_SPACE,
-    WINDOW_SHIFT,
-    WINDOW_CONTROL,
-    WINDOW_ARROW_UP,
-    WINDOW_ARROW_DOWN,
-    WINDOW_ARROW_LEFT,
-    WINDOW_ARROW_RIGHT,
-    WINDOW_HOME,
-    WINDOW_DELETE,
-    WINDOW_PAGE_UP,
-    WINDOW_PAGE_DOWN,
-    WINDOW_TAB,
-};
 enum { WINDOW_LEFT = 1, WINDOW_MIDDLE = 2, WINDOW_RIGHT = 4 };
 
 struct window_event {
     enum window_event_kind kind;
-    int key, button;
+    enum fly_camera_key key;
+    int button;
     bool down, control, shift; /* control, shift: held */
     double x, y, dx, dy, density;
     enum window_action action;
@@ -54,17 +39,6 @@ struct window_event {
     double numbers[3];
     bool joins;
     struct node_query node;
-};
-
-/* What a window with widgets shows in them. */
-struct window_status {
-    char file[256], state[64], figures[288], frame[64];
-    char message[512], notice[512];                    /* an error that stays; a line that goes away by itself */
-    double share;                                      /* of the work, 0 to 1 */
-    uint32_t action_on;                                /* by enum action_need, as bits: what there is */
-    bool warns, halted, busy, playing, loops, unsaved; /* unsaved: edits */
-    uint32_t frame_index, frame_count;
-    double exposure;
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -92,34 +66,49 @@ struct window_form {
     struct window_field fields[FORM_FIELDS];
 };
 
-struct window_content {
-    const uint8_t *picture; /* 3 bytes per pixel, rows from the top */
-    uint32_t width, height;
-    bool picture_changed;
+/* A line over the picture. */
+enum line_colour {
+    LINE_COLOUR_SELECTED,
+    LINE_COLOUR_LIGHT,
+    LINE_COLOUR_FAINT,
+    LINE_COLOUR_X,
+    LINE_COLOUR_Y,
+    LINE_COLOUR_Z
+};
+struct window_line {
+    float x0, y0, x1, y1;
+    enum line_colour colour;
+};
+enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384 };
+
+/* Everything that the window shows but the picture and the rows of the tree. */
+struct window_state {
+    bool has_scene;                             /* else the page without a scene */
+    bool flies;                                 /* letters move the camera */
+    bool full_screen;                           /* the whole screen */
+    bool halted, busy, playing, loops, unsaved; /* unsaved: edits */
+    char file[256], state[64], figures[288], frame[64];
+    char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
+    double share;                   /* of the work, 0 to 1 */
+    uint32_t action_on;             /* by enum action_need, as bits: what there is */
+    uint32_t frame_index, frame_count;
+    char trace[WINDOW_TRACE];                 /* of a pixel, or empty */
     int left, top, shown_width, shown_height; /* where the picture goes */
-    const uint8_t *overlay;                   /* over all of the window: red, green, blue, opacity */
-    uint32_t window_width, window_height;
-    bool overlay_changed;
-    /* Not 0: a picture of this size begins, and the window should get its size unless the user has chosen another. */
-    uint32_t fit_width, fit_height;
+    struct window_form form;
+    uint32_t line_count;
+    struct window_line lines[WINDOW_LINES];
 };
 
 struct window_driver {
     void *context;
-    /* Opens a window for a picture of this size; its first event is a WINDOW_SIZE. */
-    bool (*open)(void *context, uint32_t width, uint32_t height, const char *title, struct error *error);
-    void (*show)(void *context, const struct window_content *frame);
-    bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
-    void (*title)(void *context, const char *text);
-    void (*grab)(void *context, bool on); /* the mouse is hidden and kept inside the window */
-    void (*full_screen)(void *context);   /* on, or off again */
+    struct window_state *state; /* what the window shows when it has been published by `show`; the viewer writes it */
+    /* Opens the window, or takes the open one for another scene; its first event is a WINDOW_SIZE. */
+    bool (*open)(void *context, struct error *error);
     void (*close)(void *context);
-    /* Becomes readable with an event; NULL: the window must be polled often. */
-    int (*descriptor)(void *context);
-    /* A window with widgets of its own; NULL: all is drawn over the picture. */
-    void (*status)(void *context, const struct window_status *status);
-    void (*form)(void *context, const struct window_form *form);
-    void (*trace)(void *context, const char *text); /* of a pixel */
+    bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
+    int (*descriptor)(void *context);                        /* becomes readable with an event; or -1 */
+    /* The picture (3 bytes per pixel, rows from the top) and the state. */
+    void (*show)(void *context, const uint8_t *picture, uint32_t width, uint32_t height);
     /* Rows that were wanted; query NULL: the tree is another one, and no row is known. */
     void (*nodes)(void *context, const struct node_query *query, const struct node_rows *rows);
 };

@@ -8,64 +8,43 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Memory of a layer. */
+/* The memory of the picture. */
 
 static uint32_t across(uint32_t pixels) {
     return (pixels + WINDOW_TILE - 1) / WINDOW_TILE;
 }
 
-uint32_t window_layer_tiles(const struct window_layer *layer) {
-    return across(layer->width) * across(layer->height);
+uint32_t window_picture_tiles(const struct window_picture *picture) {
+    return across(picture->width) * across(picture->height);
 }
 
-_Atomic uint32_t *window_layer_numbers(const struct window_layer *layer) {
-    return layer->memory.block;
+_Atomic uint32_t *window_picture_numbers(const struct window_picture *picture) {
+    return picture->memory.block;
 }
 
-uint8_t *window_layer_pixels(const struct window_layer *layer) {
-    return (uint8_t *)layer->memory.block + window_layer_tiles(layer) * sizeof(uint32_t);
+uint8_t *window_picture_pixels(const struct window_picture *picture) {
+    return (uint8_t *)picture->memory.block + window_picture_tiles(picture) * sizeof(uint32_t);
 }
 
-static size_t layer_size(const struct window_layer *layer) {
-    return window_layer_tiles(layer) * sizeof(uint32_t) + (size_t)layer->width * layer->height * layer->bytes;
+static size_t memory_size(const struct window_picture *picture) {
+    return window_picture_tiles(picture) * sizeof(uint32_t) + (size_t)3 * picture->width * picture->height;
 }
 
-bool window_layer_attach(struct window_layer *layer, uint32_t width, uint32_t height, int descriptor) {
+bool window_picture_attach(struct window_picture *picture, uint32_t width, uint32_t height, int descriptor) {
     struct error ignored;
-    share_destroy(&layer->memory);
-    layer->width = width;
-    layer->height = height;
-    return share_attach(&layer->memory, descriptor, layer_size(layer), &ignored);
+    share_destroy(&picture->memory);
+    picture->width = width;
+    picture->height = height;
+    return share_attach(&picture->memory, descriptor, memory_size(picture), &ignored);
 }
 
-/* Orders and notes. */
-
-bool window_send_order(struct channel *channel, const struct window_order *order, int descriptor) {
-    size_t size = offsetof(struct window_order, body);
-    switch (order->kind) {
-    case ORDER_STATUS:
-        size += sizeof order->body.status;
-        break;
-    case ORDER_FIELD:
-        size += sizeof order->body.field;
-        break;
-    case ORDER_NODES:
-        size += sizeof order->body.nodes;
-        break;
-    case ORDER_OPEN:
-    case ORDER_FORM:
-    case ORDER_TRACE:
-        size += strlen(order->body.text) + 1;
-        break;
-    case ORDER_CLOSE:
-    case ORDER_PICTURE:
-    case ORDER_OVERLAY:
-    case ORDER_DRAW:
-    case ORDER_FULL_SCREEN:
-    case ORDER_FLY:
-        break;
-    }
-    return channel_send(channel, MESSAGE_WINDOW, order, size, descriptor);
+void window_shared_read(const struct window_shared *shared, struct window_state *out) {
+    uint32_t before;
+    do {
+        before = atomic_load_explicit(&shared->number, memory_order_acquire);
+        memcpy(out, &shared->state, sizeof *out);
+        atomic_thread_fence(memory_order_acquire);
+    } while (before % 2 == 1 || before != atomic_load_explicit(&shared->number, memory_order_relaxed));
 }
 
 bool window_send_note(struct channel *channel, enum window_note_kind kind, const struct window_event *event,
@@ -79,82 +58,87 @@ bool window_send_note(struct channel *channel, enum window_note_kind kind, const
 
 /* The driver. */
 
-static void send_kind(struct window_channel *window, enum window_order_kind kind, bool on, const char *text) {
-    struct window_order order = {.kind = kind, .on = on};
-    (void)snprintf(order.body.text, sizeof order.body.text, "%s", text);
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+static void send(struct window_channel *window, const struct window_order *order, int descriptor) {
+    size_t size = order->kind == ORDER_NODES ? sizeof *order : offsetof(struct window_order, query);
+    window->closed = window->closed || !channel_send(&window->channel, MESSAGE_WINDOW, order, size, descriptor);
 }
 
-static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+/* Publishes the state. True: it has changed. */
+static bool update_state(struct window_channel *window) {
+    struct window_shared *shared = window->memory.block;
+    if (!shared || memcmp(&shared->state, &window->state, sizeof window->state) == 0)
+        return false;
+    atomic_fetch_add_explicit(&shared->number, 1, memory_order_acq_rel);
+    memcpy(&shared->state, &window->state, sizeof window->state);
+    atomic_fetch_add_explicit(&shared->number, 1, memory_order_release);
+    return true;
+}
+
+static void show_state(struct window_channel *window, bool changed) {
+    if (update_state(window) || changed)
+        send(window, &(struct window_order){.kind = ORDER_SHOW}, -1);
+}
+
+static bool open_window(void *context, struct error *error) {
     struct window_channel *window = context;
-    (void)width, (void)height;
-    window->empty = title[0] == '\0';
-    window->drawn.kind = ORDER_OPEN;
-    send_kind(window, ORDER_OPEN, true, title);
+    window->empty = !window->state.has_scene;
+    if (!window->memory.block) {
+        if (!share_create(&window->memory, sizeof(struct window_shared), error))
+            return false;
+        send(window, &(struct window_order){.kind = ORDER_STATE}, window->memory.descriptor);
+    }
+    show_state(window, false);
     return !window->closed || error_set(error, ERROR_MACHINE, "-gui: the process of the window has ended");
 }
 
-static void close_window(void *context) {
-    send_kind(context, ORDER_CLOSE, false, "");
-}
-
 /* Another size has other memory. */
-static bool fit_layer(struct window_channel *window, struct window_layer *layer, const uint32_t size[2],
-                      enum window_order_kind kind) {
-    struct window_order order = {.kind = kind, .width = size[0], .height = size[1]};
+static bool fit_picture(struct window_channel *window, uint32_t width, uint32_t height) {
+    struct window_picture *picture = &window->picture;
+    struct window_order order = {.kind = ORDER_PICTURE, .width = width, .height = height};
     struct error ignored;
-    if (layer->memory.block && layer->width == size[0] && layer->height == size[1])
+    if (picture->memory.block && picture->width == width && picture->height == height)
         return true;
-    share_destroy(&layer->memory);
-    layer->width = size[0];
-    layer->height = size[1];
-    if (!share_create(&layer->memory, layer_size(layer), &ignored))
+    share_destroy(&picture->memory);
+    picture->width = width;
+    picture->height = height;
+    if (!share_create(&picture->memory, memory_size(picture), &ignored))
         return false;
-    window->closed = window->closed || !window_send_order(&window->channel, &order, layer->memory.descriptor);
+    send(window, &order, picture->memory.descriptor);
     return true;
 }
 
 /* Copies the tiles that differ. True: there are some. */
-static bool update_layer(struct window_layer *layer, const uint8_t *from) {
-    uint8_t *to = window_layer_pixels(layer);
-    size_t row = (size_t)layer->width * layer->bytes;
+static bool update_picture(struct window_picture *picture, const uint8_t *from) {
+    uint8_t *to = window_picture_pixels(picture);
     bool any = false;
-    for (uint32_t tile = 0; tile < window_layer_tiles(layer); tile++) {
-        uint32_t x = tile % across(layer->width) * WINDOW_TILE, y = tile / across(layer->width) * WINDOW_TILE;
-        uint32_t width = layer->width - x < WINDOW_TILE ? layer->width - x : WINDOW_TILE;
+    for (uint32_t tile = 0; tile < window_picture_tiles(picture); tile++) {
+        uint32_t x = tile % across(picture->width) * WINDOW_TILE, y = tile / across(picture->width) * WINDOW_TILE;
+        uint32_t width = picture->width - x < WINDOW_TILE ? picture->width - x : WINDOW_TILE;
         bool changed = false;
-        for (uint32_t v = y; v < layer->height && v < y + WINDOW_TILE; v++) {
-            size_t at = v * row + (size_t)x * layer->bytes, bytes = (size_t)width * layer->bytes;
+        for (uint32_t v = y; v < picture->height && v < y + WINDOW_TILE; v++) {
+            size_t at = 3 * ((size_t)v * picture->width + x), bytes = (size_t)3 * width;
             if (memcmp(to + at, from + at, bytes) == 0)
                 continue;
             memcpy(to + at, from + at, bytes);
             changed = true;
         }
         if (changed)
-            atomic_fetch_add_explicit(&window_layer_numbers(layer)[tile], 1, memory_order_release);
+            atomic_fetch_add_explicit(&window_picture_numbers(picture)[tile], 1, memory_order_release);
         any = any || changed;
     }
     return any;
 }
 
-static void show_frame(void *context, const struct window_content *frame) {
+static void show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct window_channel *window = context;
-    const uint32_t size[2] = {frame->width, frame->height}, over[2] = {frame->window_width, frame->window_height};
-    struct window_order order = {.kind = ORDER_DRAW,
-                                 .left = frame->left,
-                                 .top = frame->top,
-                                 .shown_width = frame->shown_width,
-                                 .shown_height = frame->shown_height};
-    window->picture.bytes = 3;
-    window->overlay.bytes = 4;
-    bool changed = memcmp(&order, &window->drawn, sizeof order - sizeof order.body) != 0;
-    memcpy(&window->drawn, &order, sizeof window->drawn - sizeof window->drawn.body);
-    if (fit_layer(window, &window->picture, size, ORDER_PICTURE))
-        changed = update_layer(&window->picture, frame->picture) || changed;
-    if (frame->overlay && frame->overlay_changed && fit_layer(window, &window->overlay, over, ORDER_OVERLAY))
-        changed = update_layer(&window->overlay, frame->overlay) || changed;
-    if (changed)
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+    bool changed = fit_picture(window, width, height) && update_picture(&window->picture, picture);
+    show_state(window, changed);
+}
+
+static void close_window(void *context) {
+    struct window_channel *window = context;
+    window->state = (struct window_state){.has_scene = false};
+    show_state(window, false);
 }
 
 static int descriptor_of(void *context) {
@@ -204,74 +188,23 @@ static bool poll_event(void *context, struct window_event *event) {
     return note.kind == NOTE_EVENT || note.kind == NOTE_OPEN_SCENE;
 }
 
-static void set_title(void *context, const char *text) {
-    (void)context, (void)text; /* the status has it */
-}
-
-static void set_grab(void *context, bool on) {
-    send_kind(context, ORDER_FLY, on, "");
-}
-
-static void turn_full_screen(void *context) {
-    send_kind(context, ORDER_FULL_SCREEN, true, "");
-}
-
-static void send_status(void *context, const struct window_status *status) {
-    struct window_channel *window = context;
-    struct window_order order = {.kind = ORDER_STATUS, .body.status = *status};
-    if (memcmp(&window->status, status, sizeof *status) == 0)
-        return;
-    window->status = *status;
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
-}
-
-static void send_form(void *context, const struct window_form *form) {
-    struct window_channel *window = context;
-    bool other = form->subject != window->form.subject || form->count != window->form.count, sent = other;
-    for (uint32_t i = 0; i < form->count; i++) {
-        struct window_order order = {.kind = ORDER_FIELD, .index = i, .body.field = form->fields[i]};
-        if (!other && memcmp(&form->fields[i], &window->form.fields[i], sizeof form->fields[i]) == 0)
-            continue;
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
-        sent = true;
-    }
-    window->form = *form;
-    struct window_order order = {.kind = ORDER_FORM, .index = form->count, .subject = form->subject};
-    (void)snprintf(order.body.text, sizeof order.body.text, "%s", form->title);
-    if (sent)
-        window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
-}
-
-static void send_trace(void *context, const char *text) {
-    struct window_channel *window = context;
-    if (strlen(text) != window->trace_length)
-        send_kind(window, ORDER_TRACE, true, text);
-    window->trace_length = strlen(text);
-}
-
 static void send_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
-    struct window_channel *window = context;
-    struct window_order order = {.kind = ORDER_NODES, .on = !query};
+    struct window_order order = {.kind = ORDER_NODES, .reset = !query};
     if (query) {
-        order.body.nodes.query = *query;
-        order.body.nodes.rows = *rows;
+        order.query = *query;
+        order.rows = *rows;
     }
-    window->closed = window->closed || !window_send_order(&window->channel, &order, -1);
+    send(context, &order, -1);
 }
 
 struct window_driver window_channel_driver(struct window_channel *window) {
     return (struct window_driver){.context = window,
+                                  .state = &window->state,
                                   .open = open_window,
-                                  .show = show_frame,
-                                  .poll = poll_event,
-                                  .title = set_title,
-                                  .grab = set_grab,
-                                  .full_screen = turn_full_screen,
                                   .close = close_window,
+                                  .poll = poll_event,
                                   .descriptor = descriptor_of,
-                                  .status = send_status,
-                                  .form = send_form,
-                                  .trace = send_trace,
+                                  .show = show,
                                   .nodes = send_nodes};
 }
 
@@ -297,5 +230,5 @@ bool window_channel_next_scene(struct window_channel *window) {
 void window_channel_destroy(struct window_channel *window) {
     channel_close(&window->channel);
     share_destroy(&window->picture.memory);
-    share_destroy(&window->overlay.memory);
+    share_destroy(&window->memory);
 }

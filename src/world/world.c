@@ -357,6 +357,13 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     return s.found;
 }
 
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing) {
+    struct ray ray_object = primitive_ray(world, primitive, ray);
+    scratch->rays++;
+    return !ray_skips(ray, primitive) && world_ask_nearest(world, primitive, &ray_object, scratch, crossing);
+}
+
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
     struct joint joint;
     return world_nearest_surface(world, ray, scratch, hit) &&
@@ -660,8 +667,13 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 static struct medium medium_of(const struct world *world, uint32_t material) {
-    const struct medium *filling = material_origin(world->authored.materials[material])->medium;
-    return filling ? *filling : surface_medium(&world->surfaces.materials[material]);
+    const struct medium *own = world->authored.materials[material]->medium;
+    if (own && own->fills)
+        return *own;
+    struct medium medium = surface_medium(&world->surfaces.materials[material]);
+    if (own)
+        medium_put_inside(&medium, own);
+    return medium;
 }
 
 void world_update_materials(struct world *world) {

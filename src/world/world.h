@@ -210,6 +210,9 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 /* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *primitive, struct crossing *crossing);
+/* The same with one primitive alone. */
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
 /* The occluder of the last ray of world_any; WORLD_NOTHING: none, or ACCEL_NONE. */
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {

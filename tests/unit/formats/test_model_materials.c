@@ -281,6 +281,31 @@ TEST(pictures_of_gltf_extensions_that_are_not_read_have_one_warning_each) {
     model_destroy(&model);
 }
 
+TEST(diffuse_transmission_and_scattering_of_gltf_are_light_under_the_surface) {
+    write_two_materials(
+        "{\"name\":\"a\",\"extensions\":{\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":0.25,"
+        "\"diffuseTransmissionColorFactor\":[1,0.5,0.25]}}},"
+        "{\"name\":\"b\",\"extensions\":{\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":1},"
+        "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,\"attenuationColor\":[1,0.5,0.25]},"
+        "\"KHR_materials_volume_scatter\":{\"multiscatterColor\":[1,1,0.5],\"scatterAnisotropy\":0.5}}}");
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
+    CHECK_TEXT(error.text, "");
+    const struct model_material *m = model_materials(&model);
+    CHECK_NEAR(m[0].layers.subsurface_weight, 0.25, 0);
+    CHECK_NEAR(m[0].layers.subsurface_colour.g, 0.5, 0);
+    CHECK(m[0].layers.thin_walled && m[0].layers.subsurface_anisotropy == 1);
+    CHECK_NEAR(m[1].layers.subsurface_colour.b, 0.5, 0);
+    CHECK_NEAR(m[1].layers.subsurface_anisotropy, 0.5, 0);
+    CHECK_NEAR(m[1].layers.subsurface_radius_scale.g, 2 / log(2), 1e-12);
+    CHECK_NEAR(m[1].layers.transmission_scattering.g, log(2) / 2, 1e-12);
+    CHECK_NEAR(m[1].absorption.g, 0, 1e-12);
+    CHECK_NEAR(m[1].layers.transmission_scattering.b, subsurface_albedo(0.5, 0.5) * log(4) / 2, 1e-12);
+    model_destroy(&model);
+}
+
 TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {
     write_two_materials(
         "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0.25,0.25],\"metallicFactor\":0,"

@@ -384,6 +384,25 @@ static void make_wall(struct layers *l) {
     l->numbers.thin_walled = true;
     l->material.phong.refract = 1;
 }
+static void add_film(struct layers *l) {
+    l->numbers.film_weight = 0.9;
+    l->numbers.film_thickness = 0.45;
+}
+static void make_filmed_plastic(struct layers *l) {
+    add_film(l);
+}
+static void make_filmed_metal(struct layers *l) {
+    add_film(l);
+    make_metal(l);
+}
+static void make_filmed_glass(struct layers *l) {
+    add_film(l);
+    make_glass(l);
+}
+static void make_filmed_wall(struct layers *l) {
+    add_film(l);
+    make_wall(l);
+}
 static void make_all(struct layers *l) {
     l->numbers.coat_weight = l->numbers.fuzz_weight = 0.5;
     l->numbers.base_metalness = 0.4;
@@ -391,12 +410,26 @@ static void make_all(struct layers *l) {
     l->numbers.coat_roughness = 0.2;
     l->material.phong.refract = 0.5;
 }
+static void make_all_filmed(struct layers *l) {
+    add_film(l);
+    make_all(l);
+}
 static const struct furnace furnaces[] = {
-    {"Lambert", make_lambert, false, 0}, {"rough diffuse", make_oren_nayar, false, 0},
-    {"metal", make_metal, false, 0},     {"plastic", make_plastic, false, 0},
-    {"glass", make_glass, true, 0},      {"half of it glass", make_half_glass, true, 0},
-    {"coat", make_coat, false, 0},       {"fuzz", make_fuzz, false, 0},
-    {"thin wall", make_wall, false, 0},  {"all together", make_all, true, 0},
+    {"Lambert", make_lambert, false, 0},
+    {"rough diffuse", make_oren_nayar, false, 0},
+    {"metal", make_metal, false, 0},
+    {"plastic", make_plastic, false, 0},
+    {"glass", make_glass, true, 0},
+    {"half of it glass", make_half_glass, true, 0},
+    {"coat", make_coat, false, 0},
+    {"fuzz", make_fuzz, false, 0},
+    {"thin wall", make_wall, false, 0},
+    {"all together", make_all, true, 0},
+    {"film on plastic", make_filmed_plastic, false, 0},
+    {"film on metal", make_filmed_metal, false, 0},
+    {"film on glass", make_filmed_glass, true, 0},
+    {"film on a thin wall", make_filmed_wall, false, 0},
+    {"all with a film", make_all_filmed, true, 0},
 };
 
 /* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
@@ -557,12 +590,13 @@ TEST(a_texture_replaces_every_number_of_a_layered_material) {
         INPUT_BASE_WEIGHT,         INPUT_DIFFUSE_ROUGHNESS, INPUT_METALNESS,           INPUT_SPECULAR_WEIGHT,
         INPUT_SPECULAR_ANISOTROPY, INPUT_SPECULAR_IOR,      INPUT_TRANSMISSION_COLOUR, INPUT_COAT_WEIGHT,
         INPUT_COAT_COLOUR,         INPUT_COAT_ROUGHNESS,    INPUT_COAT_ANISOTROPY,     INPUT_COAT_IOR,
-        INPUT_COAT_DARKENING,      INPUT_FUZZ_WEIGHT,       INPUT_FUZZ_COLOUR,         INPUT_FUZZ_ROUGHNESS};
+        INPUT_COAT_DARKENING,      INPUT_FUZZ_WEIGHT,       INPUT_FUZZ_COLOUR,         INPUT_FUZZ_ROUGHNESS,
+        INPUT_FILM_WEIGHT,         INPUT_FILM_THICKNESS};
     struct texture value = texture_number(0.7);
     for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
         struct layers with, without;
         layers_init(&without);
-        make_all(&without);
+        make_all_filmed(&without);
         without.material.phong.kd = colour_make(0.5, 0.6, 0.7);
         without.material.phong.roughness = 0.4;
         without.numbers.specular_anisotropy = without.numbers.coat_anisotropy = 0.2;

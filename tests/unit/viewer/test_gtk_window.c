@@ -33,7 +33,7 @@ static void drive(const char *options, const char *commands, int status) {
 
 static void need_display(void) {
     char path[4096];
-    test_need_gtk_window();
+    test_need_window();
     (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
     test_write_text(path,
                     "local r = gr.node('root')\n"
@@ -50,7 +50,7 @@ static void gives(const char *line, int status) {
 
 TEST(gtk_window_makes_the_picture_of_the_program_without) {
     need_display();
-    gives("GRAY_WINDOW= $gray scene.lua -o whole.png", 0);
+    gives("$gray scene.lua -o whole.png", 0);
     drive("scene.lua", "titled 'out.png - ready'; until_file out.png; xdotool key ctrl+q", 0);
     gives("cmp out.png whole.png", 0);
 }
@@ -73,7 +73,7 @@ static void edit_in_locale(const char *name) {
           0);
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
     gives("! grep -q change_node out-changes2.lua", 0);
-    gives("{ echo \"require 'out-changes1'\"; cat scene.lua; } >again.lua; GRAY_WINDOW= $gray again.lua", 0);
+    gives("{ echo \"require 'out-changes1'\"; cat scene.lua; } >again.lua; $gray again.lua", 0);
 }
 
 /* Numbers have a comma in Germany, and the small letter of I is another one in Turkey. */
@@ -88,7 +88,7 @@ TEST(gtk_window_selects_moves_undoes_and_saves_in_turkish) {
 TEST(gtk_window_opens_without_a_scene_and_quits) {
     need_display();
     drive("", "titled gray; sleep 0.3; xdotool key ctrl+q", 0);
-    test_run_shell("GRAY_WINDOW= $gray", ">out.txt 2>err.txt");
+    test_run_shell("$gray", ">out.txt 2>err.txt");
     char *said = test_read_file(test_path("err.txt"), NULL);
     CHECK(said && strstr(said, "no scene script was given"));
     free(said);
@@ -113,7 +113,7 @@ TEST(gtk_window_shows_an_error_and_renders_the_mended_script) {
 TEST(gtk_window_that_is_closed_early_leaves_no_picture) {
     need_display();
     gives("sed -i 's/200, 150/1200, 900/; 1i for i = 1, 1e7 do local a = math.sin(i) end' scene.lua", 0);
-    drive("scene.lua", "titled 'scene.lua - '; xdotool key ctrl+q", 130);
+    drive("-full -ss 40 scene.lua", "titled '(scene.lua|out.png) - '; xdotool key ctrl+q", 130);
     gives("test ! -e out.png", 0);
 }
 
@@ -154,5 +154,15 @@ TEST(gtk_window_opens_under_wayland) {
           "pid=$!; "
           "await 'test -s out.png'; kill -TERM $pid; wait $pid; status=$?; kill $weston; wait $weston; exit $status; }",
           130);
-    gives("! grep 'is not written' err.txt && GRAY_WINDOW= $gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+    gives("! grep 'is not written' err.txt && $gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+}
+
+/* A dot of the desktop has two pixels of the screen, and the picture all of them. */
+TEST(gtk_window_draws_at_scale_2) {
+    need_display();
+    CHECK(setenv("GDK_SCALE", "2", 1) == 0);
+    drive("--verbose scene.lua", "titled 'out.png - ready'; xdotool key ctrl+q", 0);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "pixels, density 2"));
+    free(said);
 }

@@ -1,0 +1,160 @@
+#include "export/contour_internal.h"
+
+#include "base/mem.h"
+#include "export/contour_cell_internal.h"
+#include "export/contour_grid_internal.h"
+
+uint32_t contour_add_vertex(struct contour *contour, const struct solid_vertex *vertex) {
+    struct solid_vertex *room = list_room(&contour->vertices, 1, sizeof *room);
+    if (!room || contour->vertices.count == NO_INDEX - 1) {
+        contour->failed = true;
+        return 0;
+    }
+    *room = *vertex;
+    return (uint32_t)contour->vertices.count++;
+}
+
+void contour_add_triangle(struct contour *contour, uint32_t a, uint32_t b, uint32_t c, uint32_t surface) {
+    struct solid_triangle *room = list_room(&contour->triangles, 1, sizeof *room);
+    if (!room) {
+        contour->failed = true;
+        return;
+    }
+    *room = (struct solid_triangle){{a, b, c}, surface};
+    contour->triangles.count++;
+}
+
+/* The triangles of a base cell are contiguous; when they are made again, the old ones are forgotten at the end. */
+struct base_mesh {
+    uint32_t first, count;
+};
+struct octree {
+    struct contour *contour;
+    struct base_mesh *bases;
+    bool divided; /* a cell of the base cell in work */
+};
+
+/* A cell that is divided may have neighbours that have triangles already. */
+static void mesh_cell(struct octree *tree, const struct cell *cell) {
+    struct contour *contour = tree->contour;
+    if (contour->failed)
+        return;
+    if (cell->size == 1 || !contour_is_divided(contour, cell)) {
+        if (cell_mesh(contour, cell))
+            return;
+        tree->divided = true;
+        if (!key_map_add(&contour->divided, cell_key(cell->at, cell->size, 0), 0)) {
+            contour->failed = true;
+            return;
+        }
+    }
+    int half = cell->size / 2;
+    for (int i = 0; i < 8; i++) {
+        const struct cell child = {
+            {cell->at[0] + (i & 1) * half, cell->at[1] + (i >> 1 & 1) * half, cell->at[2] + (i >> 2) * half}, half};
+        mesh_cell(tree, &child);
+    }
+}
+
+static void mesh_base(struct octree *tree, const int base[3]) {
+    struct contour *contour = tree->contour;
+    struct line_grid *grid = &contour->grid;
+    struct base_mesh *mesh = &tree->bases[grid_base_index(grid, base)];
+    const struct cell cell = {{base[0] * grid->base, base[1] * grid->base, base[2] * grid->base}, grid->base};
+    bool any = false;
+    mesh->first = (uint32_t)contour->triangles.count;
+    do {
+        contour->triangles.count = mesh->first;
+        tree->divided = false;
+        mesh_cell(tree, &cell);
+        any = any || tree->divided;
+    } while (tree->divided && !contour->failed);
+    mesh->count = (uint32_t)contour->triangles.count - mesh->first;
+    for (int i = 0; any && i < 6; i++) {
+        int beyond[3] = {base[0], base[1], base[2]};
+        beyond[i / 2] += i % 2 ? 1 : -1;
+        if (beyond[i / 2] < 0 || beyond[i / 2] >= grid->base_count[i / 2])
+            continue;
+        grid->wanted[grid_base_index(grid, beyond)] = 1;
+        grid->has_wanted = true;
+    }
+}
+
+static bool mesh_all(struct octree *tree, struct pool *pool, struct error *error) {
+    struct contour *contour = tree->contour;
+    struct line_grid *grid = &contour->grid;
+    int base[3];
+    while (grid->has_wanted) {
+        grid->has_wanted = false;
+        for (base[0] = 0; base[0] < grid->base_count[0]; base[0]++) {
+            for (base[1] = 0; base[1] < grid->base_count[1]; base[1]++) {
+                if (pool_cancelled(pool))
+                    return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
+                for (base[2] = 0; base[2] < grid->base_count[2] && !contour->failed; base[2]++) {
+                    size_t index = grid_base_index(grid, base);
+                    if (!grid->wanted[index])
+                        continue;
+                    grid->wanted[index] = 0;
+                    mesh_base(tree, base);
+                }
+            }
+        }
+    }
+    return true;
+}
+
+/* Only the newest triangles of each base cell. */
+static bool gather(const struct octree *tree, struct list *out) {
+    struct contour *contour = tree->contour;
+    const struct line_grid *grid = &contour->grid;
+    size_t bases = (size_t)grid->base_count[0] * (size_t)grid->base_count[1] * (size_t)grid->base_count[2];
+    for (size_t i = 0; i < bases; i++) {
+        struct solid_triangle *room = list_room(out, tree->bases[i].count, sizeof *room);
+        if (!room)
+            return false;
+        for (uint32_t t = 0; t < tree->bases[i].count; t++)
+            room[t] = ((struct solid_triangle *)contour->triangles.items)[tree->bases[i].first + t];
+        out->count += tree->bases[i].count;
+    }
+    return true;
+}
+
+static bool build(struct contour *contour, const struct contour_input *input, struct solid_mesh *out,
+                  struct error *error) {
+    struct octree tree = {.contour = contour};
+    if (!line_grid_build(contour, input->cells, input->pool, error))
+        return false;
+    const int *bases = contour->grid.base_count;
+    tree.bases = mem_alloc_zero((size_t)bases[0] * (size_t)bases[1] * (size_t)bases[2], sizeof *tree.bases);
+    bool ok = tree.bases || error_no_memory(error, "the mesh of a solid");
+    ok = ok && mesh_all(&tree, input->pool, error);
+    if (ok && (contour->failed || contour->probe.failed || !gather(&tree, &out->triangles)))
+        ok = error_no_memory(error, "the mesh of a solid");
+    mem_free(tree.bases);
+    out->vertices = contour->vertices;
+    contour->vertices = (struct list){0};
+    return ok;
+}
+
+bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct error *error) {
+    struct contour contour = {.tolerance = input->tolerance};
+    struct vec3 extent = vec3_sub(input->csg->bounds.max, input->csg->bounds.min);
+    *out = (struct solid_mesh){0};
+    contour.size = vec3_max_abs(extent);
+    if (!solid_probe_init(&contour.probe, input->csg))
+        return error_no_memory(error, "the mesh of a solid");
+    bool ok = build(&contour, input, out, error);
+    solid_probe_destroy(&contour.probe);
+    line_grid_destroy(&contour.grid);
+    list_destroy(&contour.vertices);
+    list_destroy(&contour.triangles);
+    list_destroy(&contour.arcs);
+    list_destroy(&contour.faces);
+    key_map_destroy(&contour.face_numbers);
+    key_map_destroy(&contour.divided);
+    key_map_destroy(&contour.passed);
+    ok = ok && (solid_mesh_compact(out) || error_no_memory(error, "the mesh of a solid"));
+    if (!ok)
+        solid_mesh_destroy(out);
+    return ok;
+}

@@ -1,0 +1,444 @@
+/* From the contour of a solid to its mesh. Triangles are removed without tests for intersections, which would take most
+ * of the time; afterwards all are tested, and their middles against the solid. Where something is wrong the vertices
+ * around it are kept, and it is done again. The last resort is another grid. */
+#include "export/solid_mesh_internal.h"
+
+#include "base/mem.h"
+#include "export/contour_internal.h"
+#include "export/key_map_internal.h"
+#include "export/simplify_internal.h"
+#include "export/solid_cast_internal.h"
+#include "export/triangles_internal.h"
+
+enum { ROUNDS = 6, GRIDS = 4, MIN_CELLS = 24, MAX_CELLS = 64 };
+
+void solid_mesh_destroy(struct solid_mesh *mesh) {
+    list_destroy(&mesh->vertices);
+    list_destroy(&mesh->triangles);
+}
+
+bool solid_mesh_compact(struct solid_mesh *mesh) {
+    uint32_t *numbers = mem_alloc_zero(mesh->vertices.count, sizeof *numbers), count = 0;
+    struct solid_vertex *vertices = mesh->vertices.items;
+    if (!numbers)
+        return false;
+    for (size_t i = 0; i < 3 * mesh->triangles.count; i++)
+        numbers[solid_triangle_at(mesh, (uint32_t)(i / 3))->vertex[i % 3]] = 1;
+    for (size_t i = 0; i < mesh->vertices.count; i++) {
+        if (!numbers[i])
+            continue;
+        vertices[count] = vertices[i];
+        numbers[i] = count++;
+    }
+    mesh->vertices.count = count;
+    for (size_t i = 0; i < 3 * mesh->triangles.count; i++) {
+        uint32_t *vertex = &solid_triangle_at(mesh, (uint32_t)(i / 3))->vertex[i % 3];
+        *vertex = numbers[*vertex];
+    }
+    mem_free(numbers);
+    return true;
+}
+
+static bool solid_mesh_copy(const struct solid_mesh *from, struct solid_mesh *out) {
+    struct solid_vertex *vertices = list_room(&out->vertices, from->vertices.count, sizeof *vertices);
+    struct solid_triangle *triangles = list_room(&out->triangles, from->triangles.count, sizeof *triangles);
+    if (!vertices || !triangles)
+        return false;
+    memcpy(vertices, from->vertices.items, from->vertices.count * sizeof *vertices);
+    memcpy(triangles, from->triangles.items, from->triangles.count * sizeof *triangles);
+    out->vertices.count = from->vertices.count;
+    out->triangles.count = from->triangles.count;
+    return true;
+}
+
+static uint64_t edge_key(uint32_t from, uint32_t to) {
+    return ((uint64_t)from << 32 | to) + 1;
+}
+
+/* The triangles around each vertex: from one to the next over their common edge, and back after all of them. */
+static bool fans_are_whole(const struct solid_mesh *mesh, const struct key_map *edges, const uint32_t *degree,
+                           uint8_t *seen) {
+    for (uint32_t i = 0; i < 3 * mesh->triangles.count; i++) {
+        uint32_t vertex = solid_triangle_at(mesh, i / 3)->vertex[i % 3], at = i, count = 0;
+        if (seen[vertex])
+            continue;
+        seen[vertex] = 1;
+        do {
+            uint32_t last = solid_triangle_at(mesh, at / 3)->vertex[(at + 2) % 3];
+            const uint32_t *next = key_map_find(edges, edge_key(vertex, last));
+            if (!next)
+                return false;
+            at = *next;
+            count++;
+        } while (at != i && count <= degree[vertex]);
+        if (count != degree[vertex])
+            return false;
+    }
+    return true;
+}
+
+bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *memory) {
+    uint32_t corners = 3 * (uint32_t)mesh->triangles.count;
+    uint32_t *degree = mem_alloc_zero(mesh->vertices.count, sizeof *degree);
+    uint8_t *seen = mem_alloc_zero(mesh->vertices.count, 1);
+    struct key_map edges = {0};
+    bool ok = true;
+    *memory = degree && seen;
+    for (uint32_t i = 0; ok && *memory && i < corners; i++) {
+        const uint32_t *vertex = solid_triangle_at(mesh, i / 3)->vertex;
+        uint64_t key = edge_key(vertex[i % 3], vertex[(i + 1) % 3]);
+        ok = !key_map_find(&edges, key) && vertex[i % 3] != vertex[(i + 1) % 3];
+        *memory = *memory && key_map_add(&edges, key, i);
+        degree[vertex[i % 3]]++;
+    }
+    ok = ok && *memory && fans_are_whole(mesh, &edges, degree, seen);
+    key_map_destroy(&edges);
+    mem_free(degree);
+    mem_free(seen);
+    return ok;
+}
+
+/* --- touching parts --- */
+
+/* Shares of the tolerance: parts of the surface that are nearer than the first recede by the second. */
+static const double touch_share = 0.05, recede_share = 0.15;
+
+struct separation {
+    struct solid_mesh *mesh;
+    struct box_tree tree;
+    double slack;
+    uint32_t *first, *triangles; /* by vertex, its triangles */
+    uint32_t hits;
+};
+
+static void count_hit(void *context, uint32_t one, uint32_t other) {
+    (void)one, (void)other;
+    ++*(uint32_t *)context;
+}
+
+/* The direction in which a vertex recedes: against its normals, of a corner those of its triangles. */
+static struct vec3 outward_at(const struct separation *s, uint32_t vertex) {
+    const struct solid_vertex *at = solid_vertex_at(s->mesh, vertex);
+    if (at->sharp == VERTEX_SMOOTH)
+        return at->normal[0];
+    if (at->sharp == VERTEX_EDGE)
+        return vec3_normalize(vec3_add(at->normal[0], at->normal[1]));
+    struct vec3 sum = vec3_all(0);
+    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
+        struct corners corners = corners_of(s->mesh, s->triangles[i]);
+        sum = vec3_add(sum, triangle_normal(corners.point));
+    }
+    return vec3_normalize(sum);
+}
+
+static bool is_neighbour(const struct separation *s, uint32_t vertex, const struct corners *corners) {
+    if (corners->vertex[0] == vertex || corners->vertex[1] == vertex || corners->vertex[2] == vertex)
+        return true;
+    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
+        const uint32_t *own = solid_triangle_at(s->mesh, s->triangles[i])->vertex;
+        for (int k = 0; k < 9; k++)
+            if (own[k / 3] == corners->vertex[k % 3])
+                return true;
+    }
+    return false;
+}
+
+/* Another part of the surface is within the distance; `opposite`: one that faces this one. */
+static bool is_touched(const struct separation *s, uint32_t vertex, double distance, bool opposite) {
+    struct vec3 point = solid_vertex_at(s->mesh, vertex)->point, margin = vec3_all(distance);
+    struct vec3 outward = outward_at(s, vertex);
+    struct region_search search;
+    uint32_t other;
+    region_search_begin(&search, &s->tree, (struct box){vec3_sub(point, margin), vec3_add(point, margin)});
+    while (region_search_next(&search, &other)) {
+        struct corners corners = corners_of(s->mesh, other);
+        if (triangle_distance_squared(point, corners.point) < distance * distance &&
+            !is_neighbour(s, vertex, &corners) &&
+            (!opposite || vec3_dot(outward, vec3_normalize(triangle_normal(corners.point))) < 0.3))
+            return true;
+    }
+    return false;
+}
+
+static bool list_triangles(struct separation *s) {
+    size_t vertices = s->mesh->vertices.count, corners = 3 * s->mesh->triangles.count;
+    s->first = mem_alloc_zero(vertices + 2, sizeof *s->first);
+    s->triangles = mem_alloc(corners * sizeof *s->triangles);
+    if (!s->first || !s->triangles)
+        return false;
+    for (size_t i = 0; i < corners; i++)
+        s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 2]++;
+    for (size_t i = 0; i < vertices; i++)
+        s->first[i + 2] += s->first[i + 1];
+    for (size_t i = 0; i < corners; i++)
+        s->triangles[s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 1]++] = (uint32_t)(i / 3);
+    return true;
+}
+
+/* Of all vertices; NULL: no memory. */
+static uint8_t *find_touched(const struct separation *s, double distance, bool opposite, uint32_t *count) {
+    uint8_t *touched = mem_alloc_zero(s->mesh->vertices.count, 1);
+    *count = 0;
+    for (uint32_t i = 0; touched && i < s->mesh->vertices.count; i++) {
+        touched[i] = is_touched(s, i, distance, opposite);
+        *count += touched[i];
+    }
+    return touched;
+}
+
+/* Moves the vertices; taken back if that makes more triangles intersect. */
+static bool recede(struct separation *s, const uint8_t *touched, double tolerance, struct pool *pool,
+                   struct solid_findings *findings, struct error *error) {
+    uint32_t count = (uint32_t)s->mesh->vertices.count, moved = 0, hits = 0;
+    struct vec3 *before = mem_alloc(count * sizeof *before), *after = mem_alloc(count * sizeof *after);
+    struct box_tree tree;
+    bool ok = (before && after) || error_no_memory(error, "the mesh of a solid");
+    for (uint32_t i = 0; ok && i < count; i++) {
+        before[i] = after[i] = solid_vertex_at(s->mesh, i)->point;
+        if (touched[i])
+            after[i] = vec3_add_scaled(after[i], outward_at(s, i), -recede_share * tolerance);
+    }
+    for (uint32_t i = 0; ok && i < count; i++) {
+        solid_vertex_at(s->mesh, i)->point = after[i];
+        if (!touched[i])
+            continue;
+        findings->position = before[i];
+        moved++;
+    }
+    ok = ok && triangle_tree_build(&tree, s->mesh, pool, error);
+    if (ok) {
+        find_intersections(s->mesh, &tree, s->slack, count_hit, &hits);
+        box_tree_destroy(&tree);
+        bool worse = hits > s->hits || (hits == s->hits && hits > 0);
+        for (uint32_t i = 0; worse && i < count; i++)
+            solid_vertex_at(s->mesh, i)->point = before[i];
+        findings->separated = worse ? 0 : moved;
+    }
+    mem_free(before);
+    mem_free(after);
+    return ok;
+}
+
+/* Where parts of the solid touch or cross, a mesh cannot be both exact and free of intersections: they recede. */
+static bool separate(const struct solid_input *input, double size, struct solid_mesh *mesh,
+                     struct solid_findings *findings, struct error *error) {
+    struct separation s = {.mesh = mesh, .slack = 1e-13 * size};
+    uint32_t count = 0;
+    if (!triangle_tree_build(&s.tree, mesh, input->pool, error))
+        return false;
+    bool ok = list_triangles(&s) || error_no_memory(error, "the mesh of a solid");
+    if (ok)
+        find_intersections(mesh, &s.tree, s.slack, count_hit, &s.hits);
+    uint8_t *touched = ok ? find_touched(&s, 1e-7 * size, false, &count) : NULL;
+    if (touched && (count > 0 || s.hits > 0)) {
+        mem_free(touched);
+        touched = find_touched(&s, touch_share * input->tolerance, true, &count);
+        ok = touched && recede(&s, touched, input->tolerance, input->pool, findings, error);
+    }
+    ok = ok && (touched || error_no_memory(error, "the mesh of a solid"));
+    mem_free(touched);
+    mem_free(s.first);
+    mem_free(s.triangles);
+    box_tree_destroy(&s.tree);
+    return ok;
+}
+
+/* --- tests of a mesh --- */
+
+/* Faults of a mesh, by the boxes in which vertices are kept. */
+struct verification {
+    const struct solid_input *input;
+    const struct solid_mesh *mesh;
+    double size;
+    int round;
+    uint32_t intersections, strays;
+    struct solid_probe *probes; /* of the workers */
+    uint8_t *stray;             /* by triangle, bits */
+    struct list boxes;
+    bool failed;
+};
+
+static void add_fault(struct verification *v, struct box box, double margin) {
+    struct box *room = list_room(&v->boxes, 1, sizeof *room);
+    v->failed = v->failed || !room;
+    if (!room)
+        return;
+    *room = (struct box){vec3_sub(box.min, vec3_all(margin)), vec3_add(box.max, vec3_all(margin))};
+    v->boxes.count++;
+}
+
+static void add_intersection(void *context, uint32_t one, uint32_t other) {
+    struct verification *v = context;
+    struct corners a = corners_of(v->mesh, one), b = corners_of(v->mesh, other);
+    v->intersections++;
+    add_fault(v, box_meet(corners_box(&a), corners_box(&b)), 2 * v->input->tolerance + 0.02 * v->size * v->round);
+}
+
+enum { CHUNK = 256 };
+
+/* The middles of its edges, and its own. */
+static struct vec3 middle_of(const struct corners *c, int number) {
+    return number < 3 ? vec3_scale(vec3_add(c->point[number], c->point[(number + 1) % 3]), 0.5)
+                      : vec3_scale(vec3_add(c->point[0], vec3_add(c->point[1], c->point[2])), 1.0 / 3);
+}
+
+/* Bits of the middles that are not near to the solid. */
+static uint8_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
+    struct vec3 normal = vec3_normalize(triangle_normal(c->point));
+    uint8_t out = 0;
+    if (!(vec3_length(normal) > 0))
+        return 8;
+    for (int i = 0; i < 4; i++) {
+        if (!solid_is_near_for_sure(probe, middle_of(c, i), normal, tolerance))
+            out |= (uint8_t)(1 << i);
+    }
+    return out;
+}
+
+static void test_chunk(void *context, uint32_t item, int worker) {
+    struct verification *v = context;
+    uint32_t end = (item + 1) * CHUNK, count = (uint32_t)v->mesh->triangles.count;
+    for (uint32_t i = item * CHUNK; i < end && i < count; i++) {
+        struct corners corners = corners_of(v->mesh, i);
+        v->stray[i] = strays(&v->probes[worker], &corners, v->input->tolerance);
+    }
+}
+
+static bool find_strays(struct verification *v, struct error *error) {
+    uint32_t count = (uint32_t)v->mesh->triangles.count;
+    v->stray = mem_alloc_zero(count, 1);
+    if (!v->stray)
+        return error_no_memory(error, "the mesh of a solid");
+    bool ok = pool_run(v->input->pool, (count + CHUNK - 1) / CHUNK, test_chunk, v) ||
+              error_set(error, ERROR_CANCELLED, "stopped while a mesh was tested");
+    for (uint32_t i = 0; ok && i < count; i++) {
+        struct corners corners = corners_of(v->mesh, i);
+        for (int k = 0; k < 4; k++) {
+            struct vec3 at = middle_of(&corners, k);
+            if (!(v->stray[i] >> k & 1))
+                continue;
+            v->strays++;
+            add_fault(v, (struct box){at, at}, 10 * v->input->tolerance * (1 << v->round));
+        }
+    }
+    mem_free(v->stray);
+    return ok;
+}
+
+static bool verify(struct verification *v, struct error *error) {
+    struct box_tree tree;
+    v->intersections = v->strays = 0;
+    if (!triangle_tree_build(&tree, v->mesh, v->input->pool, error))
+        return false;
+    find_intersections(v->mesh, &tree, 1e-13 * v->size, add_intersection, v);
+    box_tree_destroy(&tree);
+    if (!find_strays(v, error))
+        return false;
+    for (int i = 0; i < pool_workers(v->input->pool); i++)
+        v->failed = v->failed || v->probes[i].failed;
+    return !v->failed || error_no_memory(error, "the mesh of a solid");
+}
+
+/* --- rounds --- */
+
+static void round_coordinates(struct solid_mesh *mesh) {
+    for (uint32_t i = 0; i < mesh->vertices.count; i++) {
+        struct vec3 *point = &solid_vertex_at(mesh, i)->point;
+        *point = vec3_make((float)point->x, (float)point->y, (float)point->z);
+    }
+}
+
+static void mark_fixed(const struct verification *v, const struct solid_mesh *mesh, uint8_t *fixed) {
+    const struct box *boxes = v->boxes.items;
+    for (uint32_t i = 0; i < mesh->vertices.count; i++)
+        for (size_t k = 0; k < v->boxes.count && !fixed[i]; k++)
+            fixed[i] = box_contains(&boxes[k], solid_vertex_at(mesh, i)->point);
+}
+
+/* *good: it has no faults. */
+static bool simplify_and_test(struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
+                              uint8_t *fixed, bool *good, struct error *error) {
+    const struct simplify_input input = {
+        .tolerance = v->input->tolerance,
+        .size = v->size,
+        .resolution = 0x1p-22 * fmax(vec3_max_abs(v->input->csg->bounds.min), vec3_max_abs(v->input->csg->bounds.max)),
+        .fixed = fixed};
+    *good = false;
+    for (v->round = 0; v->round < ROUNDS && !*good; v->round++) {
+        if (pool_cancelled(v->input->pool))
+            return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
+        solid_mesh_destroy(out);
+        mark_fixed(v, fine, fixed);
+        bool memory = solid_mesh_copy(fine, out) && simplify_mesh(out, &input);
+        if (!memory)
+            return error_no_memory(error, "the mesh of a solid");
+        v->mesh = out;
+        if (!verify(v, error))
+            return false;
+        /* What is not proved to be near may be near: in the end it is good. */
+        *good = v->intersections == 0 && (v->strays == 0 || v->round == ROUNDS - 1);
+    }
+    bool memory = solid_mesh_compact(out);
+    *good = *good && memory && solid_mesh_is_closed(out, &memory);
+    return memory || error_no_memory(error, "the mesh of a solid");
+}
+
+static bool is_empty(const struct solid_input *input, struct error *error) {
+    return error_set(error, ERROR_SCENE, "node '%.100s' is empty: there is nothing to write", input->name);
+}
+
+static bool try_grid(const struct solid_input *input, uint32_t cells, struct solid_mesh *out,
+                     struct solid_findings *findings, bool *good, struct error *error) {
+    double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
+    const struct contour_input contour = {input->csg, input->tolerance, cells, input->pool};
+    int workers = pool_workers(input->pool), ready = 0;
+    struct verification v = {.input = input, .size = size};
+    struct solid_mesh fine;
+    *good = false;
+    if (!contour_build(&contour, &fine, error))
+        return false;
+    if (fine.triangles.count == 0) {
+        solid_mesh_destroy(&fine);
+        return is_empty(input, error);
+    }
+    bool ok = separate(input, size, &fine, findings, error);
+    round_coordinates(&fine);
+    uint8_t *fixed = mem_alloc_zero(fine.vertices.count, 1);
+    v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
+    while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
+        ready++;
+    ok = ok && ((fixed && ready == workers) || error_no_memory(error, "the mesh of a solid"));
+    ok = ok && simplify_and_test(&v, &fine, out, fixed, good, error);
+    while (ready > 0)
+        solid_probe_destroy(&v.probes[--ready]);
+    mem_free(v.probes);
+    mem_free(fixed);
+    list_destroy(&v.boxes);
+    solid_mesh_destroy(&fine);
+    return ok;
+}
+
+bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
+                      struct error *error) {
+    *out = (struct solid_mesh){0};
+    *findings = (struct solid_findings){0};
+    if (box_is_empty(&input->csg->bounds))
+        return is_empty(input, error);
+    double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
+    double wanted = fmin(fmax(sqrt(size / input->tolerance), MIN_CELLS), MAX_CELLS);
+    bool good = false;
+    for (int i = 0; i < GRIDS && !good; i++) {
+        uint32_t cells = (uint32_t)(wanted * (1 + 0.37 * i));
+        if (!try_grid(input, cells, out, findings, &good, error)) {
+            solid_mesh_destroy(out);
+            return false;
+        }
+    }
+    if (good)
+        return true;
+    solid_mesh_destroy(out);
+    return error_set(error, ERROR_SCENE,
+                     "node '%.100s': no mesh without faults was found within %g of the solid; another tolerance may "
+                     "help",
+                     input->name, input->tolerance);
+}

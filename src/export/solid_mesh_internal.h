@@ -1,0 +1,56 @@
+/* A triangle mesh made of a solid. */
+#ifndef GRAY_EXPORT_SOLID_MESH_INTERNAL_H
+#define GRAY_EXPORT_SOLID_MESH_INTERNAL_H
+
+#include "base/error.h"
+#include "base/pool.h"
+#include "csg/csg.h"
+#include "formats/list.h"
+
+/* A vertex inside of a smooth piece, on an edge between two, or at a corner. */
+enum { VERTEX_SMOOTH, VERTEX_EDGE, VERTEX_CORNER };
+struct solid_vertex {
+    struct vec3 point, normal[3]; /* as many normals and surfaces as sharp + 1 */
+    uint32_t surface[3];
+    uint8_t sharp;
+};
+/* Counterclockwise as seen from outside. */
+struct solid_triangle {
+    uint32_t vertex[3], surface;
+};
+/* Owner: the caller, solid_mesh_destroy. */
+struct solid_mesh {
+    struct list vertices, triangles;
+};
+
+void solid_mesh_destroy(struct solid_mesh *mesh);
+/* Forgets vertices that no triangle has. False: no memory. */
+bool solid_mesh_compact(struct solid_mesh *mesh);
+
+static inline struct solid_vertex *solid_vertex_at(const struct solid_mesh *mesh, uint32_t index) {
+    return (struct solid_vertex *)mesh->vertices.items + index;
+}
+static inline struct solid_triangle *solid_triangle_at(const struct solid_mesh *mesh, uint32_t index) {
+    return (struct solid_triangle *)mesh->triangles.items + index;
+}
+
+struct solid_input {
+    const struct csg *csg; /* closed and finite */
+    const char *name;      /* of its node, for messages */
+    double tolerance;
+    struct pool *pool;
+};
+/* What is worth a notice. */
+struct solid_findings {
+    uint32_t separated;   /* vertices that were moved because parts of the solid touch there */
+    struct vec3 position; /* of one of them */
+};
+
+/* A closed, oriented mesh whose coordinates are numbers of single precision and whose triangles do not intersect;
+ * within the tolerance of the solid. Errors: the solid is empty, or too fine for this; no memory; cancelled. */
+bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
+                      struct error *error);
+/* Whether every edge has two triangles in opposite directions, and every vertex one fan. *memory: false: none. */
+bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *memory);
+
+#endif
