@@ -312,11 +312,14 @@ static struct picture_request picture_request_of(const struct options *options, 
                                                  struct frame frame) {
     static const struct tone_table no_table = {{0}};
     const struct tone_table *table = job->settings.tone.table;
+    struct settings recorded = job->settings;
+    if (options->window && recorded.denoise == DENOISER_AUTO) /* it shows no noise while it renders */
+        recorded.denoise = DENOISER_GRAY;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
                                     .settings = job->settings,
                                     .tone_table = table ? *table : no_table,
-                                    .record = render_record(&job->settings),
+                                    .record = render_record(&recorded),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
                                     .camera = job->camera,
@@ -370,7 +373,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (warning[0] != '\0')
         render_process_warn_at(process, work->request->where, warning);
     picture->shown = (struct film_rectangle){area.x0, area.y0, area.x0 + area.width, area.y0 + area.height};
-    uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
+    uint32_t rim = settings_denoise(&job->settings) && path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
     rim += finish_rim(&job->settings.finish, picture->full_height);
     struct film_rectangle all = film_rectangle_grown(&picture->shown, rim, picture->full_width, picture->full_height);
     picture->x0 = all.x0, picture->y0 = all.y0, picture->width = all.x1 - all.x0, picture->height = all.y1 - all.y0;
