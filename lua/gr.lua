@@ -2285,6 +2285,18 @@ function node:translate(x, y, z) end
 ---@overload fun(self: gr.node, fields: gr.node.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights, fields) end
 
+---@class gr.node.export.fields
+---@field file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---@field tolerance? number tolerance (a number, > 0; default 1/1000 of the size): Largest distance of the model from the exact surface.
+---@field unit? 'mm'|'cm'|'m'|'in' unit ('mm'|'cm'|'m'|'in'; default 'mm'): Unit of the numbers, for files that name it (3MF).
+---@field text? boolean text (true or false; default false): Whether an STL file is text, not binary.
+
+---Writes the solids of the node as a closed mesh, for printers and other programs.
+---@param file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---@param fields? gr.node.export.fields Fields that are no arguments before it
+---@overload fun(self: gr.node, fields: gr.node.export.fields)
+function node:export(file, fields) end
+
 ---@class gr.frames.fields
 ---@field count? integer count (a whole number, >= 1; optional): Number of frames; give either count or seconds.
 ---@field draw function draw (a function): draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1.

@@ -215,6 +215,10 @@ static struct colour estimate(const struct surface_tables *tables, const struct 
                : number;
 }
 
+struct colour surface_diffuse(const struct surface_tables *tables, const struct surface_material *surface) {
+    return estimate(tables, surface, INPUT_KD, surface->phong.kd, TEXTURE_AVERAGE);
+}
+
 struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface) {
     return estimate(tables, surface, INPUT_EMISSION, surface->phong.emission, TEXTURE_AVERAGE);
 }

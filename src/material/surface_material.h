@@ -68,6 +68,8 @@ bool surface_disperses(const struct surface_material *surface);
 struct medium surface_medium(const struct surface_material *surface);
 /* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */
 bool surface_divides_media(const struct surface_material *surface);
+/* The average colour of what is reflected in all directions. */
+struct colour surface_diffuse(const struct surface_tables *tables, const struct surface_material *surface);
 /* The average emission, and a bound (texture_estimate). */
 struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface);
 struct colour surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface);
