@@ -6,6 +6,7 @@
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 #include "render/sample_internal.h"
+#include "world/world_describe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -86,6 +87,20 @@ static bool find_photon_lights(struct path_tracer *tracer, const struct world *w
     return lights != NULL;
 }
 
+/* The lights with a position, if there are media. */
+static bool find_lamps(struct path_tracer *tracer) {
+    const struct world_lights *lights = &tracer->lights;
+    struct light_target middle;
+    if (!tracer->has_fillings && !tracer->in_medium)
+        return true;
+    uint32_t *lamps = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *lamps);
+    for (uint32_t i = 0; lamps && i < lights->count; i++)
+        if (light_middle(&lights->lights[i], &middle) && !middle.distant)
+            lamps[tracer->lamp_count++] = i;
+    tracer->lamps = lamps;
+    return lamps != NULL;
+}
+
 /* --- sealed solids --- */
 
 static bool share_points(const struct box *a, const struct box *b) {
@@ -149,6 +164,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     for (uint32_t i = 0; i < world->material_count; i++)
         tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
     tracer->in_medium = world_outside(world)->affects != 0;
+    tracer->disperses = world_disperses(world);
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
@@ -157,7 +173,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     /* The lights and, with --caustics, the photons that they send. */
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
-    if (tracer->built && !find_sealed(tracer, world))
+    if (tracer->built && (!find_lamps(tracer) || !find_sealed(tracer, world)))
         return error_no_memory(error, "the solids of the scene");
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;
