@@ -455,15 +455,11 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
 
-static bool is_in_sealed(const struct path_tracer *tracer, const struct medium_stack *media) {
-    return tracer->sealed && media->count > 0 && tracer->sealed[media->solids[media->count - 1]];
-}
-
 /* The way to the hit in a sealed solid, where nothing but the medium is, before the hit is described: most rays do not
  * come that far. False: it is another way, and nothing is done. */
 static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tracer, struct integrator_state *state,
                                                     struct path *path, struct path_stretch *out) {
-    if (path->kind == RAY_BELOW || !is_in_sealed(tracer, &path->media) ||
+    if (path->kind == RAY_BELOW || !path_is_sealed(tracer, &path->media) ||
         touching_has(&state->job->world->touching, path->met.primitive))
         return false;
     out->distance = path->met.crossing.t * vec3_length(path->ray.direction);
@@ -491,7 +487,7 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
                                        .sight = path->sight,
                                        .thrown = path->thrown,
                                        .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
-                                       .sealed = is_in_sealed(tracer, &path->media)};
+                                       .sealed = path_is_sealed(tracer, &path->media)};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
