@@ -23,7 +23,7 @@
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
-#include "render/subsurface_walk.h"
+#include "render/subsurface_walk_internal.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -370,6 +370,7 @@ static __attribute__((noinline)) bool walk_below(struct integrator_state *state,
                                    .primitive = vertex->hit->primitive,
                                    .under = *under,
                                    .key = random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM),
+                                   .normal = vertex->hit->normal_geometric,
                                    .ray = hit_ray(vertex->hit, &path->ray, sample->direction, &path->media),
                                    .weight = colour_mul(path->weight, colour_share(sample->weight, under->colour))};
     if (!subsurface_walk(&walk))
