@@ -232,6 +232,7 @@ static bool has_emission(const struct pieces *pieces) {
 
 void medium_mix_track(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput,
                       struct medium_draw numbers, struct medium_track *out) {
+    throughput = colour_abs(throughput); /* single wavelengths have negative components */
     double sum = throughput.r + throughput.g + throughput.b;
     struct tracking tracking;
     tracking.share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3);

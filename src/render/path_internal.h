@@ -28,8 +28,10 @@ struct path_tracer {
     bool built;            /* the lights are prepared */
     bool has_fillings;     /* media inside invisible surfaces */
     bool in_medium;        /* the medium around all solids affects rays */
+    bool disperses;        /* indices of refraction depend on the wavelength */
     const uint32_t *lamps; /* lights with a middle, for path_aim.h */
     uint32_t lamp_count;
+    const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;

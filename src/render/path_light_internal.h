@@ -17,6 +17,7 @@ struct path_vertex {
     bool sight;           /* of a line of sight, on which mirrors show only visible lights */
     struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
     const struct path_tracked *tracked; /* in a medium whose ray has other samples of lights (path_aim.h); or NULL */
+    bool sealed;          /* no lamp reaches it */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */

@@ -18,6 +18,7 @@
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
 #include "math/range.h"
+#include "math/spectrum.h"
 #include "render/path_aim.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
@@ -75,6 +76,13 @@ static float in_unit(double x) {
     return x >= 1 ? 1 : x > 0 ? (float)x : 0;
 }
 
+/* The weight as for white light. */
+static struct colour neutral_weight(const struct path *path) {
+    if (!(path->media.wavelength > 0))
+        return path->weight;
+    return colour_share(path->weight, spectrum_weight((double)path->media.wavelength));
+}
+
 /* The end of a line of sight. distance: along the last ray of the path. */
 static void set_features(const struct integrator_state *state, const struct path *path, struct colour albedo,
                          struct vec3 normal, double distance) {
@@ -82,7 +90,7 @@ static void set_features(const struct integrator_state *state, const struct path
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct colour behind = colour_mul(path->weight, albedo);
+    const struct colour behind = colour_mul(neutral_weight(path), albedo);
     const struct colour a =
         parts->reflected > 0 ? colour_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
     const float features[PATH_GLOW] = {in_unit(a.r),
@@ -107,7 +115,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
         set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
     } else if (guide.refracted > 0 && parts->reflected == 0) {
         parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
-        parts->seen = colour_scale(path->weight, parts->reflected);
+        parts->seen = colour_scale(neutral_weight(path), parts->reflected);
     }
 }
 
@@ -436,7 +444,8 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+        path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
@@ -455,12 +464,15 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
+    const struct medium_stack *media = &path->media;
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
                                        .sight = path->sight,
                                        .thrown = path->thrown,
-                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL};
+                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
+                                       .sealed = tracer->sealed && media->count > 0 &&
+                                                 tracer->sealed[media->solids[media->count - 1]]};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
@@ -611,6 +623,10 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
             watch_ray(watch, state->observer, path, &at.hit);
 #endif
             return come_out(tracer, state, path, &at.hit, shadow, watch);
+        }
+        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+            double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
+            path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
         }
         if (world_touches(world, &at.hit))
             world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);
