@@ -18,7 +18,7 @@ struct picked {
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
-    uint64_t route;                        /* to it (viewer/view_overlay_internal.h); 0: not known */
+    uint64_t route;                        /* to it (preview/view_overlay_internal.h); 0: not known */
     uint64_t solid;                        /* of an operand: the route to the solid; else 0 */
     uint32_t levels;                       /* nodes above it */
     int32_t up;                            /* as requested, limited by the number of nodes */

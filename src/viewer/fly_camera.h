@@ -22,7 +22,8 @@ enum { FLY_VIEWS = 64 };
 
 struct fly_camera {
     struct pose pose, home;
-    double speed;                 /* world units a second */
+    double speed;                 /* world units a second ... */
+    double usual;                 /* ... where nothing is in front */
     struct vec3 centre;           /* that orbits go round */
     bool down[FLY_KEYS];          /* which keys are held */
     struct pose views[FLY_VIEWS]; /* in the order of time */
@@ -34,6 +35,8 @@ struct fly_camera {
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
 /* Sets speed and centre for other bounds; the camera does not move. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
+/* The speed for what is in front at this distance: not faster than through the scene in four seconds. */
+void fly_camera_near(struct fly_camera *fly_camera, double distance);
 /* The camera at its current position. */
 struct camera fly_camera_current(const struct fly_camera *fly_camera);
 /* Applies the pressed keys for `seconds`. True: the camera has moved. */

@@ -9,10 +9,10 @@
 #include "base/file_output.h"
 #include "base/share.h"
 #include "film/film.h"
+#include "preview/preview_messages.h"
+#include "scene/edits.h"
 #include "session/control.h"
-#include "viewer/edits.h"
 #include "viewer/fly_camera.h"
-#include "viewer/preview_messages.h"
 #include "window/window.h"
 
 enum viewer_action {

@@ -551,8 +551,10 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     struct selection *selection = &viewer->edit.selection;
     if (picked->hit)
         viewer->fly_camera.centre = picked->position;
-    if (viewer->edit.probes)
+    if (viewer->edit.probes) {
+        fly_camera_near(&viewer->fly_camera, picked->hit ? picked->distance : HUGE_VAL);
         return;
+    }
     *selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
                                     .picked = *picked,
                                     .applied = transform_identity(),
@@ -583,6 +585,13 @@ void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name) {
     (void)snprintf(change.name, sizeof change.name, "%s", name);
     bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
     make_step(viewer, &change, shown);
+}
+
+void viewer_solo(struct viewer *viewer) {
+    struct change change = viewer_change(viewer, CHANGE_SOLO, 0);
+    bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
+    if (!shown || viewer->edit.selection.kind == SELECTED_NODE)
+        make_step(viewer, &change, shown);
 }
 
 /* The position of new nodes: the last clicked point, or in front of the camera. */

@@ -196,6 +196,9 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_DELETE:
         viewer_delete_selection(viewer);
         return;
+    case DO_SOLO:
+        viewer_solo(viewer);
+        return;
     case DO_OWN_MATERIAL:
         viewer_make_own_material(viewer);
         return;
@@ -308,6 +311,16 @@ void viewer_do(struct viewer *viewer, enum window_action action) {
     viewer->display.hud_dirty = true;
     (void)snprintf(viewer->note, sizeof viewer->note, "window: %s", window_action_table[action].name);
     do_action(viewer, action);
+}
+
+/* The speed is that for what is in front. */
+static void handle_key(struct viewer *viewer, const struct window_event *event) {
+    const struct window_layout *layout = &viewer->window.layout;
+    if (!viewer->block) /* without a scene the camera does not move */
+        return;
+    if (event->down && !viewer->fly_camera.down[event->key])
+        viewer_probe(viewer, layout->left + layout->shown_width / 2, layout->top + layout->shown_height / 2);
+    viewer->fly_camera.down[event->key] = event->down;
 }
 
 /* The mouse. */
@@ -443,8 +456,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         viewer->quit = true;
         return;
     case WINDOW_KEY:
-        if (viewer->block) /* without a scene the camera does not move */
-            viewer->fly_camera.down[event->key] = event->down;
+        handle_key(viewer, event);
         return;
     case WINDOW_MOVE:
         handle_motion(viewer, event);

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/file_output.h"
 #include "image/png_write.h"
-#include "viewer/edits.h"
+#include "scene/edits.h"
 
 #include <stdio.h>
 #include <string.h>

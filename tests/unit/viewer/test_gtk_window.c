@@ -25,7 +25,7 @@ static void drive(const char *options, const char *commands, int status) {
     (void)snprintf(script, size, frame, options, commands);
     (void)snprintf(path, sizeof path, "%s/drive.sh", test_folder());
     test_write_text(path, script);
-    int got = test_run_shell("timeout 100 xvfb-run -a -s '-screen 0 1400x900x24' sh drive.sh", ">out.txt 2>err.txt");
+    int got = test_run_shell("timeout 300 xvfb-run -a -s '-screen 0 1400x900x24' sh drive.sh", ">out.txt 2>err.txt");
     char *said = test_read_file(test_path("err.txt"), NULL);
     if (got != status)
         test_fail(__FILE__, __LINE__, "%.600s\nstatus %d, not %d:\n%s", commands, got, status,
@@ -50,6 +50,12 @@ static void need_display(void) {
 /* Names of actions that change what the next ones need are done last. */
 static bool ends_scene(enum window_action action) {
     return action == DO_QUIT || action == DO_NEXT_PICTURE;
+}
+
+/* The same key again takes it back; what was deleted is undone. */
+static bool repeats(enum window_action action) {
+    return action == DO_DELETE || action == DO_FULL_SCREEN || action == DO_HIDE || action == DO_PLAY ||
+           action == DO_STOP || action == DO_SOLO;
 }
 
 /* A key as xdotool writes it: "<Control><Shift>s" is ctrl+shift+s. */
@@ -230,7 +236,7 @@ static void press_every_key(enum window_key_set set) {
                 if (row->menu == MENU_VIEW)
                     used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s\n",
                                              set == KEYS_BLENDER ? "0" : "ctrl+0");
-                if (i == DO_DELETE || i == DO_FULL_SCREEN || i == DO_HIDE || i == DO_PLAY)
+                if (repeats((enum window_action)i))
                     used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s sleep 0.5\n",
                                              i == DO_DELETE ? "ctrl+z" : key);
                 at += length + strspn(at + length, " ");

@@ -2,8 +2,8 @@
  * without memory. */
 #include "base/fault.h"
 #include "host/file_watch.h"
+#include "scene/edits.h"
 #include "tests/harness.h"
-#include "viewer/edits.h"
 #include "viewer/fly_camera.h"
 
 #include <math.h>

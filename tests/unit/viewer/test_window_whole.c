@@ -703,3 +703,26 @@ TEST(window_lists_operands_and_the_path_of_what_is_clicked) {
     const struct node_query *path = &person.state.selected;
     CHECK(path->depth == 3 && path->path[0] == 0 && path->path[1] == 1 && path->path[2] == 1);
 }
+
+/* A ball in a group beside another one: alone it is what a script without the other shows. */
+TEST(window_shows_a_node_alone_and_everything_again) {
+#define TWO(other)                                                                                                     \
+    "local m = gr.material({0.5, 0.5, 0.5}, {0, 0, 0}, 1)\nlocal r, g = gr.node('root'), gr.node('group')\n"           \
+    "r:add_child(g)\ng:add_child(gr.geometry('a', gr.sphere(m)))\n" other                                              \
+    RENDER(LIGHT)
+    const struct setting setting = {.scene =
+                                        TWO("g:add_child(gr.geometry('b', gr.sphere(m)):translate(1.5, 0, 0))\n"
+                                            "r:add_child(gr.geometry('c', gr.sphere(m)):translate(-1.5, 0, 0))\n")};
+    const struct deed deeds[] = {{"ready", {.kind = WINDOW_SELECT, .node = {.depth = 3, .path = {0, 0, 0}}}, 0},
+                                 {"ready", ACTION(DO_SOLO), 20},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SOLO), 0},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 0},
+                                 QUIT};
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    CHECK(test_same_files("out-view2.png", "out.png") && !test_same_files("out-view1.png", "out.png"));
+    test_write_text(test_path("one.lua"), TWO(""));
+    CHECK_EQ_INT(test_run_shell("$gray -q --progress=none one.lua -o one.png && cmp one.png out-view1.png", ">out.txt"),
+                 0);
+}

@@ -1,13 +1,13 @@
 /* Executes a command, replies, and waits for the next one; the viewer makes all decisions. All changes are undone and
  * applied again together, so that their order is that of the list, as in a script. */
-#include "viewer/preview_session.h"
+#include "preview/preview_session.h"
 
 #include "base/clock.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
+#include "preview/view_overlay_internal.h"
 #include "render/headlight.h"
-#include "viewer/view_overlay_internal.h"
 
 #include <stdio.h>
 #include <string.h>
