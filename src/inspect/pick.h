@@ -49,6 +49,11 @@ struct pick_query {
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error);
 
+/* The materials of a world in a tree of nodes: the number of them at its top, or rows of the list; and one of them, as
+ * if a node with it were hit. */
+void material_rows(const struct world *world, const struct node_query *query, struct node_rows *out);
+void pick_material(const struct world *world, const struct node_query *query, struct picked *out);
+
 /* The same for a node of the tree, at the middle of its box; a node of which nothing is drawn is not hit. */
 bool pick_node(const struct render_job *job, const struct node *root, const struct node_query *query,
                struct picked *out, struct error *error);

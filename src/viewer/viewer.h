@@ -40,7 +40,7 @@ struct window_layout {
 };
 
 /* What was clicked on. */
-enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT };
+enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT, SELECTED_MATERIAL };
 struct selection {
     enum selected kind;
     struct picked picked;     /* of a node, as it was when it was picked */
@@ -247,6 +247,7 @@ struct viewer {
     struct viewer_setting setting;  /* for VIEWER_CHANGE_SETTING */
     enum viewer_action action;      /* requested by a key or a button */
     bool next, quit;                /* likewise: the next picture, the end */
+    char save_as[1024];             /* the file for an action that saves; empty: a new name */
 };
 
 /* A picture to be rendered. */

@@ -197,7 +197,7 @@ static void add_picture(const struct viewer *viewer, struct window_form *form) {
 /* Another selection has other widgets. */
 static uint64_t subject_of(const struct viewer *viewer) {
     const struct selection *selection = &viewer->edit.selection;
-    bool node = selection->kind == SELECTED_NODE;
+    bool node = selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL;
     uint64_t of = node ? selection->picked.serial : selection->light;
     of = of << 24 ^ (node ? (uint64_t)selection->picked.material_serial : viewer->lights.known);
     return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
@@ -213,7 +213,12 @@ void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
     form->title[0] = '\0';
     if (viewer->block && viewer->edit.selection.kind == SELECTED_NODE)
         add_node(viewer, form);
-    else if (viewer->block && viewer->edit.selection.kind == SELECTED_LIGHT)
+    else if (viewer->block && viewer->edit.selection.kind == SELECTED_MATERIAL) {
+        const struct picked *picked = &viewer->edit.selection.picked;
+        (void)snprintf(form->title, sizeof form->title, "Material %u", picked->material_serial);
+        add_text(form, "Material", "kind", "%s", picked->material);
+        add_material(viewer, form);
+    } else if (viewer->block && viewer->edit.selection.kind == SELECTED_LIGHT)
         add_light(viewer, form);
     if (viewer->name[0] != '\0')
         add_picture(viewer, form);

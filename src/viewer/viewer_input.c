@@ -309,8 +309,10 @@ void viewer_do(struct viewer *viewer, enum window_action action) {
     if (action != DO_ESCAPE && action != DO_MOVE && action != DO_TURN && action != DO_SIZE)
         end_tool(viewer, true);
     viewer->display.hud_dirty = true;
-    (void)snprintf(viewer->note, sizeof viewer->note, "window: %s", window_action_table[action].name);
     do_action(viewer, action);
+    size_t used = strlen(viewer->note); /* what it did is noted first */
+    (void)snprintf(viewer->note + used, sizeof viewer->note - used, "%swindow: %s", used > 0 ? "; " : "",
+                   window_action_table[action].name);
 }
 
 /* The speed is that for what is in front. */
@@ -433,7 +435,8 @@ static void select_row(struct viewer *viewer, const struct node_query *query) {
     bool light = query->depth == 2 && query->path[0] == SECTION_LIGHTS;
     if (light && query->path[1] < viewer->lights.known)
         viewer_select_light(viewer, query->path[1] + 1);
-    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES))
+    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES) ||
+             (query->depth == 2 && query->path[0] == SECTION_MATERIALS))
         viewer_select_node(viewer, query);
     else
         viewer->edit.selection.kind = SELECTED_NOTHING;
@@ -443,7 +446,7 @@ static void select_row(struct viewer *viewer, const struct node_query *query) {
 /* Beside the root of the scene. */
 void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows) {
     if (query->depth == 0 && query->search[0] == '\0' && rows->count == 1) {
-        rows->count = WINDOW_SECTIONS;
+        rows->count = NODE_SECTIONS;
         rows->rows[SECTION_LIGHTS] = (struct node_row){.children = viewer->lights.count, .name = "Lights", .kind = " "};
         rows->rows[SECTION_CAMERA] = (struct node_row){.name = "Camera", .kind = " "};
     }
@@ -480,6 +483,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         return;
     case WINDOW_ACTION:
         take_position(viewer, event);
+        (void)snprintf(viewer->save_as, sizeof viewer->save_as, "%s", event->text);
         viewer_do(viewer, event->action);
         return;
     case WINDOW_NODES:

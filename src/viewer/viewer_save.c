@@ -11,9 +11,16 @@
 
 enum { NAME = 4096, NUMBERS = 10000 };
 
-static bool free_name(const char *picture, const char *what, const char *extension, char *name, struct error *error) {
+/* The name that the user has chosen, or a free one beside the picture. */
+static bool free_name(const struct viewer *viewer, const char *picture, const char *what, const char *extension,
+                      char *name, struct error *error) {
     const char *slash = strrchr(picture, '/'), *dot = strrchr(picture, '.');
     size_t stem = dot && (!slash || dot > slash + 1) && dot != picture ? (size_t)(dot - picture) : strlen(picture);
+    if (viewer->save_as[0] != '\0') {
+        (void)snprintf(name, NAME, "%s", viewer->save_as);
+        return !file_exists(name) ||
+               error_set(error, ERROR_SCENE, "%.400s: the file exists, and the window replaces none", name);
+    }
     for (int i = 1; i < NUMBERS; i++) {
         int length = snprintf(name, NAME, "%.*s%s%d.%s", (int)stem, picture, what, i, extension);
         if (length < NAME && !file_exists(name))
@@ -36,7 +43,8 @@ bool viewer_save_image(const struct viewer *viewer, const struct file_target *pi
                                       .bytes = image_row,
                                       .context = (void *)(uintptr_t)viewer,
                                       .srgb = viewer->request.settings.tone.srgb};
-    return free_name(picture->path, "-view", "png", name, error) && png_write_from(&target, &source, NULL, error);
+    return free_name(viewer, picture->path, "-view", "png", name, error) &&
+           png_write_from(&target, &source, NULL, error);
 }
 
 struct lua_file {
@@ -70,7 +78,8 @@ bool viewer_save_camera(const struct viewer *viewer, const struct file_target *p
                    "return {\n  eye = {%.17g, %.17g, %.17g},\n  view = {%.17g, %.17g, %.17g},\n"
                    "  up = {%.17g, %.17g, %.17g},\n  fov = %.17g,\n}\n",
                    c.eye.x, c.eye.y, c.eye.z, c.view.x, c.view.y, c.view.z, c.up.x, c.up.y, c.up.z, c.fov);
-    if (!free_name(picture->path, "-view", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
+    if (!free_name(viewer, picture->path, "-view", "lua", name, error) ||
+        !file_output_open(&lua_file.file, &target, error))
         return false;
     return end_file(&lua_file, put_line(&lua_file, head) &&
                                    edits_write_lua(&none, viewer->request.file, &c, NULL, put_line, &lua_file) &&
@@ -87,7 +96,8 @@ bool viewer_save_edits(const struct viewer *viewer, const struct file_target *pi
     bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
     struct lua_file lua_file = {.error = error};
     const struct file_target target = {.path = name, .rules = picture->rules};
-    if (!free_name(picture->path, "-changes", "lua", name, error) || !file_output_open(&lua_file.file, &target, error))
+    if (!free_name(viewer, picture->path, "-changes", "lua", name, error) ||
+        !file_output_open(&lua_file.file, &target, error))
         return false;
     return end_file(&lua_file,
                     put_line(&lua_file, head) && edits_write_lua(&viewer->edit.steps.now, viewer->request.file,

@@ -44,7 +44,7 @@ struct window_event {
     double numbers[3];
     bool joins;
     struct node_query node;
-    char text[NODE_NAME];
+    char text[1024]; /* a name; of an action that saves: the file, or empty */
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -86,8 +86,6 @@ struct window_line {
     enum line_colour colour;
 };
 enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384, WINDOW_HIDDEN = 256 };
-/* The rows of the tree: the node, then the lights, which have a list below them, and the camera. */
-enum window_section { SECTION_NODES, SECTION_LIGHTS, SECTION_CAMERA, WINDOW_SECTIONS };
 
 /* Everything that the window shows but the picture and the rows of the tree. */
 struct window_state {

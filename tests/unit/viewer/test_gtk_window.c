@@ -218,14 +218,14 @@ static void press_every_key(enum window_key_set set) {
     test_write_text(path, animation);
     test_write_text(test_path("keys.ini"), set == KEYS_OPENSCAD ? "[window]\nkeys=OpenSCAD\n" : "");
     gives("mkdir -p gray && mv keys.ini gray/window.ini", 0);
-    used +=
-        (size_t)snprintf(commands + used, SIZE - used,
-                         "did() { for i in $(seq 200); do [ $(grep -c \"window: $1\\$\" err.txt) -gt $2 ] && return 0; "
-                         "sleep 0.05; done; echo \"no $1 by $3\" >&2; kill $pid; exit 97; }\n"
-                         "press() { titled ' - ready'; xdotool mousemove 600 460 click 1 sleep 0.6; n=$(grep -c "
-                         "\"window: $2\\$\" err.txt); "
-                         "xdotool key $1; did $2 $n $1; xdotool key Escape; }\n"
-                         "titled ' - playing'; xdotool key space; titled ' - ready'\n");
+    used += (size_t)snprintf(
+        commands + used, SIZE - used,
+        "did() { for i in $(seq 200); do [ $(grep -c \"window: $1\\$\" err.txt) -gt $2 ] && return 0; "
+        "sleep 0.05; done; echo \"no $1 by $3\" >&2; kill $pid; exit 97; }\n"
+        "press() { titled ' - (ready|stopped)'; xdotool mousemove 600 460 click 1 sleep 0.6; n=$(grep -c "
+        "\"window: $2\\$\" err.txt); "
+        "xdotool key $1; did $2 $n $1; xdotool key Escape; }\n"
+        "titled ' - playing'; xdotool key space; titled ' - ready'\n");
     for (int last = 0; last < 2; last++) {
         for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
             const struct window_action_row *row = &window_action_table[i];
@@ -238,7 +238,9 @@ static void press_every_key(enum window_key_set set) {
                                              set == KEYS_BLENDER ? "0" : "ctrl+0");
                 if (repeats((enum window_action)i))
                     used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s sleep 0.5\n",
-                                             i == DO_DELETE ? "ctrl+z" : key);
+                                             i == DO_DELETE ? "ctrl+z"
+                                             : i == DO_PLAY ? "Escape"
+                                                            : key);
                 at += length + strspn(at + length, " ");
             }
         }
