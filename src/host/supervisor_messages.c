@@ -296,6 +296,24 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
     supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
 }
 
+/* The time of the script stands still from the first request until the end. */
+static void answer_model(struct supervisor *supervisor, const struct model_request *request) {
+    struct output_session *output = &supervisor->output;
+    struct error error = {0};
+    supervisor_stop_script_clock(supervisor);
+    bool ok = model_output_begin(&output->model, &output->files, request, &error);
+    supervisor_send_answer(supervisor, MESSAGE_FILM, ok, false, &error,
+                           ok && request->size > 0 ? output->model.memory.descriptor : -1);
+}
+
+static void write_model(struct supervisor *supervisor) {
+    struct output_session *output = &supervisor->output;
+    struct error error = {0};
+    bool ok = output->interrupted ? error_set(&error, ERROR_CANCELLED, "%.600s: interrupted", output->model.name)
+                                  : model_output_write(&output->model, &output->files, &error);
+    supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
+}
+
 /* A script that was started again has ended before it reached its picture again. */
 static void drop_kept(struct supervisor *supervisor, const struct message_script *script) {
     struct error error;
@@ -345,7 +363,8 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
 
 /* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
 void supervisor_handle_message(struct supervisor *supervisor, const struct message *message) {
-    const struct picture *current = &supervisor->output.current;
+    struct output_session *output = &supervisor->output;
+    const struct picture *current = &output->current;
     struct preview_reply reply;
     struct error ignored;
     switch (message->kind) {
@@ -380,6 +399,21 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
             break;
         supervisor_abandon_picture(supervisor);
         supervisor_start_script_clock(supervisor);
+        return;
+    case MESSAGE_MODEL:
+        if (current->open || output->model.memory.block)
+            break;
+        answer_model(supervisor, &message->body.model);
+        return;
+    case MESSAGE_MODEL_WRITE:
+        if (!output->model.memory.block || supervisor->deadline > 0)
+            break;
+        write_model(supervisor);
+        return;
+    case MESSAGE_MODEL_END:
+        model_output_forget(&output->model);
+        if (!current->open)
+            supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_SCRIPT:
         note_script(supervisor, &message->body.script);

@@ -37,6 +37,7 @@ struct pass_view {
     bool plain;             /* one sample a pixel, coarse soft light */
     bool headlight;         /* plain, and shaded by a light at the eye (render/headlight.h) */
     uint32_t samples;       /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
+    uint32_t kept;          /* samples of the pass before, which had all pixels: the pass goes on with the next */
     bool own;               /* the camera, lens and motion of the script */
     uint32_t width, height; /* not 0: so many pixels in place of those of the picture, in the memory of the command */
 };

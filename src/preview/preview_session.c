@@ -38,6 +38,9 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
         job->settings.path_samples = view->samples > 0 ? (int)view->samples : 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
+    if (view->samples > 0)
+        job->settings.denoise = DENOISER_GRAY;
+    job->kept_samples = view->kept;
     if (view->divide > 1 || view->width > 0) { /* the film determines the part */
         job->settings.cropped = false;
         job->settings.keep_first = false;

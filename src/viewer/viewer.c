@@ -22,7 +22,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .exposure = viewer->request.settings.tone.exposure,
                               .divide = divide,
                               .plain = plain,
-                              .headlight = plain && !viewer_plays(viewer),
+                              .headlight = plain && (!viewer_plays(viewer) || viewer_shows_denoised(viewer)),
                               .own = !viewer->camera_moved};
 }
 
@@ -326,8 +326,6 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     if (!resume) {
         viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
-        viewer->pass.view.samples = viewer->pass.draft_samples;
-        viewer->pass.draft_samples = 0;
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
                               is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
@@ -335,6 +333,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
         if (viewer->pass.film.marked)
             memset(viewer->pass.film.marked, 0, (size_t)viewer->pass.film.width * viewer->pass.film.height);
     }
+    viewer->pass.view.kept = 0;
     for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++) {
         if (!resume || atomic_load(&viewer->pass.film.tiles[tile]) != FILM_TILE_DONE)
             atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
@@ -401,21 +400,21 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
-/* Between the preview and the picture of a progressive integrator: few samples, denoised, since many take long. */
-static const struct { uint32_t divide, samples; } drafts[] = {{3, 4}, {2, 8}, {1, 16}};
-
-/* The draft after this pass, or that which comes first. False: the picture itself. */
-static bool begin_draft(struct viewer *viewer, double now) {
-    const struct pass_view *view = &viewer->pass.view;
-    size_t next = 0;
-    while (view->samples > 0 && next < sizeof drafts / sizeof *drafts && drafts[next].samples <= view->samples)
-        next++;
-    if (next == sizeof drafts / sizeof *drafts || !viewer_shows_denoised(viewer) ||
-        drafts[next].samples > settings_path_samples(&viewer->request.settings) / 2)
-        return false;
-    viewer->pass.draft_samples = drafts[next].samples;
-    begin_pass(viewer, drafts[next].divide, false, false, now);
-    return true;
+/* Between the preview and the picture of a progressive integrator: denoised pictures, of 4 samples at a third of the
+ * pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part of.
+ * Where the noise or the time decides, there are at most 16. */
+static void begin_finer_pass(struct viewer *viewer, double now) {
+    enum { FIRST = 4, HALF = 8, ADAPTIVE_LIMIT = 16 };
+    const struct settings *settings = &viewer->request.settings;
+    bool adapts = settings->noise > 0 || settings->time_limit > 0;
+    uint32_t done = viewer->pass.view.samples, all = settings_path_samples(settings);
+    uint32_t samples = done > 0 ? 2 * done : FIRST, divide = samples == FIRST ? 3 : samples == HALF ? 2 : 1;
+    bool last = !viewer_shows_denoised(viewer) || samples > all / 2 || (adapts && samples > ADAPTIVE_LIMIT);
+    bool keeps = done > HALF && !adapts && viewer->pass.result == RESULT_COARSE;
+    begin_pass(viewer, last ? 1 : divide, false, false, now);
+    viewer->pass.view.samples = last ? 0 : samples;
+    viewer->pass.view.kept = keeps ? done : 0;
+    viewer->command.view = viewer->pass.view;
 }
 
 bool viewer_shows_denoised(const struct viewer *viewer) {
@@ -458,8 +457,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         begin_pass(viewer, viewer->pass.view.divide / 2, true, false, now);
     } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
-    } else if (!begin_draft(viewer, now)) {
-        begin_pass(viewer, 1, false, false, now);
+    } else {
+        begin_finer_pass(viewer, now);
     }
     if (viewer->command.kind != COMMAND_PASS)
         viewer->pass.state = PASS_BUSY;

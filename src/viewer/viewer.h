@@ -76,7 +76,6 @@ struct viewer_pass {
     struct picture_report report; /* of the last pass that was finished */
     bool edited;                  /* for a changed scene */
     uint32_t divide;              /* of passes while the camera moves */
-    uint32_t draft_samples;       /* of the next pass, or 0: all */
     double began;
     bool outdated;    /* the camera is not that of `view`, or the scene was changed */
     bool from_coarse; /* the next pass is a coarse one (R) */
