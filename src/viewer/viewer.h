@@ -10,9 +10,9 @@
 #include "base/share.h"
 #include "film/film.h"
 #include "preview/preview_messages.h"
+#include "render/fly_camera.h"
 #include "scene/edits.h"
 #include "session/control.h"
-#include "viewer/fly_camera.h"
 #include "window/window.h"
 
 enum viewer_action {
@@ -122,7 +122,7 @@ struct viewer_trace {
     char text[WINDOW_TRACE]; /* empty: none is shown */
 };
 
-/* What is drawn over the picture (viewer_overlay.c): the render process makes lines of pixels, and the outline. */
+/* What is drawn over the picture (viewer_draw.c): the render process makes lines of pixels, and the outline. */
 struct viewer_overlay {
     enum overlay kind;               /* which lines are wanted */
     float (*lines)[4];               /* over the image, where has_lines; owned */

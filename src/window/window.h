@@ -6,13 +6,11 @@
 
 #include "base/error.h"
 #include "inspect/node_list.h"
+#include "render/fly_camera.h"
 #include "window/actions.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/* Keys that move the camera while they are held. */
-enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 
 enum window_event_kind {
     WINDOW_CLOSE,

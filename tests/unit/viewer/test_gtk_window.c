@@ -222,7 +222,7 @@ static void press_every_key(enum window_key_set set) {
         commands + used, SIZE - used,
         "did() { for i in $(seq 200); do [ $(grep -c \"window: $1\\$\" err.txt) -gt $2 ] && return 0; "
         "sleep 0.05; done; echo \"no $1 by $3\" >&2; kill $pid; exit 97; }\n"
-        "press() { titled ' - (ready|stopped)'; xdotool mousemove 600 460 click 1 sleep 0.6; n=$(grep -c "
+        "press() { titled ' - (ready|stopped|waiting)'; xdotool mousemove 600 460 click 1 sleep 0.6; n=$(grep -c "
         "\"window: $2\\$\" err.txt); "
         "xdotool key $1; did $2 $n $1; xdotool key Escape; }\n"
         "titled ' - playing'; xdotool key space; titled ' - ready'\n");

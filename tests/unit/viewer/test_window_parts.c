@@ -4,7 +4,7 @@
 #include "host/file_watch.h"
 #include "scene/edits.h"
 #include "tests/harness.h"
-#include "viewer/fly_camera.h"
+#include "render/fly_camera.h"
 
 #include <math.h>
 #include <stdio.h>

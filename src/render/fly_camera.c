@@ -1,6 +1,6 @@
 /* Rotations are multiplied on the camera's side (about its own axes) or, around a centre, on the world's side. After
  * each one the quaternion is normalised, so errors do not accumulate. */
-#include "viewer/fly_camera.h"
+#include "render/fly_camera.h"
 
 #include "math/elementary.h"
 

@@ -1,12 +1,11 @@
 /* Flying through a scene: a position and an orientation that keys and the mouse change. The orientation is a quaternion
  * (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985), so no direction is special. Independent of
  * the window: times are seconds, distances of the mouse are fractions of the window's height. */
-#ifndef GRAY_VIEWER_FLY_CAMERA_H
-#define GRAY_VIEWER_FLY_CAMERA_H
+#ifndef GRAY_RENDER_FLY_CAMERA_H
+#define GRAY_RENDER_FLY_CAMERA_H
 
 #include "math/box.h"
 #include "settings/settings.h"
-#include "window/window.h"
 
 struct quaternion {
     double w, x, y, z;
@@ -19,6 +18,9 @@ struct pose {
 };
 
 enum { FLY_VIEWS = 64 };
+
+/* Keys that move the camera while they are held. */
+enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 
 struct fly_camera {
     struct pose pose, home;
