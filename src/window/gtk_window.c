@@ -345,10 +345,10 @@ static void add_key(GString *xml, const char *keys, const char *title) {
 }
 
 static void begin_key_group(GString *xml, const char *title) {
-    char *words = g_strdelimit(g_strdup(title), "_", ' ');
-    g_string_append_printf(xml, "<child><object class='GtkShortcutsGroup'><property name='title'>%s</property>",
-                           g_strstrip(words));
-    g_free(words);
+    char **words = g_strsplit(title, "_", -1), *plain = g_strjoinv("", words);
+    g_string_append_printf(xml, "<child><object class='GtkShortcutsGroup'><property name='title'>%s</property>", plain);
+    g_strfreev(words);
+    g_free(plain);
 }
 
 static void add_mouse(GString *xml) {
@@ -427,6 +427,7 @@ static GtkWidget *make_header(struct gui *gui) {
                                   action_button(gui, buttons[i].icon, buttons[i].name, buttons[i].tip));
     gui->integrator = gtk_drop_down_new_from_strings((const char *const[]){NULL});
     gui_name(gui->integrator, "Integrator");
+    gtk_widget_set_visible(gui->integrator, FALSE);
     g_signal_connect(gui->integrator, "notify::selected", G_CALLBACK(choose_integrator), gui);
     gtk_header_bar_pack_start(GTK_HEADER_BAR(bar), gui->integrator);
     gtk_header_bar_pack_end(GTK_HEADER_BAR(bar),
