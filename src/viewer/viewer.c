@@ -227,6 +227,38 @@ bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
+void viewer_outdate(struct viewer *viewer) {
+    const double pause = 0.3; /* seconds; between two movements */
+    struct viewer_motion *motion = &viewer->motion;
+    if (motion->began <= 0 || viewer->stepped - motion->last > pause)
+        *motion = (struct viewer_motion){.began = viewer->stepped};
+    motion->last = viewer->stepped;
+    viewer->pass.outdated = true;
+}
+
+/* Counts the pictures of a movement; at the end reports how soon they came, and the first denoised one. */
+static void note_motion(struct viewer *viewer, double now) {
+    struct viewer_motion *motion = &viewer->motion;
+    const struct pass_view *view = &viewer->pass.view;
+    if (motion->began <= 0 || viewer->pass.began < motion->began)
+        return;
+    motion->first_shown = motion->first_shown > 0 ? motion->first_shown : now;
+    if (viewer->pass.began < motion->last + pass_goal) {
+        motion->pictures++;
+        motion->divide = view->divide;
+    }
+    if (view->headlight && view->divide == 1)
+        (void)snprintf(viewer->note, sizeof viewer->note,
+                       "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
+                       viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
+                       1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
+    if (view->headlight)
+        return;
+    (void)snprintf(viewer->note, sizeof viewer->note, "%.40s: the integrator after %.0f ms, at 1/%u",
+                   viewer->request.file, 1000 * (now - motion->last), view->divide);
+    motion->began = 0;
+}
+
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
     bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
@@ -244,6 +276,7 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         return;
     }
     viewer_draw_tiles(viewer);
+    note_motion(viewer, now);
     /* Passes that take no time do not help to choose divide. */
     double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
     if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)

@@ -83,6 +83,12 @@ struct viewer_pass {
     double halted_at; /* 0: the time of the stop was reported */
 };
 
+/* A movement of the camera, for the log. */
+struct viewer_motion {
+    double began, last, first_shown; /* the first and the last change of the view, and the first picture after them */
+    uint32_t pictures, divide;       /* shown while it moved, the last one with this resolution */
+};
+
 /* Rows of the tree that the window wants; later ones are dropped, and wanted again when they come into view. */
 enum { NODE_QUERIES = 64 };
 struct viewer_nodes {
@@ -225,6 +231,7 @@ struct viewer {
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
     struct viewer_pass pass;
+    struct viewer_motion motion; /* began 0: reported */
     struct viewer_edit edit;
     struct viewer_nodes nodes;
     struct viewer_lights lights;

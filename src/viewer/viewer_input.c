@@ -5,7 +5,7 @@
 
 static void show_view(struct viewer *viewer) {
     const struct pose *pose = &viewer->fly_camera.pose, *home = &viewer->fly_camera.home;
-    viewer->pass.outdated = true;
+    viewer_outdate(viewer);
     viewer->camera_moved = memcmp(pose, home, sizeof *pose) != 0;
     viewer_halt(viewer, false);
 }
