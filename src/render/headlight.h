@@ -5,9 +5,14 @@
 
 #include "render/render.h"
 
+/* What it shows of a surface; the other three for any tone curve as bright as without exposure, too: the normal (half of
+ * it plus a half), the depth (reach / (reach + distance), with half of the diagonal of all finite objects as reach), and
+ * the work for the ray, by its logarithm from blue over green to red (4096 steps and tests). */
+enum headlight_shows { HEADLIGHT_SURFACES, HEADLIGHT_NORMALS, HEADLIGHT_DEPTH, HEADLIGHT_COST };
+
 /* Renders every wanted tile of the film. Surfaces are as bright in the file as without exposure; the sky is that of the
  * picture. False: cancelled, or no memory. */
-bool render_headlight(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
-                      struct error *error);
+bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
+                      struct render_statistics *statistics, struct error *error);
 
 #endif

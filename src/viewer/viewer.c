@@ -17,13 +17,14 @@ static bool is_different(double a, double b) {
 }
 
 static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
-    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera)
-                                                             : viewer->request.camera,
-                              .exposure = viewer->request.settings.tone.exposure,
-                              .divide = divide,
-                              .plain = plain,
-                              .headlight = plain && (!viewer_plays(viewer) || viewer_shows_denoised(viewer)),
-                              .own = !viewer->camera_moved};
+    return (struct pass_view){
+        .camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera) : viewer->request.camera,
+        .exposure = viewer->request.settings.tone.exposure,
+        .divide = divide,
+        .plain = plain,
+        .headlight = plain && (!viewer_plays(viewer) || viewer->window.mode.previews || viewer_shows_denoised(viewer)),
+        .shows = viewer->window.mode.shows,
+        .own = !viewer->camera_moved};
 }
 
 /* The scripts ran again: a moved camera and the edits are kept. */
@@ -227,6 +228,12 @@ bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
+void viewer_choose_mode(struct viewer *viewer, struct view_mode mode) {
+    viewer->window.mode = mode;
+    viewer_outdate(viewer);
+    viewer_halt(viewer, false);
+}
+
 void viewer_outdate(struct viewer *viewer) {
     const double pause = 0.3; /* seconds; between two movements */
     struct viewer_motion *motion = &viewer->motion;
@@ -248,10 +255,11 @@ static void note_motion(struct viewer *viewer, double now) {
         motion->divide = view->divide;
     }
     if (view->headlight && view->divide == 1)
-        (void)snprintf(viewer->note, sizeof viewer->note,
-                       "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
-                       viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
-                       1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
+        (void)snprintf(
+            viewer->note, sizeof viewer->note,
+            "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
+            viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
+            1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
     if (view->headlight)
         return;
     (void)snprintf(viewer->note, sizeof viewer->note, "%.40s: the integrator after %.0f ms, at 1/%u",
@@ -261,7 +269,8 @@ static void note_motion(struct viewer *viewer, double now) {
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
-    bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
+    bool last = viewer->window.mode.previews && viewer->pass.view.headlight && viewer->pass.view.divide == 1;
+    bool few = (viewer->pass.view.plain && !last) || viewer->pass.view.samples > 0;
     viewer->pass.result = report->stopped ? RESULT_STOPPED : few ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
@@ -534,8 +543,8 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;
-    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->pass.view.own &&
-        !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
+    if (viewer->pass.result == RESULT_COMPLETE && !viewer->pass.view.plain && viewer->pass.view.width == 0 &&
+        viewer->pass.view.own && !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
         viewer->written = true;
         if (viewer->request.settings.overlay != OVERLAY_NONE)
             overlay_lay(&viewer->pass.film, viewer->overlay.lines);

@@ -192,6 +192,12 @@ struct viewer_setting {
     double number;
 };
 
+/* What the view shows when the camera stands: the picture, or the preview of all pixels. */
+struct view_mode {
+    bool previews;
+    enum headlight_shows shows;
+};
+
 /* The window and its state: what stays from one picture to the next. */
 struct viewer_window {
     const struct window_driver *driver;
@@ -200,6 +206,7 @@ struct viewer_window {
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
+    struct view_mode mode;
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */

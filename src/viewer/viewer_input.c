@@ -102,8 +102,10 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_SAVE_CHANGES:
         viewer->action = VIEWER_SAVE_EDITS;
         return;
-    case DO_NEXT_PICTURE:
+    case DO_NEXT_PICTURE: /* which comes after this one was written */
         viewer->next = true;
+        if (viewer->window.mode.previews)
+            viewer_choose_mode(viewer, (struct view_mode){0});
         return;
     case DO_QUIT:
         viewer->quit = true;
@@ -189,6 +191,15 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         return;
     case DO_FLY:
         fly(viewer, !viewer->input.flies);
+        return;
+    case DO_SHOW_PICTURE:
+        viewer_choose_mode(viewer, (struct view_mode){0});
+        return;
+    case DO_SHOW_PREVIEW:
+    case DO_SHOW_NORMALS:
+    case DO_SHOW_DEPTH:
+    case DO_SHOW_COST:
+        viewer_choose_mode(viewer, (struct view_mode){true, (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
         return;
     case DO_BOXES:
         viewer_choose_overlay(viewer, OVERLAY_OF_BOXES);
