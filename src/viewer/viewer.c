@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
-static const double pass_goal = 0.033;
+static const double pass_goal = 1 / 30.0, margin = 1.02;
 
 static bool is_different(double a, double b) {
     return a < b || a > b;
@@ -267,6 +267,18 @@ static void note_motion(struct viewer *viewer, double now) {
     motion->began = 0;
 }
 
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds) {
+    uint32_t divide = viewer->pass.divide;
+    if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
+        return;
+    double needed = fmin(divide * sqrt((now - viewer->pass.began) / seconds), 1.5 * divide);
+    if (needed > divide)
+        divide = needed < DIVIDE_LIMIT ? (uint32_t)ceil(needed) : DIVIDE_LIMIT;
+    else if (ceil(margin * needed) < divide)
+        divide = (uint32_t)fmax(1, ceil(margin * needed));
+    viewer->pass.divide = divide;
+}
+
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
     bool last = viewer->window.mode.previews && viewer->pass.view.headlight && viewer->pass.view.divide == 1;
@@ -286,10 +298,8 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     }
     viewer_draw_tiles(viewer);
     note_motion(viewer, now);
-    /* Passes that take no time do not help to choose divide. */
-    double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
-    if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
-        viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    if (known)
+        viewer_fit_resolution(viewer, now, pass_goal);
 }
 
 void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
