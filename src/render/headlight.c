@@ -24,7 +24,7 @@ struct headlight {
     struct world_scratch *scratch; /* by worker */
     double brightness;             /* that undoes the exposure */
     enum headlight_shows shows;
-    double reach; /* of depths */
+    double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
 };
 
@@ -32,9 +32,10 @@ struct headlight {
 static struct colour describe(const struct headlight *headlight, const struct hit *hit, const struct bsdf *bsdf) {
     struct vec3 n = bsdf->side;
     double distance = vec3_length(vec3_sub(hit->point, headlight->camera.eye));
-    struct colour colour = headlight->shows == HEADLIGHT_NORMALS
-                               ? colour_make(0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z)
-                               : colour_all(headlight->reach / (headlight->reach + distance));
+    struct colour colour =
+        headlight->shows == HEADLIGHT_NORMALS
+            ? colour_make(0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z)
+            : colour_all((headlight->farthest - distance) / (headlight->farthest - headlight->nearest + DBL_MIN));
     return colour_scale(colour, headlight->brightness);
 }
 
@@ -147,6 +148,14 @@ static void render_tile(void *context, uint32_t tile, int worker) {
                           memory_order_release);
 }
 
+static void measure_depths(struct headlight *headlight) {
+    struct box bounds = world_finite_bounds(headlight->job->world);
+    struct vec3 before = vec3_sub(bounds.min, headlight->camera.eye),
+                behind = vec3_sub(headlight->camera.eye, bounds.max);
+    headlight->nearest = vec3_length(vec3_max(vec3_max(before, behind), vec3_all(0)));
+    headlight->farthest = vec3_length(vec3_max(vec3_negate(before), vec3_negate(behind)));
+}
+
 bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
                       struct render_statistics *statistics, struct error *error) {
     struct headlight headlight = {
@@ -159,8 +168,8 @@ bool render_headlight(const struct render_job *job, enum headlight_shows shows, 
                         warning, error))
         return false;
     headlight.plain = camera_is_plain(&headlight.camera) && shows != HEADLIGHT_COST;
-    struct box bounds = shows == HEADLIGHT_DEPTH ? world_finite_bounds(job->world) : box_empty();
-    headlight.reach = box_is_empty(&bounds) ? 1 : vec3_length(vec3_sub(bounds.max, bounds.min)) / 2 + DBL_MIN;
+    if (shows == HEADLIGHT_DEPTH)
+        measure_depths(&headlight);
     headlight.scratch = mem_alloc_zero((size_t)workers, sizeof *headlight.scratch);
     bool ok = headlight.scratch != NULL;
     for (int i = 0; ok && i < workers; i++)

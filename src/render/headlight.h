@@ -5,9 +5,9 @@
 
 #include "render/render.h"
 
-/* What it shows of a surface; the other three for any tone curve as bright as without exposure, too: the normal (half of
- * it plus a half), the depth (reach / (reach + distance), with half of the diagonal of all finite objects as reach), and
- * the work for the ray, by its logarithm from blue over green to red (4096 steps and tests). */
+/* What it shows: surfaces under the light; half of the unit normal plus a half; the depth, from white to black over the
+ * distances of the box around all finite objects; the work for the ray, by its logarithm from blue over green to red
+ * (4096 steps and tests). The last three have this value for any exposure. */
 enum headlight_shows { HEADLIGHT_SURFACES, HEADLIGHT_NORMALS, HEADLIGHT_DEPTH, HEADLIGHT_COST };
 
 /* Renders every wanted tile of the film. Surfaces are as bright in the file as without exposure; the sky is that of the
