@@ -31,7 +31,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon render sandbox record call compat script session inspect output viewer host
+MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon render sandbox record call compat script session inspect output window viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual
@@ -101,7 +101,7 @@ SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
 # Files with a main function; those of gray-gui and gray-mpi replace the one of program.c.
 MAIN := src/host/program.c
 MPI_MAIN := src/host/main_mpi.c
-GUI_SOURCES := src/host/main_gui.c $(wildcard src/viewer/gtk_*.c)
+GUI_SOURCES := src/host/main_gui.c $(wildcard src/window/gtk_*.c)
 # Lua and tables in src, which become constants of the program: their lines.
 EMBEDDED := $(sort $(wildcard src/*/*.lua src/*/*.txt))
 EMBEDDED_OBJECTS := $(EMBEDDED:%=$(BUILD)/%.o)

@@ -1018,6 +1018,7 @@ function gr.multiply_texture(a, b) end
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---A Phong material.
 ---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
@@ -1044,6 +1045,7 @@ function gr.material(kd, ks, shininess) end
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---A Phong material that reflects and refracts.
 ---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
@@ -1240,8 +1242,8 @@ function gr.glyphs(font, text) end
 ---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Distance inside the solid after which white light has transmission_color; 0: at the surface.
 ---@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid along the distance transmission_depth.
 ---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, > -1 and < 1; default 0): Mean cosine of that scattering.
----@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not implemented.
----@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not implemented.
+---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0; 1 with glass): Factor of the dispersion; 0: none.
+---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, > 0; default 20): Abbe's number of the dispersion by Cauchy's law.
 ---@field subsurface_weight? number|gr.texture|function subsurface_weight (a number or a texture, 0 to 1; default 0): Share of the diffuse base whose light is scattered under the surface.
 ---@field subsurface_color? gr.triple|string|gr.texture|function subsurface_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): The colour that a large solid shows by it.
 ---@field subsurface_radius? number|gr.texture|function subsurface_radius (a number or a texture, >= 0; default 1): Mean free path under the surface; 0 is Lambert's diffuse light.
@@ -1267,6 +1269,7 @@ function gr.glyphs(font, text) end
 ---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
 ---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not implemented.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
 ---@field classic? boolean classic (true or false; default false): Whether Whitted's integrator shades it as a similar gr.material, which is faster.
 
@@ -1309,6 +1312,7 @@ function gr.mirror(colour, roughness) end
 ---@field ior? number ior (a number, 1 to 4; default 1.5): Index of refraction.
 ---@field depth? number depth (a number, > 0; default 1): Distance inside after which light has colour.
 ---@field thin? boolean thin (true or false; default false): Whether the surface is a pane: nothing is inside.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---Clear, tinted or frosted glass.
 ---@param colour? gr.triple|string colour (a colour {r, g, b}, >= 0; default {1, 1, 1}): Colour of white light after depth.
@@ -1933,6 +1937,7 @@ function gr.medium(scattering, absorption) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2019,6 +2024,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2217,6 +2223,7 @@ function node:translate(x, y, z) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2277,6 +2284,18 @@ function node:translate(x, y, z) end
 ---@param fields? gr.node.render.fields Fields that are no arguments before it
 ---@overload fun(self: gr.node, fields: gr.node.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights, fields) end
+
+---@class gr.node.export.fields
+---@field file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---@field tolerance? number tolerance (a number, > 0; default 1/1000 of the size): Largest distance of the model from the exact surface.
+---@field unit? 'mm'|'cm'|'m'|'in' unit ('mm'|'cm'|'m'|'in'; default 'mm'): Unit of the numbers, for files that name it (3MF).
+---@field text? boolean text (true or false; default false): Whether an STL file is text, not binary.
+
+---Writes the solids of the node as a closed mesh, for printers and other programs.
+---@param file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---@param fields? gr.node.export.fields Fields that are no arguments before it
+---@overload fun(self: gr.node, fields: gr.node.export.fields)
+function node:export(file, fields) end
 
 ---@class gr.frames.fields
 ---@field count? integer count (a whole number, >= 1; optional): Number of frames; give either count or seconds.

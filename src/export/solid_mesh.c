@@ -3,12 +3,14 @@
  * around it are kept, and it is done again. The last resort is another grid. */
 #include "export/solid_mesh_internal.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "export/contour_internal.h"
 #include "export/key_map_internal.h"
 #include "export/simplify_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/triangles_internal.h"
+#include "mesh/mesh.h"
 
 enum { ROUNDS = 6, GRIDS = 4, MIN_CELLS = 24, MAX_CELLS = 64 };
 
@@ -37,6 +39,47 @@ bool solid_mesh_compact(struct solid_mesh *mesh) {
     }
     mem_free(numbers);
     return true;
+}
+
+/* Positions are those of the file, in single precision: equal ones are one vertex. */
+static bool add_position(struct solid_mesh *out, struct key_map *positions, struct vec3 point, uint32_t *vertex) {
+    const float rounded[3] = {(float)point.x, (float)point.y, (float)point.z};
+    uint64_t key = hash_bytes(rounded, sizeof rounded, 0) | 1;
+    for (uint32_t *found; (found = key_map_find(positions, key)) != NULL; key += 2) {
+        struct vec3 other = solid_vertex_at(out, *found)->point;
+        *vertex = *found;
+        if (other.x == rounded[0] && other.y == rounded[1] && other.z == rounded[2])
+            return true;
+    }
+    struct solid_vertex *room = list_room(&out->vertices, 1, sizeof *room);
+    *vertex = (uint32_t)out->vertices.count;
+    if (!room || !key_map_add(positions, key, *vertex))
+        return false;
+    *room = (struct solid_vertex){.point = {rounded[0], rounded[1], rounded[2]}};
+    out->vertices.count++;
+    return true;
+}
+
+bool solid_mesh_of_triangles(const struct mesh *mesh, const struct affine *map, struct solid_mesh *out) {
+    uint32_t count = mesh_triangle_count(mesh);
+    struct key_map positions = {0};
+    struct solid_triangle *room = list_room(&out->triangles, count, sizeof *room);
+    bool ok = room != NULL;
+    bool inward = !mesh_is_outward(mesh), mirrored = affine_determinant(map) < 0;
+    for (uint32_t i = 0; ok && i < count; i++) {
+        struct solid_triangle triangle;
+        struct vec3 corners[3];
+        mesh_triangle(mesh, i, corners, &triangle.surface);
+        for (int k = 0; ok && k < 3; k++)
+            ok = add_position(out, &positions, affine_point(map, corners[inward != mirrored ? 2 - k : k]),
+                              &triangle.vertex[k]);
+        bool thin = triangle.vertex[0] == triangle.vertex[1] || triangle.vertex[1] == triangle.vertex[2] ||
+                    triangle.vertex[2] == triangle.vertex[0];
+        if (ok && !thin)
+            room[out->triangles.count++] = triangle;
+    }
+    key_map_destroy(&positions);
+    return ok;
 }
 
 static bool solid_mesh_copy(const struct solid_mesh *from, struct solid_mesh *out) {
@@ -77,25 +120,24 @@ static bool fans_are_whole(const struct solid_mesh *mesh, const struct key_map *
     return true;
 }
 
-bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *memory) {
+bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct error *error) {
     uint32_t corners = 3 * (uint32_t)mesh->triangles.count;
     uint32_t *degree = mem_alloc_zero(mesh->vertices.count, sizeof *degree);
     uint8_t *seen = mem_alloc_zero(mesh->vertices.count, 1);
     struct key_map edges = {0};
-    bool ok = true;
-    *memory = degree && seen;
-    for (uint32_t i = 0; ok && *memory && i < corners; i++) {
+    bool ok = true, memory = degree && seen;
+    for (uint32_t i = 0; ok && memory && i < corners; i++) {
         const uint32_t *vertex = solid_triangle_at(mesh, i / 3)->vertex;
         uint64_t key = edge_key(vertex[i % 3], vertex[(i + 1) % 3]);
         ok = !key_map_find(&edges, key) && vertex[i % 3] != vertex[(i + 1) % 3];
-        *memory = *memory && key_map_add(&edges, key, i);
+        memory = memory && (!ok || key_map_add(&edges, key, i));
         degree[vertex[i % 3]]++;
     }
-    ok = ok && *memory && fans_are_whole(mesh, &edges, degree, seen);
+    *closed = ok && memory && fans_are_whole(mesh, &edges, degree, seen);
     key_map_destroy(&edges);
     mem_free(degree);
     mem_free(seen);
-    return ok;
+    return memory || error_no_memory(error, "the edges of a mesh");
 }
 
 /* --- touching parts --- */
@@ -378,9 +420,11 @@ static bool simplify_and_test(struct verification *v, const struct solid_mesh *f
         /* What is not proved to be near may be near: in the end it is good. */
         *good = v->intersections == 0 && (v->strays == 0 || v->round == ROUNDS - 1);
     }
-    bool memory = solid_mesh_compact(out);
-    *good = *good && memory && solid_mesh_is_closed(out, &memory);
-    return memory || error_no_memory(error, "the mesh of a solid");
+    if (!solid_mesh_compact(out))
+        return error_no_memory(error, "the mesh of a solid");
+    bool closed = false, memory = solid_mesh_is_closed(out, &closed, error);
+    *good = *good && closed;
+    return memory;
 }
 
 static bool is_empty(const struct solid_input *input, struct error *error) {

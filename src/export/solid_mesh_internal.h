@@ -50,7 +50,10 @@ struct solid_findings {
  * within the tolerance of the solid. Errors: the solid is empty, or too fine for this; no memory; cancelled. */
 bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
                       struct error *error);
-/* Whether every edge has two triangles in opposite directions, and every vertex one fan. *memory: false: none. */
-bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *memory);
+/* The triangles of a mesh under a map, with one vertex for each position; `surface` is the material slot. False: no
+ * memory. */
+bool solid_mesh_of_triangles(const struct mesh *mesh, const struct affine *map, struct solid_mesh *out);
+/* Whether every edge has two triangles in opposite directions, and every vertex one fan. False: no memory. */
+bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct error *error);
 
 #endif

@@ -2,6 +2,7 @@
  * reader until model_finish. At any time, a large file is in memory at most once as bytes, once as tables and once
  * as a mesh. */
 #include "formats/model.h"
+#include "formats/model_format.h"
 
 #include "base/file.h"
 #include "base/unreachable.h"
@@ -453,7 +454,9 @@ static bool check_numbers(const struct model *model, struct error *error) {
     return true;
 }
 
-static const char *const extensions[] = {"obj", "ply", "stl", "gltf", "glb"};
+#define MODEL_FORMATS_READ(X) MODEL_FORMATS_BOTH(X) X(FORMAT_GLTF, ".gltf") X(FORMAT_GLB, ".glb")
+#define EXTENSION(format, extension) (extension),
+static const char *const extensions[] = {MODEL_FORMATS_READ(EXTENSION)};
 
 /* The extension without ".gz", and its length. */
 static const char *extension_of(const char *path, size_t *length) {
@@ -475,7 +478,7 @@ bool model_is_named(const char *path) {
     size_t length;
     const char *extension = extension_of(path, &length);
     for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-        if (is_word(extension, length, extensions[i]))
+        if (is_word(extension, length, extensions[i] + 1))
             return true;
     return false;
 }

@@ -119,6 +119,39 @@ static bool link_done(void *context, const struct picture_report *report, bool e
     return early || link_settle(link, error);
 }
 
+static bool link_model(void *context, const struct model_request *request, const void *bytes, struct error *error) {
+    struct channel_services *link = context;
+    struct message message;
+    struct share memory;
+    link_wait(link);
+    if (!channel_send(&link->channel, MESSAGE_MODEL, request, sizeof *request, -1) ||
+        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_FILM)
+        return nobody_there(link, error);
+    if (!message.body.answer.ok) {
+        *error = message.body.answer.error;
+        return false;
+    }
+    if (!bytes)
+        return true;
+    if (message.descriptor < 0)
+        return error_set(error, ERROR_MACHINE, "the memory of the model cannot be reached: %s", strerror(EMFILE));
+    if (!share_attach(&memory, message.descriptor, request->size, error))
+        return false;
+    memcpy(memory.block, bytes, request->size);
+    share_destroy(&memory);
+    if (!channel_send(&link->channel, MESSAGE_MODEL_WRITE, NULL, 0, -1) ||
+        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_ANSWER)
+        return nobody_there(link, error);
+    if (!message.body.answer.ok)
+        *error = message.body.answer.error;
+    return message.body.answer.ok;
+}
+
+static void link_model_end(void *context) {
+    struct channel_services *link = context;
+    note(link, channel_send(&link->channel, MESSAGE_MODEL_END, NULL, 0, -1));
+}
+
 static void link_line(void *context, enum line_kind kind, const char *text) {
     struct channel_services *link = context;
     bool sent = channel_send_line(&link->channel, kind, text);
@@ -167,6 +200,8 @@ struct host_services channel_services_make(struct channel_services *link, struct
                                   .done = link_done,
                                   .wait = link_wait,
                                   .settle = link_settle,
+                                  .model = link_model,
+                                  .model_end = link_model_end,
                                   .line = link_line,
                                   .script_ended = link_script_ended,
                                   .read = link_read,

@@ -7,6 +7,7 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 
 struct in_process {
     struct output_session output;
@@ -31,6 +32,23 @@ static bool in_process_done(void *context, const struct picture_report *report, 
     struct in_process *in_process = context;
     (void)early;
     return output_done(&in_process->output, report, error);
+}
+
+static bool in_process_model(void *context, const struct model_request *request, const void *bytes,
+                             struct error *error) {
+    struct in_process *in_process = context;
+    struct output_session *output = &in_process->output;
+    if (!model_output_begin(&output->model, &output->files, request, error))
+        return false;
+    if (!bytes)
+        return true;
+    memcpy(output->model.memory.block, bytes, request->size);
+    return model_output_write(&output->model, &output->files, error);
+}
+
+static void in_process_model_end(void *context) {
+    struct in_process *in_process = context;
+    model_output_forget(&in_process->output.model);
 }
 
 static void in_process_line(void *context, enum line_kind kind, const char *text) {
@@ -79,6 +97,8 @@ static int run(struct in_process *in_process, const struct options *options) {
                                      .begin = in_process_begin,
                                      .abandon = in_process_abandon,
                                      .done = in_process_done,
+                                     .model = in_process_model,
+                                     .model_end = in_process_model_end,
                                      .line = in_process_line,
                                      .script_ended = in_process_script_ended,
                                      .read = in_process_read,

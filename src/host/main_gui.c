@@ -2,8 +2,8 @@
  * a thread, so this one forks render processes as ever. It stays open from one scene to the next. */
 #define _GNU_SOURCE
 #include "host/program.h"
-#include "viewer/gtk_window.h"
-#include "viewer/window_channel.h"
+#include "window/gtk_window.h"
+#include "window/window_channel.h"
 
 #include <string.h>
 #include <sys/prctl.h>

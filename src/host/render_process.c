@@ -10,6 +10,7 @@
 #include "denoise/denoise.h"
 #include "film/path_film.h"
 #include "formats/model.h"
+#include "host/model_export.h"
 #include "host/render_reports.h"
 #include "inspect/inspect.h"
 #include "output/progress.h"
@@ -67,7 +68,7 @@ static void poll_pool(void *context) {
         process->services->poll(process->services->context);
 }
 
-static bool need_pool(struct render_process *process, struct error *error) {
+bool render_process_need_pool(struct render_process *process, struct error *error) {
     char warning[256], line[512];
     if (process->pool)
         return true;
@@ -100,7 +101,7 @@ static bool is_asked(const struct options *options) {
 }
 
 /* Not through the supervisor, so that later output of the script follows it. */
-static void print_piece(void *context, const char *text) {
+void render_process_print(void *context, const char *text) {
     (void)context;
     text_print(stdout, text);
 }
@@ -112,7 +113,7 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
                                 .root = work->request->root,
                                 .pool = work->process->pool,
                                 .json = options->json};
-    struct text_writer writer = {.put = print_piece};
+    struct text_writer writer = {.put = render_process_print};
     if (options->dump_expr)
         inspect_functions(&picture, &writer);
     return (!options->dump_scene || inspect_world(&picture, &writer, error)) &&
@@ -455,7 +456,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     render_process_finish_output(process);
     if (is_cancelled(process))
         return error_set(error, ERROR_CANCELLED, "interrupted");
-    if (!need_pool(process, error) || !begin_picture(&work, &already, error))
+    if (!render_process_need_pool(process, error) || !begin_picture(&work, &already, error))
         return false;
     process->passed_over = already;
     process->frames_shown += already && work.picture_request.repeats; /* equal to the one before */
@@ -494,6 +495,13 @@ static void grant_memory(struct render_process *process, const struct mem_accoun
     process->memory.limit = all - (held < all ? held : all - 1);
 }
 
+struct mem_account *render_process_charge_picture(struct render_process *process) {
+    struct mem_account *script = mem_charge(NULL);
+    grant_memory(process, script);
+    (void)mem_charge(process->account);
+    return script;
+}
+
 static bool render_one(struct render_process *process, const struct render_request *request, struct error *error) {
     struct mem_account *script = mem_charge(NULL);
     grant_memory(process, script);
@@ -511,7 +519,12 @@ static bool render_one(struct render_process *process, const struct render_reque
 /* With --check a scene that cannot be built is reported at once and the script continues, to find further errors. */
 static bool render(void *context, const struct render_request *request, struct error *error) {
     struct render_process *process = context;
+    bool model = process->options->model || process->options->check_print;
     if (process->skips)
+        return true;
+    if (model && !model_export_picture(process, request, error))
+        return false;
+    if (model && !process->options->output)
         return true;
     if (render_one(process, request, error)) {
         render_process_count_replaced(process, request->replaced);
@@ -618,6 +631,7 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .width = process->options->width,
                                .height = process->options->height,
                                .render = render,
+                               .export_model = model_export_node,
                                .message = message,
                                .cancelled = is_cancelled,
                                .error_text = scene_text,
@@ -659,6 +673,20 @@ static void report_no_picture(struct render_process *process, const char *path) 
     message(process, SCRIPT_NOTICE, line);
 }
 
+/* The model of the command line, after the script. Returns the exit status. */
+static int finish_model(struct render_process *process, int status) {
+    struct error error = {0};
+    struct arena arena = {0};
+    if (status != 0)
+        model_export_forget(process);
+    if (status != 0 || !(process->options->model || process->options->check_print) ||
+        model_export_finish(process, &error))
+        return status;
+    report_error(process, &arena, &error, NULL);
+    arena_destroy(&arena);
+    return (int)error.kind;
+}
+
 /* Runs a script; returns the exit status. With --frames, a script that does not call gr.frames runs again for each
  * frame; the first run shows whether it calls gr.frames. */
 static int run_script(struct render_process *process, const char *path) {
@@ -675,6 +703,8 @@ static int run_script(struct render_process *process, const char *path) {
     memset(process->replaced, 0, sizeof process->replaced);
     process->faults = 0;
     process->animates = false;
+    process->models = process->model_pictures = 0;
+    process->picture_names[0] = '\0';
     /* In the window the first frame is the one that it asks for. */
     if (repeats && process->options->window) {
         frame.number = 0;
@@ -698,7 +728,8 @@ static int run_script(struct render_process *process, const char *path) {
         before = process->pictures;
         status = run_once(process, path, &frame, true);
     }
-    if (status == 0 && process->pictures == first)
+    status = finish_model(process, status);
+    if (status == 0 && process->pictures == first && process->models == 0 && process->model_pictures == 0)
         report_no_picture(process, path);
     render_process_report_replaced(process);
     return status;

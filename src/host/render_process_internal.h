@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/pool.h"
+#include "formats/list.h"
 #include "host/render_process.h"
 #include "output/picture_files.h"
 #include "render/render.h"
@@ -18,6 +19,12 @@ enum { WARNINGS_LIMIT = 256 };
 struct replaced_fields {
     uint64_t fields; /* by setting, as bits */
     uint64_t pictures;
+};
+
+/* A model that is written when the script has ended. */
+struct kept_model {
+    bool ready;
+    struct list bytes, mtl;
 };
 
 struct render_process {
@@ -52,6 +59,10 @@ struct render_process {
     struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
     bool frames_differ;
     uint64_t frames_shown;
+    uint32_t models;           /* calls of node:export */
+    uint32_t model_pictures;   /* under -o MODEL */
+    char picture_names[1024];  /* theirs, for a message */
+    struct kept_model kept_model;
     unsigned faults; /* the notices of scene_check that this script has caused */
 };
 
@@ -70,6 +81,11 @@ struct picture_work {
     char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
 };
 
+bool render_process_need_pool(struct render_process *process, struct error *error);
+/* Memory is charged to pictures from here on; returns the account of the script, for mem_charge. */
+struct mem_account *render_process_charge_picture(struct render_process *process);
+/* A piece of requested output, for struct text_writer. */
+void render_process_print(void *context, const char *text);
 /* For a world of the picture, without a cache. */
 struct world_input render_process_world_input(const struct picture_work *work);
 

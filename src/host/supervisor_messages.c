@@ -169,6 +169,15 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* The scripts end, and the window stays. */
+static void end_scripts(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = true;
+    supervisor->deadline = clock_now() + patience_again;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+}
+
 /* As if its option were given from now on: another child runs the scripts. */
 static void change_setting(struct supervisor *supervisor, const struct viewer_setting *change) {
     setting_store(&setting_table[change->index], &supervisor->own_options->settings, change->number);
@@ -255,6 +264,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
         case VIEWER_RUN_AGAIN:
             supervisor_restart(supervisor);
             return;
+        case VIEWER_END_SCRIPTS:
+            end_scripts(supervisor);
+            return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
             viewer->note[0] = '\0';
@@ -281,6 +293,24 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
         supervisor->deadline = clock_now() + supervisor_patience;
         atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     }
+    supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
+}
+
+/* The time of the script stands still from the first request until the end. */
+static void answer_model(struct supervisor *supervisor, const struct model_request *request) {
+    struct output_session *output = &supervisor->output;
+    struct error error = {0};
+    supervisor_stop_script_clock(supervisor);
+    bool ok = model_output_begin(&output->model, &output->files, request, &error);
+    supervisor_send_answer(supervisor, MESSAGE_FILM, ok, false, &error,
+                           ok && request->size > 0 ? output->model.memory.descriptor : -1);
+}
+
+static void write_model(struct supervisor *supervisor) {
+    struct output_session *output = &supervisor->output;
+    struct error error = {0};
+    bool ok = output->interrupted ? error_set(&error, ERROR_CANCELLED, "%.600s: interrupted", output->model.name)
+                                  : model_output_write(&output->model, &output->files, &error);
     supervisor_send_answer(supervisor, MESSAGE_ANSWER, ok, false, &error, -1);
 }
 
@@ -333,7 +363,8 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
 
 /* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
 void supervisor_handle_message(struct supervisor *supervisor, const struct message *message) {
-    const struct picture *current = &supervisor->output.current;
+    struct output_session *output = &supervisor->output;
+    const struct picture *current = &output->current;
     struct preview_reply reply;
     struct error ignored;
     switch (message->kind) {
@@ -368,6 +399,21 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
             break;
         supervisor_abandon_picture(supervisor);
         supervisor_start_script_clock(supervisor);
+        return;
+    case MESSAGE_MODEL:
+        if (current->open || output->model.memory.block)
+            break;
+        answer_model(supervisor, &message->body.model);
+        return;
+    case MESSAGE_MODEL_WRITE:
+        if (!output->model.memory.block || supervisor->deadline > 0)
+            break;
+        write_model(supervisor);
+        return;
+    case MESSAGE_MODEL_END:
+        model_output_forget(&output->model);
+        if (!current->open)
+            supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_SCRIPT:
         note_script(supervisor, &message->body.script);

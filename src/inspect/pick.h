@@ -13,6 +13,7 @@ enum { PICK_PATH = 512, PICK_NAME = 64 };
 
 struct picked {
     bool hit;
+    struct node_query path;    /* to the node; depth 0: it is too deep */
     char node_path[PICK_PATH]; /* the names and creation numbers from the root to the node */
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */

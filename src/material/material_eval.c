@@ -229,6 +229,8 @@ void material_eval(const struct surface_tables *tables, const struct hit *hit, c
         openpbr_eval(tables, hit, media, context, &inputs, out);
         out->ambient = context->ambient_plain ? colour_all(1) : out->albedo;
     } else {
+        if (media && media->wavelength > 0)
+            inputs.ior = dispersion_ior(material->phong.dispersion, inputs.ior, (double)media->wavelength);
         set_boundary(hit, media, context, &inputs, out);
         set_lobes(&inputs, context, out);
     }

@@ -4,6 +4,7 @@
 #include "material/fog_field.h"
 #include "material/medium_mix.h"
 #include "math/elementary.h"
+#include "math/spectrum.h"
 
 #include <string.h>
 
@@ -147,6 +148,7 @@ struct colour medium_albedo(const struct medium *medium) {
 
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u) {
+    throughput = colour_abs(throughput); /* single wavelengths have negative components */
     double sum = throughput.r + throughput.g + throughput.b;
     struct colour share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3), s = medium->extinction;
     double extinction = u.x < share.r ? s.r : u.x < share.r + share.g ? s.g : s.b;
@@ -163,12 +165,13 @@ struct medium_sample medium_sample(const struct medium *medium, double distance,
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from) {
     to->media = from->media;
     to->count = from->count;
+    to->wavelength = from->wavelength;
     memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
 }
 
 /* Whether nothing tells two media apart. */
 static bool are_equal(const struct medium *a, const struct medium *b) {
-    return a->fog == b->fog && a->density == b->density && colour_equal(a->extinction, b->extinction) &&
+    return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density && colour_equal(a->extinction, b->extinction) &&
            colour_equal(a->scattering, b->scattering) && colour_equal(a->emission, b->emission) &&
            a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
 }
@@ -217,6 +220,12 @@ void medium_stack_leave(struct medium_stack *stack, uint32_t solid) {
         return;
     memmove(stack->solids + end - 1, stack->solids + end, (stack->count - end) * sizeof *stack->solids);
     stack->count--;
+}
+
+struct colour medium_stack_choose_wavelength(struct medium_stack *stack, double u) {
+    struct colour weight;
+    stack->wavelength = (float)spectrum_sample(u, &weight);
+    return weight;
 }
 
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary) {

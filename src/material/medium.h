@@ -6,6 +6,7 @@
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
+#include "material/dispersion.h"
 #include "material/fog.h"
 #include "material/phase.h"
 #include "math/colour.h"
@@ -25,6 +26,7 @@ struct density;
 
 struct medium {
     double ior;
+    struct dispersion dispersion;  /* of the index */
     struct colour tint;            /* of light that passes the surface of the solid */
     const struct fog *fog;         /* or NULL; then nothing of the following */
     struct colour extinction;      /* absorption and scattering: the logarithm of light decreases by this per unit */
@@ -80,6 +82,7 @@ struct medium_stack {
     const struct media *media;
     uint32_t count;
     uint32_t solids[MEDIUM_STACK_LIMIT]; /* numbers */
+    float wavelength;                    /* of the light in them, in micrometres; 0: white light */
 };
 
 /* A surface between two media, at the hit of a ray. */
@@ -99,6 +102,10 @@ static inline const struct medium *medium_stack_at(const struct medium_stack *st
 static inline const struct medium *medium_stack_current(const struct medium_stack *stack) {
     return stack->count ? medium_stack_at(stack, stack->count - 1) : &stack->media->all[stack->media->outside];
 }
+/* Its index for a wavelength; 0: of white light. */
+static inline double medium_ior(const struct medium *medium, double wavelength) {
+    return wavelength > 0 ? dispersion_ior(medium->dispersion, medium->ior, wavelength) : medium->ior;
+}
 /* Whether nothing shows a surface between the current media of two stacks. */
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b);
 /* How many of the first `count` entries there are up to the last one that has a surface. */
@@ -110,7 +117,7 @@ static inline uint32_t medium_stack_below(const struct medium_stack *stack, uint
 /* The index of refraction within the first `count` entries. */
 static inline double medium_stack_ior_of(const struct medium_stack *stack, uint32_t count) {
     count = medium_stack_below(stack, count);
-    return count ? medium_stack_at(stack, count - 1)->ior : 1;
+    return count ? medium_ior(medium_stack_at(stack, count - 1), (double)stack->wavelength) : 1;
 }
 static inline double medium_stack_ior(const struct medium_stack *stack) {
     return medium_stack_ior_of(stack, stack->count);
@@ -125,6 +132,9 @@ void medium_stack_leave(struct medium_stack *stack, uint32_t solid);
 
 /* Whether the ray is inside of the solid; SOLID_NONE: never. */
 bool medium_stack_has(const struct medium_stack *stack, uint32_t solid);
+
+/* Gives white light in these media a wavelength, by a number in [0, 1), and returns its weight (spectrum_sample). */
+struct colour medium_stack_choose_wavelength(struct medium_stack *stack, double u);
 
 /* The stack behind the surface. */
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);

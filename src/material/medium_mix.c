@@ -232,6 +232,7 @@ static bool has_emission(const struct pieces *pieces) {
 
 void medium_mix_track(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput,
                       struct medium_draw numbers, struct medium_track *out) {
+    throughput = colour_abs(throughput); /* single wavelengths have negative components */
     double sum = throughput.r + throughput.g + throughput.b;
     struct tracking tracking;
     tracking.share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3);
@@ -247,6 +248,21 @@ void medium_mix_track(const struct medium_mix *mix, const struct medium_line *li
                                            : track_to(&tracking, tracking.pieces.to, out))
             return;
     out->weight = over_mean(&tracking, colour_all(1), colour_all(1));
+}
+
+/* By the middle of the bounds. */
+double medium_mix_density(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput) {
+    struct pieces pieces;
+    double sum = throughput.r + throughput.g + throughput.b, middle[MEDIUM_MIX_LIMIT];
+    struct colour depth = {0, 0, 0}, here = {0, 0, 0};
+    begin_pieces(&pieces, mix, line);
+    while (next_piece(&pieces)) {
+        for (uint32_t i = 0; i < mix->count; i++)
+            middle[i] = (pieces.low[i] + pieces.high[i]) / 2;
+        here = extinction_by(mix, middle);
+        depth = colour_add(depth, depth_of(here, pieces.to - pieces.from));
+    }
+    return sum > 0 ? colour_dot(throughput, colour_mul(here, exponential(depth))) / sum : 0;
 }
 
 /* The lower bounds dim light exactly; what may be above them is tracked by the largest channel. */

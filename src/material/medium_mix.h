@@ -36,6 +36,8 @@ struct medium_draw {
 /* At most along the line; the mix has no fog. */
 void medium_mix_track(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput,
                       struct medium_draw draw, struct medium_track *out);
+/* An estimate, which depends on nothing else, of the density with which a path is scattered at the end of the line. */
+double medium_mix_density(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput);
 /* What is left of light along the line: in the mean over the keys. */
 struct colour medium_mix_left(const struct medium_mix *mix, const struct medium_line *line, uint64_t key);
 

@@ -527,6 +527,9 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     media = media ? media : &air;
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
+    if (media->wavelength > 0)
+        values.specular_ior =
+            dispersion_ior(material->phong.dispersion, values.specular_ior, (double)media->wavelength);
     bool is_solid = inputs->refract > 0 && !values.thin_walled;
     struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .view = hit->view, .dpdu = hit->dpdu};
     l.left = l.passes = colour_all(1);
@@ -553,7 +556,7 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
         bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
     add_coat(&l);
-    set_film(&l, 0);
+    set_film(&l, (double)media->wavelength);
     bsdf->emission = colour_mul(inputs->emission, l.left);
     double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
     double roughness = roughness_below(&l);

@@ -241,8 +241,7 @@ static double reflected_share(const struct bsdf_facets *facets, double towards) 
 }
 
 /* The fraction that goes into the lobe; with a tint it is a part of the colour. */
-static double share_of_facet(const struct bsdf_facets *facets, const struct lobe *lobe, double towards) {
-    unsigned flags = lobe_flags(lobe->kind);
+static double share_of_facet(const struct bsdf_facets *facets, unsigned flags, double towards) {
     if (flags & BSDF_TINTED)
         return 1;
     double reflected = reflected_share(facets, towards);
@@ -263,29 +262,28 @@ static struct facet_path path_by(const struct bsdf_facets *facets, struct vec3 w
     return share > 0 ? (struct facet_path){half, jacobian, share} : no_facet;
 }
 
-static struct facet_path mirrored(const struct bsdf_facets *facets, const struct lobe *lobe, struct vec3 wo,
-                                  struct vec3 wi) {
+static struct facet_path mirrored(const struct bsdf_facets *facets, unsigned flags, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add(wo, wi));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
         return no_facet;
-    return path_by(facets, wo, wi, half, 1 / (4 * v_h), share_of_facet(facets, lobe, v_h));
+    return path_by(facets, wo, wi, half, 1 / (4 * v_h), share_of_facet(facets, flags, v_h));
 }
 
 /* Light that a thin wall transmits leaves in the mirrored direction on the other side. */
 static struct facet_path through_pane(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo,
                                       struct vec3 wi) {
     const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    const unsigned flags = lobe_flags(lobe->kind);
     struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
         return no_facet;
-    return path_by(facets, wo, above, half, 1 / (4 * v_h), share_of_facet(facets, lobe, v_h));
+    return path_by(facets, wo, above, half, 1 / (4 * v_h), share_of_facet(facets, flags, v_h));
 }
 
 /* Walter et al. 2007, sections 5.2 and 5.3. */
-static struct facet_path refracted(const struct bsdf_facets *facets, const struct lobe *lobe, struct vec3 wo,
-                                   struct vec3 wi) {
+static struct facet_path refracted(const struct bsdf_facets *facets, unsigned flags, struct vec3 wo, struct vec3 wi) {
     if (facets->eta == 1)
         return no_facet;
     struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, facets->eta));
@@ -294,17 +292,18 @@ static struct facet_path refracted(const struct bsdf_facets *facets, const struc
     double v_h = vec3_dot(wo, half), l_h = vec3_dot(wi, half), sum = facets->eta * v_h + l_h;
     if (!(v_h > 0 && l_h < 0 && sum != 0))
         return no_facet;
-    return path_by(facets, wo, wi, half, -l_h / (sum * sum), share_of_facet(facets, lobe, v_h));
+    return path_by(facets, wo, wi, half, -l_h / (sum * sum), share_of_facet(facets, flags, v_h));
 }
 
 static struct facet_path path_of(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
     const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
-    bool behind = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    const unsigned flags = lobe_flags(lobe->kind);
+    bool behind = flags & BSDF_TRANSMITS;
     if (!(cosine_on(bsdf, behind, wi) > 0))
         return no_facet;
     if (!behind)
-        return mirrored(facets, lobe, wo, wi);
-    return facets->kind == FACETS_PANE ? through_pane(bsdf, lobe, wo, wi) : refracted(facets, lobe, wo, wi);
+        return mirrored(facets, flags, wo, wi);
+    return facets->kind == FACETS_PANE ? through_pane(bsdf, lobe, wo, wi) : refracted(facets, flags, wo, wi);
 }
 
 static double path_pdf(const struct bsdf_facets *facets, struct vec3 wo, const struct facet_path *path) {

@@ -191,7 +191,14 @@ struct medium surface_medium(const struct surface_material *surface) {
         inside.scattering = openpbr->transmission_scattering;
         inside.phase.g = openpbr->transmission_anisotropy;
     }
-    return medium_inside(ior, tint, &inside);
+    struct medium medium = medium_inside(ior, tint, &inside);
+    medium.dispersion = numbers->dispersion;
+    return medium;
+}
+
+bool surface_disperses(const struct surface_material *surface) {
+    bool thin = surface->has_layers && surface->openpbr.thin_walled;
+    return surface->phong.dispersion.amount > 0 && !thin && surface_passes(surface);
 }
 
 bool surface_divides_media(const struct surface_material *surface) {
@@ -206,6 +213,10 @@ static struct colour estimate(const struct surface_tables *tables, const struct 
     return surface_has_texture(surface, input)
                ? texture_program_estimate(&tables->textures, surface->inputs[input], &surface->phong, which)
                : number;
+}
+
+struct colour surface_diffuse(const struct surface_tables *tables, const struct surface_material *surface) {
+    return estimate(tables, surface, INPUT_KD, surface->phong.kd, TEXTURE_AVERAGE);
 }
 
 struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface) {

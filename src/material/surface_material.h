@@ -62,10 +62,14 @@ bool surface_is_transparent(const struct surface_material *surface);
 bool surface_passes(const struct surface_material *surface);
 /* Whether some light is scattered under it (LOBE_SUBSURFACE) where the caller follows that. */
 bool surface_walks(const struct surface_material *surface);
+/* Whether it refracts wavelengths by different indices. */
+bool surface_disperses(const struct surface_material *surface);
 /* The inside of a solid, by the numbers. */
 struct medium surface_medium(const struct surface_material *surface);
 /* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */
 bool surface_divides_media(const struct surface_material *surface);
+/* The average colour of what is reflected in all directions. */
+struct colour surface_diffuse(const struct surface_tables *tables, const struct surface_material *surface);
 /* The average emission, and a bound (texture_estimate). */
 struct colour surface_emission(const struct surface_tables *tables, const struct surface_material *surface);
 struct colour surface_emission_bound(const struct surface_tables *tables, const struct surface_material *surface);

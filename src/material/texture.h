@@ -15,6 +15,7 @@
 #include "expr/expr_program.h"
 #include "geometry/hit.h"
 #include "image/image.h"
+#include "material/dispersion.h"
 #include "math/colour.h"
 
 #include <stdatomic.h>
@@ -114,6 +115,7 @@ struct phong {
     struct colour emission, absorption;
     double roughness;
     int glossy_samples;
+    struct dispersion dispersion; /* of the index, inside of solids */
 };
 
 /* Inputs of materials: the names that scripts use, and whether it is a colour; first those of gr.openpbr_material

@@ -477,6 +477,7 @@ static void keep_tiles(struct output_session *output, struct picture *picture) {
 }
 
 void output_abandon(struct output_session *output) {
+    model_output_forget(&output->model);
     const struct picture *current = &output->current;
     display_forget(&output->display);
     progress_end(&output->progress, PROGRESS_GIVEN_UP);

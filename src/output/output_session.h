@@ -7,6 +7,7 @@
 #include "output/checkpoint.h"
 #include "output/display.h"
 #include "output/farm.h"
+#include "output/model_output.h"
 #include "output/picture_files.h"
 #include "output/picture_write.h"
 #include "output/progress.h"
@@ -27,6 +28,7 @@ struct output_session {
     struct display display;       /* --display */
     struct checkpoint checkpoint; /* the checkpoint */
     struct animation animation;   /* of the pictures */
+    struct model_output model;    /* the file of a model that is being written */
     struct picture_files files;   /* names, and what they may replace */
     unsigned pictures;            /* begun so far, those under --check too */
     struct picture current;       /* being made */

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "film/aov.h"
 #include "film/tile_file.h"
+#include "formats/model_format.h"
 #include "image/animation.h"
 #include "image/picture_file.h"
 #include "image/png_write.h"
@@ -55,6 +56,16 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->animation = files->picture;
     files->animation.may_replace = animation_is;
     files->animation.expected = "an animation";
+    files->model = files->beside;
+    files->model.may_replace = model_file_is;
+    files->model.expected = "a model";
+    files->model.advice = NULL;
+    files->model.named_by_user = files->model.force = false;
+    files->model.folders = folders;
+    files->user_model = files->model;
+    files->user_model.folders = NULL;
+    files->user_model.named_by_user = true;
+    files->user_model.force = options->force;
     files->part = (struct file_rules){.may_replace = tile_file_is,
                                       .expected = "a checkpoint or part",
                                       .advice = advice,

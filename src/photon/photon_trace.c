@@ -28,6 +28,7 @@ struct photon_job {
     struct world_scratch *scratches; /* of each worker */
     uint64_t seed;
     uint32_t count;
+    bool disperses; /* indices of refraction depend on the wavelength */
 };
 
 /* A photon under way. */
@@ -66,8 +67,10 @@ static struct branching branching_make(const struct bsdf *bsdf) {
 static bool scatter_photon(struct photon_path *path, const struct hit *hit, const struct bsdf *bsdf,
                            const struct branching *branching) {
     double to[BSDF_LOBES], all = 0;
+    /* Single wavelengths have negative components. */
+    const struct colour left = colour_abs(path->left);
     for (int i = 0; i < branching->count; i++) {
-        to[i] = fmax(mean(colour_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
+        to[i] = fmax(mean(colour_mul(left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
     /* All photons should have equal power: that after the strongest object of the cell. */
@@ -163,6 +166,8 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
                 return;
             continue;
         }
+        if (s->disperses && world_needs_wavelength(s->world, &hit, &path.media))
+            path.left = colour_mul(path.left, medium_stack_choose_wavelength(&path.media, draw(&path)));
         if (world_touches(s->world, &hit))
             world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint);
         if (joint.joined == JOINED_AWAY)
@@ -247,6 +252,7 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
     struct photon_job s = {.world = scene->world,
                            .settings = settings,
                            .pool = pool,
+                           .disperses = world_disperses(scene->world),
                            .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
     *map = (struct photon_map){0};
     /* Where photons are sent decides how many; each has its own place, so their order is fixed. */

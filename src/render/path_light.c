@@ -10,6 +10,7 @@
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
 #include "render/media_light.h"
+#include "render/path_aim.h"
 #include "render/path_light_internal.h"
 #include "world/world_describe.h"
 
@@ -20,10 +21,12 @@ static double weight_of(const struct path_tracer *tracer, enum path_strategy str
     return pdf * pdf / (pdf * pdf + other * other);
 }
 
-/* The part of a light's radiance that the path adds. If photons come from this light, the fraction `photons` of the
- * path's weight belongs to the photon map. */
-static struct colour without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
-                                    struct colour radiance) {
+double path_light_weight(const struct path_tracer *tracer, double pdf, double other) {
+    return weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other);
+}
+
+struct colour path_without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
+                                  struct colour radiance) {
     if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
         return radiance;
     return colour_mul(radiance, colour_sub(colour_all(1), thrown));
@@ -57,7 +60,7 @@ static void leave_surface(const struct path_vertex *vertex, struct path_shadow *
     shadow->skip_part = skip.part;
 }
 
-static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
     const struct world_light_sample *sample = &out->sample;
     struct ray *shadow = &out->ray;
     shadow->origin = vertex->receiver->from;
@@ -185,12 +188,12 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (!vertex->substitute && colour_is_black(f))
         return false;
     if (tracer->photon_lights && !vertex->at.bsdf)
-        f = without_thrown(tracer, part.light, vertex->thrown, f);
+        f = path_without_thrown(tracer, part.light, vertex->thrown, f);
     uint32_t traced =
         tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !colour_is_black(vertex->thrown)) {
         struct colour by_traced = scattered(vertex, traced, sample->direction);
-        f = colour_sub(f, colour_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
+        f = colour_sub(f, colour_sub(by_traced, path_without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
     double pdf = pmf * sample->pdf;
     if (sample->is_delta) {
@@ -199,6 +202,8 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
         double other = interaction_pdf(&vertex->at, sample->direction);
         f = colour_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
+    if (vertex->tracked)
+        f = colour_scale(f, path_tracked_weight(tracer, vertex->tracked, part, pmf));
     choice->lobes = f;
     choice->highlight = colour_all(0);
     /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that
@@ -206,12 +211,12 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (vertex->substitute && part.light < lights->world->light_count &&
         (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample->is_delta))
         choice->highlight =
-            without_thrown(tracer, part.light, vertex->thrown,
-                           colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
+            path_without_thrown(tracer, part.light, vertex->thrown,
+                                colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
     out->scattered = colour_add(f, choice->highlight);
     if (colour_is_black(out->scattered))
         return false;
-    send_shadow_ray(vertex, out);
+    path_send_shadow_ray(vertex, out);
     return true;
 }
 
@@ -228,7 +233,7 @@ struct colour path_emission(const struct path_tracer *tracer, const struct path_
     if (lights->of_primitive[hit->primitive] == LIGHT_NONE && colour_is_black(emission))
         return emission;
     struct colour radiance = world_lights_radiance(lights, segment->path->scatter.primitive, hit, emission);
-    radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->path->thrown, radiance);
+    radiance = path_without_thrown(tracer, lights->of_primitive[hit->primitive], segment->path->thrown, radiance);
     if (colour_is_black(radiance) || segment->path->pdf == 0)
         return radiance;
     double pdf = world_lights_pdf_of_hit(lights, &segment->path->scatter, vec3_negate(hit->view), hit);
@@ -256,7 +261,7 @@ struct colour path_area_lights(const struct path_tracer *tracer, const struct pa
             radiance =
                 colour_mul(radiance, medium_ray_left(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction),
                                                      stretch_key(segment->path, number)));
-        radiance = without_thrown(tracer, number, segment->path->thrown, radiance);
+        radiance = path_without_thrown(tracer, number, segment->path->thrown, radiance);
         double pdf = world_lights_pdf(lights, &segment->path->scatter, number, vec3_normalize(ray.direction), &hit);
         sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
@@ -275,7 +280,7 @@ struct colour path_environment(const struct path_tracer *tracer, const struct pa
             continue;
         double pdf = world_lights_pdf(lights, &segment->path->scatter, number, direction, &hit);
         struct colour radiance =
-            without_thrown(tracer, number, segment->path->thrown, light_emitted(light, &segment->path->ray, &hit));
+            path_without_thrown(tracer, number, segment->path->thrown, light_emitted(light, &segment->path->ray, &hit));
         sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;

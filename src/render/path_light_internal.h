@@ -6,6 +6,8 @@
 #include "render/path_internal.h"
 #include "render/path_state_internal.h"
 
+struct path_tracked;
+
 struct path_vertex {
     const struct ray *ray; /* that ends here */
     const struct hit *hit; /* of a surface */
@@ -14,6 +16,8 @@ struct path_vertex {
     uint32_t substitute;  /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;           /* of a line of sight, on which mirrors show only visible lights */
     struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
+    const struct path_tracked *tracked; /* in a medium whose ray has other samples of lights (path_aim.h); or NULL */
+    bool sealed;          /* no lamp reaches it */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */
@@ -44,6 +48,14 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
 /* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. */
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
                                   const struct path *path, struct path_shadow *shadow);
+/* The ray to the sample in `out`. */
+void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out);
+/* The weight of a sample of a light with density `pdf` that rays find with density `other`. */
+double path_light_weight(const struct path_tracer *tracer, double pdf, double other);
+/* The part of a light's radiance that the path adds. If photons come from this light, the fraction `thrown` of the
+ * path's weight belongs to the photon map. */
+struct colour path_without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
+                                  struct colour radiance);
 /* What path_shares returns, for a light in the direction wi, highlights included. */
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
                         struct colour shares[PATH_SCATTERINGS]);

@@ -18,6 +18,8 @@
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
 #include "math/range.h"
+#include "math/spectrum.h"
+#include "render/path_aim.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
@@ -74,6 +76,13 @@ static float in_unit(double x) {
     return x >= 1 ? 1 : x > 0 ? (float)x : 0;
 }
 
+/* The weight as for white light. */
+static struct colour neutral_weight(const struct path *path) {
+    if (!(path->media.wavelength > 0))
+        return path->weight;
+    return colour_share(path->weight, spectrum_weight((double)path->media.wavelength));
+}
+
 /* The end of a line of sight. distance: along the last ray of the path. */
 static void set_features(const struct integrator_state *state, const struct path *path, struct colour albedo,
                          struct vec3 normal, double distance) {
@@ -81,7 +90,7 @@ static void set_features(const struct integrator_state *state, const struct path
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct colour behind = colour_mul(path->weight, albedo);
+    const struct colour behind = colour_mul(neutral_weight(path), albedo);
     const struct colour a =
         parts->reflected > 0 ? colour_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
     const float features[PATH_GLOW] = {in_unit(a.r),
@@ -106,7 +115,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
         set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
     } else if (guide.refracted > 0 && parts->reflected == 0) {
         parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
-        parts->seen = colour_scale(path->weight, parts->reflected);
+        parts->seen = colour_scale(neutral_weight(path), parts->reflected);
     }
 }
 
@@ -127,10 +136,11 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
-/* How far it comes, and the medium that scatters it there, or NULL. */
+/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_aim.h. */
 struct path_stretch {
     double distance;
     const struct medium *medium;
+    struct path_tracked tracked;
 };
 
 /* The random numbers of the media along the path's ray. */
@@ -138,53 +148,92 @@ static uint64_t medium_key(const struct path *path) {
     return random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM);
 }
 
-/* Passes the medium over a distance. Returns the one that scatters the path, after *distance, or NULL. */
-static const struct medium *pass_single(const struct integrator_state *state, struct path *path,
-                                        const struct medium *medium, enum medium_ray kind, double *distance) {
+/* The samples of lights on the way, and what weights those of the vertex against them: the weight of the path is still
+ * that before the way. */
+static __attribute__((noinline)) void aim(const struct path_tracer *tracer, struct integrator_state *state,
+                                          struct path *path, const struct medium_mix *mix, double distance) {
+    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
+    struct path_parts *parts = parts_of(state);
+    path->light = colour_add(path->light, light);
+    if (!parts || colour_is_black(light))
+        return;
+    struct colour scattered[PATH_SCATTERINGS];
+    path_share_all(BSDF_DIFFUSE, scattered);
+    add_to_groups(parts, path->depth + 1, path->depth == 0 ? scattered : parts->shares, light);
+}
+
+/* What weights the light at a vertex against those samples. */
+static void note_tracked(const struct path *path, const struct medium_mix *mix, struct colour weight, double end,
+                         struct path_stretch *out) {
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), out->distance,
+                                     path->ray.time};
+    out->tracked = (struct path_tracked){&path->ray, end, out->distance, medium_mix_density(mix, &line, weight)};
+}
+
+/* Passes the medium, up to out->distance. */
+static void pass_single(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                        const struct medium *medium, enum medium_ray kind, struct path_stretch *out) {
     struct medium_effect effect;
     if (medium->scatters) {
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
-        add_light(state, path, medium_emission(medium, *distance));
-        struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
-        path->weight = colour_mul(path->weight, sample.weight);
-        *distance = sample.distance;
-        return sample.scatters ? medium : NULL;
+        const struct medium_mix mix = {1, {medium}};
+        const double end = out->distance;
+        const bool aims = path_aims(tracer, path);
+        const struct colour weight = path->weight;
+        add_light(state, path, medium_emission(medium, end));
+        if (aims)
+            aim(tracer, state, path, &mix, end);
+        struct medium_sample sample = medium_sample(medium, end, weight, u);
+        path->weight = colour_mul(weight, sample.weight);
+        out->distance = sample.distance;
+        out->medium = sample.scatters ? medium : NULL;
+        if (aims && sample.scatters)
+            note_tracked(path, &mix, weight, end, out);
+        return;
     }
-    if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
+    if (medium_transmittance(kind, &path->ray, out->distance, &effect)) {
         add_light(state, path, effect.added);
         path->weight = colour_mul(path->weight, effect.transmittance);
     }
-    return NULL;
 }
 
 /* The same for several together, and for a density. */
-static __attribute__((noinline)) const struct medium *pass_mix(const struct integrator_state *state, struct path *path,
-                                                               enum medium_ray kind, double *distance) {
+static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, enum medium_ray kind, struct path_stretch *out) {
     struct medium_mix mix;
     struct medium_track track;
     medium_stack_mix(path->ray.media, &mix);
     if (mix.count == 0)
-        return NULL;
-    if (mix.count == 1 && !mix.media[0]->density)
-        return pass_single(state, path, mix.media[0], kind, distance);
-    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), *distance, path->ray.time};
+        return;
+    if (mix.count == 1 && !mix.media[0]->density) {
+        pass_single(tracer, state, path, mix.media[0], kind, out);
+        return;
+    }
+    const double end = out->distance;
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), end, path->ray.time};
     const struct medium_draw numbers = {sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM),
                                         medium_key(path)};
-    medium_mix_track(&mix, &line, path->weight, numbers, &track);
+    const struct colour weight = path->weight;
+    medium_mix_track(&mix, &line, weight, numbers, &track);
     add_light(state, path, track.emitted);
     /* What only absorbs does not end the path. */
     if (!medium_mix_scatters(&mix)) {
-        path->weight = colour_mul(path->weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
-        return NULL;
+        path->weight = colour_mul(weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
+        return;
     }
-    path->weight = colour_mul(path->weight, track.weight);
-    *distance = track.distance;
-    return track.scatterer;
+    const bool aims = path_aims(tracer, path);
+    if (aims)
+        aim(tracer, state, path, &mix, end);
+    path->weight = colour_mul(weight, track.weight);
+    out->distance = track.distance;
+    out->medium = track.scatterer;
+    if (aims && track.scatterer)
+        note_tracked(path, &mix, weight, end, out);
 }
 
 /* Adds everything between the origin of the ray and its end: area lights, media. out: set unless it ends at
  * its hit without a medium. */
-static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+static enum travelled travel(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                              const struct hit *hit, struct path_watch *watch, struct path_stretch *out) {
     double end = hit ? hit->t : path->ray.t_max;
     struct colour radiance;
@@ -200,8 +249,12 @@ static enum travelled travel(const struct path_tracer *tracer, const struct inte
         return ENDS_AT_HIT;
     out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     const struct medium *medium = medium_stack_current(path->ray.media);
-    out->medium = medium->mixed ? pass_mix(state, path, kind, &out->distance)
-                                : pass_single(state, path, medium, kind, &out->distance);
+    out->medium = NULL;
+    out->tracked.density = 0;
+    if (medium->mixed)
+        pass_mix(tracer, state, path, kind, out);
+    else
+        pass_single(tracer, state, path, medium, kind, out);
     if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
@@ -390,7 +443,8 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+        path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
@@ -409,11 +463,15 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
+    const struct medium_stack *media = &path->media;
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
                                        .sight = path->sight,
-                                       .thrown = path->thrown};
+                                       .thrown = path->thrown,
+                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
+                                       .sealed = tracer->sealed && media->count > 0 &&
+                                                 tracer->sealed[media->solids[media->count - 1]]};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
@@ -564,6 +622,10 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
             watch_ray(watch, state->observer, path, &at.hit);
 #endif
             return come_out(tracer, state, path, &at.hit, shadow, watch);
+        }
+        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+            double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
+            path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
         }
         if (world_touches(world, &at.hit))
             world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);

@@ -29,6 +29,7 @@ static struct walk_medium medium_under(const struct subsurface *under) {
 /* The extinction of a channel, chosen in proportion to the weight; shares: of the channels. */
 static double choose_extinction(const struct walk_medium *medium, struct colour weight, double u,
                                 struct colour *shares) {
+    weight = colour_abs(weight); /* single wavelengths have negative components */
     double sum = weight.r + weight.g + weight.b;
     *shares = colour_scale(weight, 1 / sum);
     return u < shares->r               ? medium->extinction.r

@@ -52,6 +52,7 @@ enum {
     GEOMETRY_TANGENT,
     GEOMETRY_COAT_NORMAL,
     GEOMETRY_COAT_TANGENT,
+    OPENPBR_GLASS,
     OPENPBR_GLOSSY_SAMPLES,
     OPENPBR_CLASSIC,
 };
@@ -107,8 +108,10 @@ static const struct script_parameter openpbr_parameters[] = {
     [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
                               "Scattering inside the solid along the distance transmission_depth."},
     [TRANSMISSION_SCATTER_ANISOTROPY] = MEAN_COSINE("transmission_scatter_anisotropy"),
-    [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
-    [TRANSMISSION_DISPERSION_ABBE] = LATER("transmission_dispersion_abbe_number", KIND_NUMBER, "20"),
+    [TRANSMISSION_DISPERSION_SCALE] = {"transmission_dispersion_scale", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL,
+                                       "0; 1 with glass", "Factor of the dispersion; 0: none."},
+    [TRANSMISSION_DISPERSION_ABBE] = {"transmission_dispersion_abbe_number", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0),
+                                      NULL, "20", "Abbe's number of the dispersion by Cauchy's law."},
     [SUBSURFACE_WEIGHT] =
         SHARE("subsurface_weight", "0", "Share of the diffuse base whose light is scattered under the surface."),
     [SUBSURFACE_COLOUR] = TINT("subsurface_color", "{0.8, 0.8, 0.8}", "The colour that a large solid shows by it."),
@@ -145,6 +148,7 @@ static const struct script_parameter openpbr_parameters[] = {
                               "Not implemented."},
     [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
                                "The same for the coat."},
+    [OPENPBR_GLASS] = GLASS_FIELD,
     [OPENPBR_GLOSSY_SAMPLES] = SAMPLES,
     [OPENPBR_CLASSIC] = CLASSIC,
 };
@@ -162,7 +166,7 @@ static bool is_there(const struct script_value *args, struct error *error) {
     static const struct {
         int parameter;
         bool colour;
-    } later[] = {{TRANSMISSION_DISPERSION_SCALE, false}, {GEOMETRY_COAT_NORMAL, false}};
+    } later[] = {{GEOMETRY_COAT_NORMAL, false}};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
         const struct script_value *value = &args[later[i].parameter];
         bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
@@ -313,6 +317,8 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->specular_weight = number_or(&args[SPECULAR_WEIGHT], out->specular_weight);
     out->specular_anisotropy = args[SPECULAR_ANISOTROPY].number;
     out->specular_ior = number_or(&args[SPECULAR_IOR], out->specular_ior);
+    if (args[OPENPBR_GLASS].given)
+        out->specular_ior = glass_ior(gr_glass_of(&args[OPENPBR_GLASS]));
     out->transmission_colour = colour_or(&args[TRANSMISSION_COLOUR], out->transmission_colour);
     out->transmission_anisotropy = args[TRANSMISSION_SCATTER_ANISOTROPY].number;
     out->subsurface_weight = args[SUBSURFACE_WEIGHT].number;
@@ -346,6 +352,11 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
     phong->has_ior = phong->refract > 0 && !out->thin_walled;
     phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
+    const struct script_value *scale = &args[TRANSMISSION_DISPERSION_SCALE];
+    phong->dispersion.glass = gr_glass_of(&args[OPENPBR_GLASS]);
+    phong->dispersion.amount = phong->dispersion.glass > 0
+                                   ? number_or(scale, 1)
+                                   : scale->number / number_or(&args[TRANSMISSION_DISPERSION_ABBE], 20);
     /* With a depth, the colour is that of light after this length: its extinction. Where scattering alone is more,
      * gray absorption is added. */
     double depth = args[TRANSMISSION_DEPTH].number;
@@ -365,6 +376,9 @@ static bool openpbr(struct script_context *context, const struct script_value *a
     struct openpbr *numbers;
     if (args[TRANSMISSION_DEPTH].number > 0 && args[TRANSMISSION_COLOUR].texture)
         return error_set(error, ERROR_SCENE, "transmission_color must be a colour where transmission_depth is above 0");
+    if (args[OPENPBR_GLASS].given && (args[SPECULAR_IOR].given || args[TRANSMISSION_DISPERSION_ABBE].given))
+        return error_set(error, ERROR_SCENE, "glass has an index and a dispersion of its own: %s is not needed",
+                         args[SPECULAR_IOR].given ? "specular_ior" : "transmission_dispersion_abbe_number");
     if (!is_there(args, error) ||
         !tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
         !tangent_is_fine(&openpbr_parameters[GEOMETRY_COAT_TANGENT], &args[GEOMETRY_COAT_TANGENT], error))

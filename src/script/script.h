@@ -44,6 +44,18 @@ struct render_request {
  * of the request's bytes, so it includes every field. Different padding only means that an equal frame is rendered. */
 struct digest render_request_digest(const struct render_request *request);
 
+/* One call of node:export, or the scene of a picture as the model of -o. */
+struct export_request {
+    struct scene *scene;
+    struct node *node;
+    const char *file;  /* as the script wrote it; NULL: that of -o */
+    double tolerance;  /* 0: a thousandth of the size */
+    int unit;          /* an enum model_unit */
+    bool text;         /* an STL file that is not binary */
+    bool linear;       /* colours are linear light */
+    const char *where; /* as in struct render_request */
+};
+
 struct script_host {
     void *context;
     struct assets *assets;    /* meshes and images that outlive the script */
@@ -52,6 +64,8 @@ struct script_host {
     /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line
      * of the call, other kinds end the script without being catchable by pcall). */
     bool (*render)(void *context, const struct render_request *request, struct error *error);
+    /* The same for models. */
+    bool (*export_model)(void *context, const struct export_request *request, struct error *error);
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);
     bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */

@@ -59,6 +59,11 @@ bool message_is_valid(const struct message *message) {
     case MESSAGE_PREVIEW_COMMAND:
     case MESSAGE_WINDOW:
         return message->size <= sizeof message->body.bytes;
+    case MESSAGE_MODEL:
+        return message->size == sizeof message->body.model &&
+               ends_with_zero(message->body.model.file, sizeof message->body.model.file);
+    case MESSAGE_MODEL_WRITE:
+    case MESSAGE_MODEL_END:
     case MESSAGE_ABANDON:
     case MESSAGE_FRAME:
     case MESSAGE_AGAIN:

@@ -7,6 +7,7 @@
 #include "base/isa.h"
 #include "base/suggestion.h"
 #include "film/aov.h"
+#include "formats/model_format.h"
 #include "session/options_check.h"
 #include "session/options_table.h"
 #include "settings/foreign_words.h"
@@ -376,7 +377,10 @@ static bool read_value(const struct setting *option, const char *text, struct op
         break;
     case SETTING_TEXT:
         ok = text[0] != '\0';
-        *(const char **)field = text;
+        if (field == (void *)&options->output && model_format_written(text) != FORMAT_OTHER)
+            options->model = text;
+        else
+            *(const char **)field = text;
         break;
     case SETTING_SIZE:
         ok = read_size(text, field);

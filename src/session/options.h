@@ -68,6 +68,12 @@ struct options {
     int script_count;
     const char *output;              /* -o, or NULL: the names that the scripts choose */
     enum animation_format animation; /* of `output` */
+    const char *model;               /* -o with the ending of a model, or NULL */
+    double tolerance;                /* --tolerance, of models; 0: a thousandth of their size */
+    int unit;                        /* --unit: an enum model_unit */
+    const char *node;                /* --node: the part of the scene that is the model, or NULL */
+    int picture;                     /* --picture: the number of the picture whose scene is the model, or 0 */
+    bool check_print;                /* --check-print */
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */

@@ -61,6 +61,25 @@ static bool check_questions(const struct options *options, struct error *error) 
     return true;
 }
 
+/* -o MODEL and --check-print: no picture is rendered, unless another -o names one. */
+static bool check_model(const struct options *options, struct error *error) {
+    bool model = options->model || options->check_print;
+    const struct frame_selection *frames = &options->script.frames.selection;
+    const char *only = options->tolerance > 0 ? "--tolerance"
+                       : options->node        ? "--node"
+                       : options->picture > 0 ? "--picture"
+                                              : NULL;
+    if (!model)
+        return !only || error_set(error, ERROR_USAGE, "%s is only for -o MODEL, such as -o part.stl", only);
+    if (options->script_count != 1)
+        return error_set(error, ERROR_USAGE, "a model is made of one script");
+    if (options->window || options->shards || options->shards_of_pictures || options->mpi || options->watch)
+        return error_set(error, ERROR_USAGE,
+                         "-o MODEL and --check-print cannot be combined with -gui, --shard, --mpi or --watch");
+    return frames->step == 0 || frames->first == frames->last ||
+           error_set(error, ERROR_USAGE, "a model shows one frame: --frames N-N chooses it");
+}
+
 static const char tev_port[] = "14158";
 
 static bool take_word(const char **text, char *out, size_t size) {
@@ -230,7 +249,7 @@ static void choose_kept(struct options *options) {
 }
 
 bool options_check(struct options *options, struct error *error) {
-    bool ok = check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
+    bool ok = check_together(options, error) && check_questions(options, error) && check_model(options, error) && check_parts(options, error) &&
               check_time(options, error) && check_name(options, error) && check_animation(options, error);
     if (ok)
         choose_kept(options);

@@ -3,6 +3,7 @@
 
 #include "base/document.h"
 #include "base/isa.h"
+#include "formats/model_format.h"
 #include "image/picture_file.h"
 #include "session/options_table.h"
 
@@ -57,7 +58,18 @@ static const struct setting options_table[] = {
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-o", "FILE", "", NULL, FIELD(output), 0, 0, 0, "the script's",
      "Name of the picture:" PICTURE_FORMATS_HELP "; '-' is standard output; for several "
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "
-     ".webp, .y4m, .mp4 or .webm."},
+     ".webp, .y4m, .mp4 or .webm. Or a model of the scene:" MODEL_FORMATS_HELP "; -o twice writes a picture and a "
+     "model."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_MODELS, "--tolerance", "LENGTH", "", NULL, FIELD(tolerance), 0, 1e-9,
+     HUGE_VAL, "1/1000 of the size", "Largest distance of a written model from the exact surface."},
+    {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_MODELS, "--unit", NULL, LIST_BARS(MODEL_UNITS), NULL, FIELD(unit), 0, 0,
+     0, "mm", "Unit of the numbers in a written model, for files that name it (3MF)."},
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--node", "NAME", "", NULL, FIELD(node), 0, 0, 0, "all",
+     "Write only the node of this name as a model."},
+    {SETTING_WHOLE, CHANGES_RUN, OPTION_GROUP_MODELS, "--picture", "N", "", NULL, FIELD(picture), 0, 1, INT_MAX,
+     "the only one", "The picture of a script whose scene is written as a model, counted from 1."},
+    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MODELS, "--check-print", NULL, "", NULL, FIELD(check_print), 0, 0, 0, NULL,
+     "Render nothing; report volume, size, thinnest wall, steepest overhang and stand of the solids as for a printer."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,
      "Let -o FILE replace a file that is not a picture, and write a PNG file under a name with any ending."},
     {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_FILES, "--threshold", "LEVEL", "", NULL, FIELD(threshold), 0, 0, 1e9,

@@ -155,6 +155,17 @@ void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction) {
     pose->position = vec3_add_scaled(fly_camera->centre, direction, -distance);
 }
 
+bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v) {
+    struct pose *pose = &fly_camera->pose;
+    if (!vec3_finite(v) || (!eye && !(vec3_length(v) > 0)))
+        return false;
+    if (eye)
+        pose->position = v;
+    else
+        pose->turn = looking(v, rotate(pose->turn, vec3_make(0, 1, 0)));
+    return true;
+}
+
 void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box) {
     struct pose *pose = &fly_camera->pose;
     double radius = box_is_empty(box) ? 0 : 0.5 * vec3_length(vec3_sub(box->max, box->min));

@@ -6,6 +6,7 @@
 
 #include "math/box.h"
 #include "settings/settings.h"
+#include "window/window.h"
 
 struct quaternion {
     double w, x, y, z;
@@ -17,7 +18,6 @@ struct pose {
     double fov;             /* degrees */
 };
 
-enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 enum { FLY_VIEWS = 64 };
 
 struct fly_camera {
@@ -49,6 +49,8 @@ void fly_camera_pan(struct fly_camera *fly_camera, double x, double y);
 /* Moves it along the ray through a point of the picture (from its middle, in heights), by a tenth of the distance of
  * the centre for each step; never beyond the centre. */
 void fly_camera_dolly(struct fly_camera *fly_camera, double x, double y, double steps);
+/* Puts the eye there, or looks in that direction; false: it is none. */
+bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v);
 /* Looks along a direction at the centre, from the same distance; up is y, or -z where that is the direction. */
 void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction);
 /* Moves back or forth until the box fills the picture, which becomes the centre. A box without a size: not at all. */

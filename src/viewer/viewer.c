@@ -127,7 +127,8 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
                               .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
-                              .stepped = now};
+                              .stepped = now,
+                              .begun = now};
     viewer->window.driver = driver;
     viewer->window.large.shown = false;
     viewer->window.large.refused_width = 0;
@@ -170,6 +171,13 @@ bool viewer_has_tiles(const struct viewer *viewer) {
     const struct viewer_pass *pass = &viewer->pass;
     return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.samples == 0 &&
            pass->view.width == 0 && !pass->edited;
+}
+
+bool viewer_delays_change(struct viewer *viewer, double now) {
+    static const double long_time = 30; /* seconds */
+    double end = viewer->finished > 0 ? viewer->finished : now;
+    viewer->window.changed = viewer->window.open && viewer->begun > 0 && end - viewer->begun > long_time;
+    return viewer->window.changed;
 }
 
 void viewer_keep(struct viewer *viewer) {
@@ -337,6 +345,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
+        if (viewer->command.change.kind == CHANGE_ADD || viewer->command.change.kind == CHANGE_ADD_LIGHT)
+            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         if (!reply->unbuilt || reply->light_count > 0)
             viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
@@ -348,7 +358,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_NODES:
-        viewer->window.driver->nodes(viewer->window.driver->context, &viewer->command.node, &reply->nodes);
+        viewer->rows = reply->nodes;
+        viewer_receive_nodes(viewer, &viewer->command.node, &viewer->rows);
         return;
     case REPLY_PIXEL_TRACE:
         return;
@@ -538,6 +549,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit &&
+           (!viewer->window.logs_notes || viewer->note[0] == '\0') &&
            viewer->window.driver->poll(viewer->window.driver->context, &event))
         viewer_handle_event(viewer, &event);
     /* A fine pass of an outdated view is being stopped: it would show the previous view. */

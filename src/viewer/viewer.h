@@ -13,7 +13,7 @@
 #include "viewer/edits.h"
 #include "viewer/fly_camera.h"
 #include "viewer/preview_messages.h"
-#include "viewer/window.h"
+#include "window/window.h"
 
 enum viewer_action {
     VIEWER_NOTHING,
@@ -24,7 +24,8 @@ enum viewer_action {
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
-    VIEWER_RUN_AGAIN,      /* the scripts must run again, which have ended */
+    VIEWER_RUN_AGAIN,      /* the scripts must run again */
+    VIEWER_END_SCRIPTS,    /* they must end */
     VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
     VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
     VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
@@ -108,13 +109,16 @@ struct viewer_edit {
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
-    bool joins; /* the next change by the mouse is part of the last one */
+    int axis;       /* that the tool is for, from 1; 0: it is free */
+    bool handle;    /* the tool ends when the button is released */
+    char typed[24]; /* the number for the tool */
+    bool joins;     /* the next change by the mouse is part of the last one */
 };
 
 /* Lights of the scene as they are reported, in parts. */
 struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
-    uint32_t room, count, known;
+    uint32_t count, known;
 };
 
 /* The trace of a pixel. */
@@ -207,6 +211,7 @@ struct viewer_window {
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
     struct view_mode mode;
+    bool changed;                  /* a file has changed that an older picture was made of */
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
@@ -234,6 +239,7 @@ struct viewer {
     char message[512];          /* an error, or empty */
     char note[160];             /* for the log, or empty */
     double built;               /* when the world was built; 0: already reported */
+    double begun, finished;     /* the picture; 0: not yet */
 
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
@@ -241,6 +247,7 @@ struct viewer {
     struct viewer_motion motion; /* began 0: reported */
     struct viewer_edit edit;
     struct viewer_nodes nodes;
+    struct node_rows rows; /* the last ones that have come */
     struct viewer_lights lights;
     struct viewer_trace trace;
     struct viewer_overlay overlay;
@@ -276,6 +283,8 @@ bool viewer_has_tiles(const struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* Whether a changed file must wait until the user wants the picture to be made again: it has taken long. */
+bool viewer_delays_change(struct viewer *viewer, double now);
 /* Nothing happens before the user does something. */
 bool viewer_rests(const struct viewer *viewer);
 /* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;

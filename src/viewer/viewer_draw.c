@@ -237,23 +237,42 @@ static void describe_work(const struct viewer *viewer, struct window_state *stat
 
 /* What the widgets show. */
 static void describe(struct viewer *viewer, double now) {
+    static const char *const tools[] = {
+        [TOOL_NONE] = "", [TOOL_MOVE] = "Move", [TOOL_TURN] = "Turn", [TOOL_SIZE] = "Size"};
+    static const char axes[] = " xyz";
     struct window_state *state = viewer->window.driver->state;
     state->flies = viewer->input.flies;
     state->action_on = viewer_needs_met(viewer);
     state->halted = viewer->pass.halted;
+    if (viewer->finished <= 0 && viewer->block && viewer_is_idle(viewer))
+        viewer->finished = now;
+    state->waits = viewer->window.waits;
+    state->changed = viewer->window.changed;
+    state->runs = viewer->name[0] == '\0' && !viewer->window.waits && now - viewer->window.script_began > 0.3;
     state->busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer));
     state->playing = viewer->player.playing;
     state->loops = viewer->player.loops;
     state->unsaved = viewer->edit.steps.at != viewer->edit.saved_at;
     state->frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0;
     state->frame_count = viewer->player.count;
+    state->types = viewer->edit.tool != TOOL_NONE && !viewer->edit.handle;
+    (void)snprintf(state->tool, sizeof state->tool, "%s%s%.1s %s", tools[viewer->edit.tool],
+                   viewer->edit.axis > 0 ? " along " : "", axes + viewer->edit.axis, viewer->edit.typed);
     describe_state(viewer, state, now);
     describe_work(viewer, state);
     (void)snprintf(state->file, sizeof state->file, "%.250s", viewer->request.file);
     (void)snprintf(state->message, sizeof state->message, "%s", viewer->message);
     (void)snprintf(state->notice, sizeof state->notice, "%s", viewer->window.notice.text);
     (void)snprintf(state->trace, sizeof state->trace, "%s", viewer->trace.text);
-    viewer_make_form(viewer, &state->form);
+    state->selected = (struct node_query){0};
+    if (viewer->edit.selection.kind == SELECTED_NODE)
+        state->selected = viewer->edit.selection.picked.path;
+    state->hidden_count = 0;
+    for (uint32_t i = 0; i < viewer->edit.steps.now.count && state->hidden_count < WINDOW_HIDDEN; i++) {
+        if (viewer->edit.steps.now.items[i].kind == CHANGE_GONE)
+            state->hidden[state->hidden_count++] = viewer->edit.steps.now.items[i].serial;
+    }
+    viewer_make_form(viewer, state);
 }
 
 /* The window. */

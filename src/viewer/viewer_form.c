@@ -3,6 +3,7 @@
 #include "viewer/viewer_internal.h"
 
 #include "light/light_edit.h"
+#include "math/elementary.h"
 #include "session/options_table.h"
 
 #include <math.h>
@@ -17,9 +18,10 @@ enum field_number {
     FIELD_SCALE,
     FIELD_LIGHT_STOPS,
     FIELD_LIGHT_COLOUR,
-    FIELD_LIGHT_NUMBER,
     FIELD_EXPOSURE,
     FIELD_FOV,
+    FIELD_EYE,
+    FIELD_DIRECTION,
     FIELD_MATERIAL, /* and the parts of a material */
     FIELD_SETTING = FIELD_MATERIAL + MATERIAL_PART_PARTS,
 };
@@ -90,7 +92,8 @@ static void add_material(const struct viewer *viewer, struct window_form *form) 
         struct window_field *field = add(form, "Material", material_part_name(part),
                                          colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
         double low, high;
-        viewer_material_now(viewer, part, field->numbers);
+        struct change change = viewer_change(viewer, CHANGE_MATERIAL, part);
+        memcpy(field->numbers, change.numbers, sizeof field->numbers);
         material_part_range(part, &low, &high);
         set_range(field, low, high, "");
         if (idle)
@@ -111,49 +114,56 @@ static void add_node(const struct viewer *viewer, struct window_form *form) {
 
 static void add_light(const struct viewer *viewer, struct window_form *form) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    struct change change = viewer_change(viewer, CHANGE_LIGHT, 0);
     if (!light)
         return;
     (void)snprintf(form->title, sizeof form->title, "Light %u of %u: %s", viewer->edit.selection.light,
                    viewer->lights.count, light_kind_name((enum light_kind)light->kind));
     add_pose(viewer, form, light->moves && light->has_position, light->turns, light->sizes);
     struct window_field *field = add(form, "Light", "brightness", FIELD_NUMBER, FIELD_LIGHT_STOPS);
-    field->numbers[0] = viewer_light_stops_now(viewer);
+    field->numbers[0] = el_log2(change.numbers[3]);
     set_range(field, -10, 10, "stops");
     set_help(field, "Above the brightness that the script gives it");
     field = add(form, "Light", "colour", FIELD_COLOUR, FIELD_LIGHT_COLOUR);
-    struct colour colour = viewer_light_colour_now(viewer);
-    field->numbers[0] = colour.r;
-    field->numbers[1] = colour.g;
-    field->numbers[2] = colour.b;
+    /* Before it is brightened. */
+    const double reported[3] = {light->colour.r, light->colour.g, light->colour.b};
+    for (int i = 0; i < 3; i++)
+        field->numbers[i] = change.colours              ? change.numbers[COLOUR_AT + i]
+                            : change.numbers[3 + i] > 0 ? reported[i] / change.numbers[3 + i]
+                                                        : 0;
     set_range(field, 0, HUGE_VAL, "");
 }
 
-/* Every setting of the picture that has an option, as script and command line have set it, but those that have a field
- * of their own or no single number. */
+/* As script and command line have set it. */
+static void describe_setting(const struct viewer *viewer, int index, struct window_field *field) {
+    const struct setting *row = &setting_table[index];
+    size_t dashes = strspn(row->option, "-");
+    bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
+    bool words = !flag && !number && row->words && row->words[0] != '\0';
+    uint64_t bits = setting_bits(row, &viewer->request.settings);
+    *field = (struct window_field){.kind = flag    ? FIELD_FLAG
+                                           : words ? FIELD_CHOICE
+                                                   : FIELD_NUMBER,
+                                   .number = FIELD_SETTING + (uint32_t)index,
+                                   .numbers[0] = (double)bits};
+    (void)snprintf(field->group, sizeof field->group, "%s", option_group_title(row->group));
+    (void)snprintf(field->name, sizeof field->name, "%.*s", (int)strcspn(row->option + dashes, "|"),
+                   row->option + dashes);
+    if (number)
+        memcpy(&field->numbers[0], &bits, sizeof bits);
+    set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    if (words)
+        (void)snprintf(field->text, sizeof field->text, "%s", row->words);
+    set_help(field, row->help);
+}
+
+/* Every setting of the picture that has an option, but those that have a field of their own or no single number. */
 static void add_settings(const struct viewer *viewer, struct window_form *form) {
     for (int i = 0; i < setting_count; i++) {
         const struct setting *row = &setting_table[i];
         bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
-        char name[32];
-        if (!row->option || row->kind == SETTING_LAYERS || row->kind == SETTING_CROP || own)
-            continue;
-        size_t dashes = strspn(row->option, "-");
-        (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(row->option + dashes, "|"), row->option + dashes);
-        bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
-        bool words = !flag && !number && row->words && row->words[0] != '\0';
-        struct window_field *field = add(form, option_group_title(row->group), name,
-                                         flag    ? FIELD_FLAG
-                                         : words ? FIELD_CHOICE
-                                                 : FIELD_NUMBER,
-                                         FIELD_SETTING + (uint32_t)i);
-        uint64_t bits = setting_bits(row, &viewer->request.settings);
-        field->numbers[0] = (double)bits;
-        if (number)
-            memcpy(&field->numbers[0], &bits, sizeof bits);
-        set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
-        if (words)
-            (void)snprintf(field->text, sizeof field->text, "%s", row->words);
-        set_help(field, row->help);
+        if (row->option && row->kind != SETTING_LAYERS && row->kind != SETTING_CROP && !own)
+            describe_setting(viewer, i, add(form, "", "", FIELD_TEXT, FIELD_NONE));
     }
 }
 
@@ -175,11 +185,13 @@ static void add_picture(const struct viewer *viewer, struct window_form *form) {
     field = add(form, "Picture", "angle of view", FIELD_NUMBER, FIELD_FOV);
     field->numbers[0] = viewer->fly_camera.pose.fov;
     set_range(field, 0.01, 170, "degrees");
-    if (viewer->lights.known > 0) {
-        field = add(form, "Picture", "select light", FIELD_NUMBER, FIELD_LIGHT_NUMBER);
-        field->numbers[0] = viewer->edit.selection.kind == SELECTED_LIGHT ? viewer->edit.selection.light : 0;
-        set_range(field, 0, viewer->lights.known, "#");
-    }
+    struct camera camera = fly_camera_current(&viewer->fly_camera);
+    field = add(form, "Picture", "eye", FIELD_VECTOR, FIELD_EYE);
+    set_vector(field, camera.eye);
+    set_help(field, "Where the camera is");
+    field = add(form, "Picture", "direction", FIELD_VECTOR, FIELD_DIRECTION);
+    set_vector(field, camera.view);
+    set_help(field, "The direction in which the camera looks");
 }
 
 /* Another selection has other widgets. */
@@ -191,7 +203,11 @@ static uint64_t subject_of(const struct viewer *viewer) {
     return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
 }
 
-void viewer_make_form(const struct viewer *viewer, struct window_form *form) {
+void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
+    struct window_form *form = &state->form;
+    state->integrator.number = FIELD_NONE;
+    if (viewer->name[0] != '\0')
+        describe_setting(viewer, SETTING_INDEX(integrator), &state->integrator);
     form->count = 0;
     form->subject = subject_of(viewer);
     form->title[0] = '\0';
@@ -205,33 +221,34 @@ void viewer_make_form(const struct viewer *viewer, struct window_form *form) {
         add_settings(viewer, form);
 }
 
-static struct vec3 vector_of(const struct window_event *event) {
-    return vec3_make(event->numbers[0], event->numbers[1], event->numbers[2]);
-}
-
 /* Fields of the selection. */
 static void set_selected(struct viewer *viewer, const struct window_event *event) {
-    static const double no_turn[3] = {0, 0, 0};
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
     viewer->edit.joins = event->joins;
     switch (event->field) {
     case FIELD_POSITION:
-        viewer_move_selection(viewer, vector_of(event));
+        viewer_move(viewer, vec3_sub(vec3_make(numbers[0], numbers[1], numbers[2]), viewer_selection_position(viewer)));
         return;
     case FIELD_ROTATION:
-        viewer_turn_selection(viewer, event->numbers, 1);
+        for (int i = 0; i < 3; i++) {
+            if (numbers[i] < 0 || numbers[i] > 0)
+                viewer_turn(viewer, axes[i], numbers[i]);
+        }
         return;
     case FIELD_SCALE:
-        viewer_turn_selection(viewer, no_turn, event->numbers[0]);
+        viewer_scale(viewer, vec3_all(numbers[0]));
         return;
     case FIELD_LIGHT_STOPS:
-        viewer_brighten_light(viewer, event->numbers[0]);
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, 3, factors);
         return;
     case FIELD_LIGHT_COLOUR:
-        viewer_light_colour(viewer, colour_make(event->numbers[0], event->numbers[1], event->numbers[2]));
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, COLOUR_AT, numbers);
         return;
     default:
         if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
-            viewer_set_material(viewer, (enum material_part)(event->field - FIELD_MATERIAL), event->numbers);
+            viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0,
+                               numbers);
     }
 }
 
@@ -252,9 +269,11 @@ void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
             viewer_change_view(viewer);
         }
         return;
-    case FIELD_LIGHT_NUMBER:
-        if (viewer->block && number >= 1 && number <= viewer->lights.known)
-            viewer_select_light(viewer, (uint32_t)number);
+    case FIELD_EYE:
+    case FIELD_DIRECTION:
+        if (viewer->block && fly_camera_put(&viewer->fly_camera, event->field == FIELD_EYE,
+                                            vec3_make(number, event->numbers[1], event->numbers[2])))
+            viewer_change_view(viewer);
         return;
     default:
         if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)

@@ -5,8 +5,8 @@
 
 #include "viewer/viewer.h"
 
-/* The form as it is now, to the window. */
-void viewer_make_form(const struct viewer *viewer, struct window_form *form);
+/* The form, and the integrator, as they are now. */
+void viewer_make_form(const struct viewer *viewer, struct window_state *state);
 void viewer_set_field(struct viewer *viewer, const struct window_event *event);
 
 #endif

@@ -1,6 +1,11 @@
 /* Actions, keys and the mouse. */
 #include "viewer/viewer_internal.h"
 
+#include "light/light_edit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void show_view(struct viewer *viewer) {
@@ -31,8 +36,9 @@ void viewer_halt(struct viewer *viewer, bool on) {
 
 /* From coarse to fine; a script that has ended runs again. */
 static void render_again(struct viewer *viewer) {
-    if (!viewer->block && viewer->window.waits)
+    if (viewer->window.changed || (!viewer->block && viewer->window.waits))
         viewer->action = VIEWER_RUN_AGAIN;
+    viewer->window.changed = false;
     if (!viewer->block)
         return;
     viewer->pass.from_coarse = viewer->pass.outdated = true;
@@ -48,23 +54,85 @@ static void fly(struct viewer *viewer, bool on) {
     release_keys(viewer);
 }
 
+static bool has_tool(const struct viewer *viewer) {
+    return viewer_can(viewer, viewer->edit.tool) && !viewer->input.flies;
+}
+
+/* Keeps what the tool has done, or takes it back. */
+static void end_tool(struct viewer *viewer, bool keeps) {
+    if (viewer->edit.joins && !keeps)
+        viewer_undo(viewer, false);
+    viewer->edit.tool = TOOL_NONE;
+    viewer->edit.axis = 0;
+    viewer->edit.handle = viewer->edit.joins = false;
+    viewer->edit.typed[0] = '\0';
+    viewer->display.hud_dirty = true;
+}
+
+/* Until a click the selection follows the mouse. */
+static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
+    bool other = viewer->edit.tool != tool;
+    end_tool(viewer, true);
+    if (other && viewer_can(viewer, tool))
+        viewer->edit.tool = tool;
+}
+
+/* What the typed number does, in place of what the tool has done so far. */
+static void apply_typed(struct viewer *viewer) {
+    char *end;
+    double value = strtod(viewer->edit.typed, &end), v[3] = {0, 0, 0};
+    int axis = viewer->edit.axis > 0 ? viewer->edit.axis - 1 : 0;
+    bool one = viewer->edit.tool == TOOL_SIZE && viewer->edit.axis > 0;
+    if (viewer->edit.joins)
+        viewer_undo(viewer, false);
+    if (end == viewer->edit.typed || !isfinite(value))
+        return;
+    v[axis] = viewer->edit.tool == TOOL_TURN ? 1 : value;
+    if (viewer->edit.tool == TOOL_MOVE)
+        viewer_move(viewer, vec3_make(v[0], v[1], v[2]));
+    else if (viewer->edit.tool == TOOL_TURN)
+        viewer_turn(viewer, vec3_make(v[0], v[1], v[2]), value);
+    else
+        viewer_scale(viewer, one ? vec3_make(axis == 0 ? value : 1, axis == 1 ? value : 1, axis == 2 ? value : 1)
+                                 : vec3_all(value));
+}
+
+/* As in "g x 2": an axis, or a part of a number. */
+static void type(struct viewer *viewer, char c) {
+    char *typed = viewer->edit.typed;
+    size_t length = strlen(typed);
+    if (!has_tool(viewer))
+        return;
+    if (c == '\r') {
+        end_tool(viewer, true);
+        return;
+    }
+    if (c >= 'x' && c <= 'z')
+        viewer->edit.axis = viewer->edit.axis == c - 'x' + 1 ? 0 : c - 'x' + 1;
+    else if (c == '\b' && length > 0)
+        typed[length - 1] = '\0';
+    else if (strchr("0123456789.-", c) && length + 1 < sizeof viewer->edit.typed)
+        (void)snprintf(typed + length, 2, "%c", c);
+    apply_typed(viewer);
+    viewer->display.hud_dirty = true;
+}
+
 /* Ends what is going on, from the inside out: flying, the selection and the trace, rendering. */
 static void escape(struct viewer *viewer) {
-    bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->edit.tool != TOOL_NONE ||
-                     viewer->trace.text[0] != '\0';
-    if (viewer->input.flies) {
+    if (!viewer->block) {
+        viewer->action = viewer->window.waits ? VIEWER_NOTHING : VIEWER_END_SCRIPTS;
+        return;
+    }
+    bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->trace.text[0] != '\0';
+    if (viewer->input.flies || has_tool(viewer)) {
         fly(viewer, false);
+        end_tool(viewer, false);
         return;
     }
     if (!something)
         viewer_halt(viewer, true);
     viewer->edit.selection.kind = SELECTED_NOTHING;
-    viewer->edit.tool = TOOL_NONE;
     viewer->trace.text[0] = '\0';
-}
-
-static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
-    viewer->edit.tool = viewer->edit.tool == tool ? TOOL_NONE : tool;
 }
 
 uint32_t viewer_needs_met(const struct viewer *viewer) {
@@ -125,7 +193,7 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         choose_tool(viewer, TOOL_SIZE);
         return;
     case DO_COPY:
-        viewer_add_node(viewer, ADDED_COPY);
+        viewer_copy_selection(viewer);
         return;
     case DO_DELETE:
         viewer_delete_selection(viewer);
@@ -150,7 +218,7 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_ADD_CYLINDER:
     case DO_ADD_CONE:
     case DO_ADD_TORUS:
-        viewer_add_node(viewer, (enum added_kind)(ADDED_SPHERE + (action - DO_ADD_SPHERE)));
+        viewer_add_shape(viewer, (enum added_kind)(ADDED_SPHERE + (action - DO_ADD_SPHERE)));
         return;
     case DO_ADD_LIGHT:
         viewer_add_light(viewer);
@@ -244,13 +312,12 @@ static void do_action(struct viewer *viewer, enum window_action action) {
 }
 
 void viewer_do(struct viewer *viewer, enum window_action action) {
-    /* What a selection must be is checked by each function: a tool may be chosen before. */
-    enum action_need need = window_action_table[action].need;
-    need = need == NEEDS_SELECTION ? NEEDS_PICTURE : need;
-    if (!(viewer_needs_met(viewer) >> need & 1))
+    if (!(viewer_needs_met(viewer) >> window_action_table[action].need & 1))
         return;
-    viewer->edit.joins = false;
+    if (action != DO_ESCAPE && action != DO_MOVE && action != DO_TURN && action != DO_SIZE)
+        end_tool(viewer, true);
     viewer->display.hud_dirty = true;
+    (void)snprintf(viewer->note, sizeof viewer->note, "window: %s", window_action_table[action].name);
     do_action(viewer, action);
 }
 
@@ -269,19 +336,15 @@ static bool is_drag(struct viewer *viewer) {
     return viewer->input.dragged;
 }
 
-static bool has_tool(const struct viewer *viewer) {
-    return viewer->edit.tool != TOOL_NONE && viewer->edit.selection.kind != SELECTED_NOTHING && !viewer->input.flies;
-}
-
 static void handle_motion(struct viewer *viewer, const struct window_event *event) {
     double x = event->dx / viewer->window.layout.shown_height, y = event->dy / viewer->window.layout.shown_height;
     take_position(viewer, event);
-    if (!viewer->block || !viewer->input.pressed || !is_drag(viewer))
-        return;
-    if (viewer->input.pressed == WINDOW_LEFT && has_tool(viewer)) {
+    if (viewer->block && has_tool(viewer) && viewer->edit.typed[0] == '\0') {
         viewer_drag_selection(viewer, event->dx, event->dy);
         return;
     }
+    if (!viewer->block || !viewer->input.pressed || !is_drag(viewer))
+        return;
     if (viewer->input.flies || viewer->input.pressed == WINDOW_RIGHT)
         fly_camera_turn(&viewer->fly_camera, x, y);
     else if (viewer->input.shift)
@@ -294,6 +357,12 @@ static void handle_motion(struct viewer *viewer, const struct window_event *even
 static void handle_press(struct viewer *viewer, const struct window_event *event) {
     take_position(viewer, event);
     if (!viewer->block)
+        return;
+    if (has_tool(viewer)) {
+        end_tool(viewer, event->button == WINDOW_LEFT);
+        return;
+    }
+    if (event->button == WINDOW_LEFT && !viewer->input.flies && viewer_take_handle(viewer, event->x, event->y))
         return;
     if (event->button != WINDOW_LEFT)
         viewer_probe(viewer, event->x, event->y);
@@ -308,7 +377,13 @@ static void handle_release(struct viewer *viewer, const struct window_event *eve
     bool clicks = event->button == WINDOW_LEFT && event->button == viewer->input.pressed && !viewer->input.flies;
     take_position(viewer, event);
     viewer->input.pressed = 0;
-    if (viewer->block && clicks && !is_drag(viewer))
+    if (viewer->edit.handle)
+        end_tool(viewer, true);
+    if (!viewer->block || !clicks || is_drag(viewer))
+        return;
+    if (viewer_click_cube(viewer, event->x, event->y))
+        viewer_change_view(viewer);
+    else
         viewer_click(viewer, event->x, event->y, event->control);
 }
 
@@ -330,6 +405,47 @@ static void handle_wheel(struct viewer *viewer, const struct window_event *event
         fly_camera_dolly(&viewer->fly_camera, x, y, event->y);
     }
     viewer_change_view(viewer);
+}
+
+/* The tree: what the render process does not know. */
+
+static void want_rows(struct viewer *viewer, const struct node_query *query) {
+    struct node_rows rows = {0};
+    if (!viewer->block)
+        return;
+    if (query->depth == 0 || query->path[0] != SECTION_LIGHTS) {
+        if (viewer->nodes.count < NODE_QUERIES)
+            viewer->nodes.wanted[viewer->nodes.count++] = *query;
+        return;
+    }
+    for (uint32_t i = query->first; i < viewer->lights.known && rows.count < NODE_ROWS; i++) {
+        struct node_row *row = &rows.rows[rows.count++];
+        (void)snprintf(row->name, sizeof row->name, "%u", i + 1);
+        (void)snprintf(row->kind, sizeof row->kind, "%s",
+                       light_kind_name((enum light_kind)viewer->lights.items[i].kind));
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, &rows);
+}
+
+static void select_row(struct viewer *viewer, const struct node_query *query) {
+    bool light = query->depth == 2 && query->path[0] == SECTION_LIGHTS;
+    if (light && query->path[1] < viewer->lights.known)
+        viewer_select_light(viewer, query->path[1] + 1);
+    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES))
+        viewer_select_node(viewer, query);
+    else
+        viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->display.hud_dirty = true;
+}
+
+/* Beside the root of the scene. */
+void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows) {
+    if (query->depth == 0 && query->search[0] == '\0' && rows->count == 1) {
+        rows->count = WINDOW_SECTIONS;
+        rows->rows[SECTION_LIGHTS] = (struct node_row){.children = viewer->lights.count, .name = "Lights", .kind = " "};
+        rows->rows[SECTION_CAMERA] = (struct node_row){.name = "Camera", .kind = " "};
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, rows);
 }
 
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
@@ -366,14 +482,17 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         viewer_do(viewer, event->action);
         return;
     case WINDOW_NODES:
-        if (viewer->block && viewer->nodes.count < NODE_QUERIES)
-            viewer->nodes.wanted[viewer->nodes.count++] = event->node;
+        want_rows(viewer, &event->node);
         return;
     case WINDOW_SELECT:
-        viewer->edit.click = (struct selection){0};
-        viewer->edit.node = event->node;
-        viewer->edit.by_node = viewer->edit.click_waits = viewer->block != NULL;
-        viewer->edit.probes = false;
+        select_row(viewer, &event->node);
+        return;
+    case WINDOW_HIDE:
+        if (viewer->block)
+            viewer_hide(viewer, event->node.serial, event->text);
+        return;
+    case WINDOW_TYPE:
+        type(viewer, event->typed);
         return;
     case WINDOW_FIELD:
         viewer_set_field(viewer, event);

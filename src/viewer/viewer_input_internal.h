@@ -7,6 +7,8 @@
 void viewer_do(struct viewer *viewer, enum window_action action);
 uint32_t viewer_needs_met(const struct viewer *viewer); /* by enum action_need, as bits */
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event);
+/* Rows for the tree, to the window. */
+void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows);
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Stops rendering and building, and keeps the image; or continues. */
 void viewer_halt(struct viewer *viewer, bool on);

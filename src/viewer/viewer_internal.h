@@ -7,7 +7,6 @@
 #include "viewer/viewer_form_internal.h"
 #include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_lights_internal.h"
 #include "viewer/viewer_overlay_internal.h"
 #include "viewer/viewer_player_internal.h"
 

@@ -282,6 +282,95 @@ static void draw_symbol(const struct drawing *drawing, uint32_t number) {
     }
 }
 
+/* The cube in the upper right corner: the faces that look at the eye, with the letters of their axes. A click on one
+ * looks along its axis. */
+
+static const struct vec3 cube_axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+static const double cube_size = 22, cube_margin = 46; /* half of an edge, and of the corner, in dots of the desktop */
+
+/* A point of the face in pixels of the window; u and v along its edges, from -1 to 1. */
+static void cube_point(const struct viewer *viewer, const struct camera_frame *frame, int face, const double uv[2],
+                       double out[2]) {
+    const struct window_layout *layout = &viewer->window.layout;
+    int axis = face / 2;
+    double sign = face % 2 ? -1 : 1, size = cube_size * layout->density;
+    struct vec3 p = vec3_scale(cube_axes[axis], sign);
+    p = vec3_add_scaled(p, cube_axes[(axis + 1) % 3], uv[0]);
+    p = vec3_add_scaled(p, cube_axes[(axis + 2) % 3], uv[1]);
+    out[0] = fmin(layout->left + layout->shown_width, layout->width) - cube_margin * layout->density +
+             size * vec3_dot(p, frame->unit_right);
+    out[1] = fmax(layout->top, 0) + cube_margin * layout->density + size * vec3_dot(p, frame->unit_down);
+}
+
+static bool faces_eye(const struct camera_frame *frame, int face) {
+    double along = vec3_dot(cube_axes[face / 2], frame->forward) / vec3_length(frame->forward);
+    return (face % 2 ? along : -along) > 0.05;
+}
+
+bool viewer_click_cube(struct viewer *viewer, double x, double y) {
+    static const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    struct camera_frame frame;
+    if (viewer->window.hides_lines || !viewer_camera_frame(viewer, &frame))
+        return false;
+    for (int face = 0; face < 6; face++) {
+        int left = 0, right = 0;
+        for (int i = 0; i < 4 && faces_eye(&frame, face); i++) {
+            double a[2], b[2];
+            cube_point(viewer, &frame, face, corners[i], a);
+            cube_point(viewer, &frame, face, corners[(i + 1) % 4], b);
+            double side = (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+            left += side > 0;
+            right += side < 0;
+        }
+        if (left != 4 && right != 4)
+            continue;
+        fly_camera_face(&viewer->fly_camera, vec3_scale(cube_axes[face / 2], face % 2 ? 1 : -1));
+        return true;
+    }
+    return false;
+}
+
+static void draw_cube(const struct drawing *drawing) {
+    /* Strokes of the letters, and those of a minus before them: pairs of points of the face. */
+    static const double strokes[3][3][4] = {{{-.3, -.4, .3, .4}, {-.3, .4, .3, -.4}, {0, 0, 0, 0}},
+                                            {{0, -.4, 0, 0}, {0, 0, -.3, .4}, {0, 0, .3, .4}},
+                                            {{-.3, .4, .3, .4}, {.3, .4, -.3, -.4}, {-.3, -.4, .3, -.4}}};
+    static const double edges[4][4] = {{-1, -1, 1, -1}, {1, -1, 1, 1}, {1, 1, -1, 1}, {-1, 1, -1, -1}},
+                        minus[4] = {-.7, 0, -.45, 0};
+    for (int face = 0; face < 6; face++) {
+        for (int i = 0; i < 8 && faces_eye(&drawing->frame, face); i++) {
+            const double *stroke = i < 4 ? edges[i] : i < 7 ? strokes[face / 2][i - 4] : minus;
+            double a[2], b[2];
+            if (i == 7 && face % 2 == 0)
+                continue;
+            cube_point(drawing->viewer, &drawing->frame, face, stroke, a);
+            cube_point(drawing->viewer, &drawing->frame, face, stroke + 2, b);
+            draw(drawing, a[0], a[1], b[0], b[1],
+                 i < 4 ? LINE_COLOUR_FAINT : (enum line_colour)(LINE_COLOUR_X + face / 2));
+        }
+    }
+}
+
+/* Of the selection, where nothing is being done with it; while a handle is held, that handle. */
+static void draw_handles(const struct drawing *drawing) {
+    const struct viewer *viewer = drawing->viewer;
+    for (enum edit_tool tool = TOOL_MOVE; tool <= TOOL_SIZE; tool++) {
+        for (int axis = 0; axis < 3; axis++) {
+            bool free = viewer->edit.tool == TOOL_NONE,
+                 held = viewer->edit.tool == tool && (viewer->edit.axis == 0 || viewer->edit.axis == axis + 1);
+            enum line_colour colour = (enum line_colour)(LINE_COLOUR_X + axis);
+            double points[HANDLE_POINTS][2], density = viewer->window.layout.density;
+            if (!(free || held) || !viewer_handle(viewer, &drawing->frame, tool, axis, points))
+                continue;
+            for (int i = 1; i < HANDLE_POINTS; i++)
+                draw(drawing, points[i - 1][0], points[i - 1][1], points[i][0], points[i][1], colour);
+            const double *end = points[HANDLE_POINTS - 1];
+            if (tool != TOOL_TURN)
+                draw_ring(drawing, end[0], end[1], (tool == TOOL_MOVE ? 2.5 : 4) * density, colour);
+        }
+    }
+}
+
 void viewer_make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
     viewer->window.driver->state->line_count = 0;
@@ -294,6 +383,8 @@ void viewer_make_lines(struct viewer *viewer) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     if (viewer->edit.selection.kind == SELECTED_LIGHT && light)
         draw_light(&drawing, light);
+    draw_handles(&drawing);
+    draw_cube(&drawing);
 }
 
 void viewer_destroy_overlay(struct viewer *viewer) {

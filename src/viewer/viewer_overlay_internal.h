@@ -11,6 +11,8 @@ struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, 
 void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
                             const struct view_overlay *overlay);
 void viewer_make_lines(struct viewer *viewer); /* outline and symbols: window.lines */
+/* Looks along the axis of a face of the view cube that is there; false: there is none. */
+bool viewer_click_cube(struct viewer *viewer, double x, double y);
 void viewer_destroy_overlay(struct viewer *viewer);
 
 #endif

@@ -401,6 +401,7 @@ void world_medium_stack(const struct world *world, const struct inside_query *qu
     uint32_t count = world_containing(world, query, scratch, inside, MEDIUM_STACK_LIMIT);
     out->media = &world->media;
     out->count = 0;
+    out->wavelength = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
         uint32_t material = prototype->geometry.csg ? prototype->geometry.csg->leaves[0].material : prototype->material;

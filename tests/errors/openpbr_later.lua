@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.openpbr_material: thin_film_weight is not implemented
-gr.openpbr_material{base_color = {1, 1, 1}, thin_film_weight = 0.5}
+-- expect: SCRIPT:2: gr.openpbr_material: geometry_coat_normal is not implemented
+gr.openpbr_material{base_color = {1, 1, 1}, geometry_coat_normal = "x.png"}

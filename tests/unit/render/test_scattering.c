@@ -316,3 +316,37 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
     }
     arena_destroy(&arena);
 }
+
+/* Lamps that are sampled at distances of their own: the same light as by brute force, where only scattered rays find
+ * the lamp. */
+TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16) {
+    struct arena arena = {0};
+    struct error error = {0};
+    const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1};
+    const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
+                                    .scattering = colour_make(0.2, 0.6, 1),
+                                    .phase = {PHASE_HENYEY_GREENSTEIN, 0.3}};
+    for (int i = 0; i < 2; i++) {
+        struct medium_input own = in;
+        own.density = i ? density_of_grid(&arena, &grid, &error) : NULL;
+        const struct medium medium = medium_scattering(&own);
+        struct colour means[2];
+        for (int brute = 0; brute < 2; brute++) {
+            struct stage s;
+            (void)begin_room(&s, &medium);
+            s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
+                                                       .position = {0.3, 0.2, -0.4},
+                                                       .radius = 0.25,
+                                                       .colour = {1, 1, 1},
+                                                       .intensity = 1};
+            s.settings.path_strategy = brute ? PATH_STRATEGY_BSDF : PATH_STRATEGY_MIS;
+            means[brute] = mean_of(&s, 8, 1024 * times, 2);
+            stage_end(&s);
+        }
+        CHECK(means[1].g > 1e-3);
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(colour_get(means[0], k), colour_get(means[1], k), 0.04 * colour_get(means[1], k));
+    }
+    arena_destroy(&arena);
+}

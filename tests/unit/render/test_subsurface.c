@@ -227,3 +227,20 @@ TEST_TIMES(white_milk_is_invisible_in_uniform_light, 16) {
         stage_end(&s);
     }
 }
+
+/* No lamp outside reaches a point of milk without refraction, so none is asked for there; one inside is. */
+TEST(lamps_inside_of_milk_light_it) {
+    for (int inside = 0; inside < 2; inside++) {
+        struct stage s;
+        struct material *material;
+        stage_begin(&s, 1);
+        (void)milk(&s, &material, colour_all(0.9), 0.5);
+        (void)stage_sphere(&s, s.root, material);
+        stage_point_light(&s, vec3_make(0, inside ? 0.5 : 5, 0), colour_all(1));
+        s.camera.fov = 2;
+        struct estimate e = estimate_render(&s, &(struct effort){SIDE, 64, 1}, 100, 1);
+        CHECK(inside ? e.mean > 0.01 : e.mean == 0);
+        CHECK((s.statistics.shadow_rays > SIDE * SIDE * 64) == (inside == 1));
+        stage_end(&s);
+    }
+}

@@ -658,6 +658,7 @@ static void pick_ball(struct table *t) {
     CHECK(t->viewer.edit.selection.kind == SELECTED_NODE && t->viewer.pass.result == RESULT_COMPLETE);
 }
 
+/* From the middle of the picture with the left button, or with a tool without one; then a click ends the tool. */
 static void drag(struct table *t, double dx, double dy) {
     t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, 400, 280);
     for (int i = 1; i <= 2; i++) {
@@ -666,6 +667,18 @@ static void drag(struct table *t, double dx, double dy) {
         event.dy = dy / 2;
         t->fake.queue[t->fake.count++] = event;
     }
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, 400 + dx, 280 + dy);
+}
+
+static void use_tool(struct table *t, enum window_action tool, double dx, double dy) {
+    do_action(&t->fake, tool);
+    for (int i = 1; i <= 2; i++) {
+        struct window_event event = mouse(WINDOW_MOVE, 400 + dx * i / 2, 280 + dy * i / 2);
+        event.dx = dx / 2;
+        event.dy = dy / 2;
+        t->fake.queue[t->fake.count++] = event;
+    }
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, 400 + dx, 280 + dy);
     t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, 400 + dx, 280 + dy);
 }
 
@@ -729,8 +742,7 @@ TEST(window_moves_what_is_picked_with_the_mouse_and_undoes_it) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    do_action(&t.fake, DO_MOVE);
-    drag(&t, 40, -20);
+    use_tool(&t, DO_MOVE, 40, -20);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_TRANSFORM && change->serial == 2 && t.viewer.command.present);
@@ -759,16 +771,14 @@ TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    do_action(&t.fake, DO_TURN);
-    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    use_tool(&t, DO_TURN, 560, 0); /* the height of the picture: half a turn */
     take_change(&t);
     const double *m = t.viewer.command.change.numbers;
     const double half_turn[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
     for (int i = 0; i < 12; i++)
         CHECK_NEAR(m[i], half_turn[i], 1e-9);
     refine(&t);
-    do_action(&t.fake, DO_SIZE);
-    drag(&t, 0, -280);
+    use_tool(&t, DO_SIZE, 0, -280);
     take_change(&t);
     CHECK_NEAR(t.viewer.command.change.numbers[0], -exp(1), 1e-9);
     CHECK_NEAR(t.viewer.command.change.numbers[5], exp(1), 1e-9);
@@ -795,12 +805,17 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     take_change(&t); /* and its position */
     CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
-    CHECK(t.viewer.edit.tool == TOOL_MOVE && t.viewer.edit.selection.picked.serial == UINT32_MAX);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NOTHING);
+    /* It is selected when the render process has it. */
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.node.serial == UINT32_MAX);
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NODE);
     refine(&t);
     click(&t, 400, 280 - 560 * 1 / (2 * 5 * tan(20 * M_PI / 180))); /* the light at {0, 1, 0} */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 1);
-    drag(&t, 28, 0);
+    use_tool(&t, DO_MOVE, 28, 0);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_LIGHT && t.viewer.command.change.serial == 1);
     CHECK_NEAR(t.viewer.command.change.numbers[0], 28 * 2 * 5 * tan(20 * M_PI / 180) / 560, 1e-9);
@@ -815,14 +830,13 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
 TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     struct table t;
     const double half[3] = {0.5, 0, 0};
-    double now[3];
     begin(&t);
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    viewer_material_now(&t.viewer, MATERIAL_PART_KD, now);
-    CHECK(now[0] == 0.5 && now[2] == 0.5);
-    viewer_set_material(&t.viewer, MATERIAL_PART_REFLECT, half);
+    struct change now = viewer_change(&t.viewer, CHANGE_MATERIAL, MATERIAL_PART_KD);
+    CHECK(now.numbers[0] == 0.5 && now.numbers[2] == 0.5);
+    viewer_set_numbers(&t.viewer, CHANGE_MATERIAL, MATERIAL_PART_REFLECT, 0, half);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == MATERIAL_PART_REFLECT);
@@ -903,16 +917,14 @@ TEST(window_requests_lights_until_it_has_them_all_and_selects_them_by_keys) {
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_EQ_INT(t.viewer.edit.selection.light, 1);
     do_action(&t.fake, DO_PREVIOUS_LIGHT);
-    do_action(&t.fake, DO_TURN);
-    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    use_tool(&t, DO_TURN, 560, 0); /* the height of the picture: half a turn */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_LIGHT && change->serial == 70 && change->turns && t.viewer.command.first_light == 69);
     CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
-    CHECK_NEAR(viewer_light(&t.viewer, 70)->direction.z, 1, 1e-9);
-    viewer_add_node(&t.viewer, ADDED_COPY); /* with its changed numbers */
-    CHECK(t.viewer.edit.selection.light == 71 && t.viewer.lights.count == 71 && t.viewer.edit.tool == TOOL_TURN);
+    viewer_copy_selection(&t.viewer); /* with its changed numbers */
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 71);
     const struct change *copy = &t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 2].after;
     CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
     CHECK(copy[0].number == 0 && t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 1].after.serial == 71);
@@ -984,8 +996,7 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    do_action(&t.fake, DO_MOVE);
-    drag(&t, 40, 0);
+    use_tool(&t, DO_MOVE, 40, 0);
     take_change(&t);
     viewer_keep(&t.viewer);
     viewer_detach(&t.viewer);
@@ -998,5 +1009,147 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.present);
     refine(&t);
     CHECK(t.viewer.pass.edited);
+    end(&t);
+}
+
+static void type(struct fake *fake, const char *text) {
+    for (; *text; text++)
+        fake->queue[fake->count++] = (struct window_event){.kind = WINDOW_TYPE, .typed = *text};
+}
+
+/* The change that the render process gets, once it has answered. */
+static const double *changed(struct table *t) {
+    take_change(t);
+    return t->viewer.command.change.numbers;
+}
+
+TEST(window_tools_take_typed_numbers_along_an_axis) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    do_action(&t.fake, DO_MOVE);
+    type(&t.fake, "x2.5\r"); /* g x 2.5 Return */
+    const double *m = changed(&t);
+    CHECK(m[3] == 2.5 && m[7] == 0 && m[11] == 0 && m[0] == 1 && t.viewer.edit.tool == TOOL_NONE);
+    refine(&t);
+    do_action(&t.fake, DO_SIZE);
+    type(&t.fake, "3\b2y"); /* 2 along y: the axis may come later */
+    m = changed(&t);
+    CHECK(m[0] == 1 && m[5] == 2 && m[10] == 1);
+    CHECK(strstr(t.fake.state.tool, "Size along y 2") && t.fake.state.types);
+    refine(&t);
+    do_action(&t.fake, DO_ESCAPE); /* takes it back, and keeps the selection */
+    m = changed(&t);
+    CHECK(m[5] == 1 && m[3] == 2.5 && t.viewer.edit.selection.kind == SELECTED_NODE);
+    refine(&t);
+    do_action(&t.fake, DO_TURN);
+    type(&t.fake, "z-90\r");
+    m = changed(&t);
+    CHECK_NEAR(m[1], 1, 1e-12);
+    CHECK_NEAR(m[4], -1, 1e-12);
+    CHECK_EQ_INT(t.viewer.edit.steps.at, 2);
+    end(&t);
+}
+
+/* The picture shows 2 x 5 x tan 20 degrees in 560 pixels at the middle of the ball; a handle is 90 pixels long. */
+TEST(window_handles_move_turn_and_scale_along_their_axis_only) {
+    struct table t;
+    const double pixel = 2 * 5 * tan(20 * M_PI / 180) / 560;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    uint32_t colours = 0;
+    for (uint32_t i = 0; i < t.fake.state.line_count; i++)
+        colours |= 1u << t.fake.state.lines[i].colour;
+    CHECK((colours >> LINE_COLOUR_X & 7) == 7);
+    struct window_event events[] = {mouse(WINDOW_PRESS, 400 + 60, 280), mouse(WINDOW_MOVE, 400 + 100, 280 + 30),
+                                    mouse(WINDOW_RELEASE, 400 + 100, 280 + 30)};
+    events[1].dx = 40;
+    events[1].dy = 30; /* which has no effect */
+    memcpy(t.fake.queue, events, sizeof events);
+    t.fake.count = 3;
+    const double *m = changed(&t);
+    CHECK_NEAR(m[3], 40 * pixel, 1e-9);
+    CHECK(m[7] == 0 && m[11] == 0 && t.viewer.edit.tool == TOOL_NONE && !t.viewer.camera_moved);
+    refine(&t);
+    do_action(&t.fake, DO_UNDO);
+    (void)changed(&t);
+    refine(&t);
+    /* Beyond the arrow upwards: scales along y. */
+    struct window_event size[] = {mouse(WINDOW_PRESS, 400, 280 - 105), mouse(WINDOW_MOVE, 400, 280 - 155),
+                                  mouse(WINDOW_RELEASE, 400, 280 - 155)};
+    size[1].dy = -50;
+    memcpy(t.fake.queue, size, sizeof size);
+    t.fake.count = 3;
+    m = changed(&t);
+    CHECK_NEAR(m[5], exp(1), 1e-6);
+    CHECK(m[0] == 1 && m[10] == 1);
+    refine(&t);
+    do_action(&t.fake, DO_UNDO);
+    (void)changed(&t);
+    refine(&t);
+    /* A quarter about z lies between x and y: an eighth of a turn along it. */
+    double r = 0.6 * 90, s = r * sqrt(0.5);
+    struct window_event turn[] = {mouse(WINDOW_PRESS, 400 + s, 280 - s), mouse(WINDOW_MOVE, 400, 280 - r),
+                                  mouse(WINDOW_RELEASE, 400, 280 - r)};
+    turn[1].dx = -s;
+    turn[1].dy = s - r;
+    memcpy(t.fake.queue, turn, sizeof turn);
+    t.fake.count = 3;
+    m = changed(&t);
+    CHECK_NEAR(m[0], cos(M_PI / 4), 1e-9);
+    CHECK_NEAR(m[4], sin(M_PI / 4), 1e-9);
+    end(&t);
+}
+
+/* The cube is in the upper right corner; the middle of a face looks along its axis. */
+TEST(window_turns_to_the_face_of_the_view_cube_that_is_clicked) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    viewer_turn(&t.viewer, vec3_make(0, 1, 0), 90); /* nothing is selected: it does nothing */
+    CHECK_EQ_INT(t.viewer.edit.steps.count, 0);
+    fly_camera_orbit(&t.viewer.fly_camera, 0.2, 0.1);
+    viewer_change_view(&t.viewer);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    finish_pass(&t, 0.02, false);
+    struct camera_frame frame;
+    CHECK(viewer_camera_frame(&t.viewer, &frame));
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 a = {axis == 0, axis == 1, axis == 2}, toward = vec3_negate(frame.forward);
+        double sign = vec3_dot(a, toward) > 0 ? 1 : -1;
+        double x = 800 - 46 + 22 * sign * vec3_dot(a, frame.unit_right),
+               y = 46 + 22 * sign * vec3_dot(a, frame.unit_down);
+        CHECK(viewer_click_cube(&t.viewer, x, y));
+        struct camera camera = fly_camera_current(&t.viewer.fly_camera);
+        CHECK_NEAR(apart(camera.view, vec3_scale(a, -sign)), 0, 1e-9);
+    }
+    CHECK(!viewer_click_cube(&t.viewer, 800 - 46, 120) && !viewer_click_cube(&t.viewer, 400, 280));
+    end(&t);
+}
+
+TEST(window_offers_a_changed_file_when_the_picture_has_taken_long) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    CHECK(!viewer_delays_change(&t.viewer, t.now) && !viewer_delays_change(&t.viewer, t.now + 1000));
+    viewer_end(&t.viewer);
+    mem_free(t.block);
+    begin(&t);
+    go_to_the_fine_pass(&t);
+    finish_pass(&t, 60, false);
+    CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
+    CHECK(viewer_delays_change(&t.viewer, t.now + 1));
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    t.now += 0.3;
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.fake.state.changed);
+    do_action(&t.fake, DO_RENDER);
+    CHECK_EQ_INT(step(&t), VIEWER_RUN_AGAIN);
+    CHECK(!t.viewer.window.changed);
     end(&t);
 }

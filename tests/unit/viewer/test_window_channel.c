@@ -1,7 +1,7 @@
 /* What goes between the viewer and the process of its window, with a simulated process; the rows of actions and keys.
  */
 #include "tests/harness.h"
-#include "viewer/window_channel.h"
+#include "window/window_channel.h"
 
 #include <poll.h>
 #include <string.h>

@@ -110,6 +110,8 @@ static struct window_event random_event(struct crowd *crowd) {
         return random_action(crowd);
     if (what < 26)
         return random_field(crowd);
+    if (what < 28)
+        return (struct window_event){.kind = WINDOW_TYPE, .typed = "xyz0123.-\b\r"[below(crowd, 11)]};
     if (what < 32)
         return (struct window_event){
             .kind = WINDOW_KEY, .key = (enum fly_camera_key)below(crowd, FLY_KEYS), .down = below(crowd, 3) > 0};

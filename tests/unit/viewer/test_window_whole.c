@@ -469,7 +469,7 @@ TEST(window_lists_nodes_and_selects_them_in_the_tree) {
         {"ready", ACTION(DO_QUIT), 20}};
     static struct person person;
     CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.person = &person}), 0);
-    CHECK(person.seen_nodes[0] == 1 && person.seen_nodes[1] == 2 && person.seen_nodes[2] == 0);
+    CHECK(person.seen_nodes[0] == WINDOW_SECTIONS && person.seen_nodes[1] == 2 && person.seen_nodes[2] == 0);
     char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
     CHECK(saved && strstr(saved, "gr.change_delete('many', "));
     free(saved);
@@ -655,4 +655,51 @@ TEST(window_saves_cameras_that_give_the_same_bytes) {
                        "view.png out.png",
                        ">out.txt 2>err.txt"),
         0);
+}
+
+TEST(window_ends_a_script_that_makes_no_picture_and_runs_the_mended_one) {
+    const struct deed deeds[] = {{"the script runs", ACTION(DO_ESCAPE), 0},
+                                 {"waiting for a change", {.kind = WINDOW_LEAVE}, 0},
+                                 {"64x48  ready", ACTION(DO_QUIT), 0}};
+    const struct setting setting = {
+        .scene = "while true do end\n", .option = "--watch", .other_scene = BALL RENDER(LIGHT)};
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+}
+
+/* A node is found by its name, hidden, shown, and the scene is as before. */
+TEST(window_finds_hides_and_shows_a_node) {
+    const struct window_event find = {.kind = WINDOW_NODES, .node.search = "BAL"};
+    const struct window_event hide = {.kind = WINDOW_HIDE, .node.serial = 2, .text = "ball"};
+    const struct deed deeds[] = {{"ready", find, 0},
+                                 {"ready", hide, 10},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", hide, 10},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 QUIT};
+    static struct person person;
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT), .person = &person}), 0);
+    CHECK_EQ_INT(person.seen_nodes[0], 1);
+    CHECK(!test_same_files("out-view1.png", "out.png") && test_same_files("out-view2.png", "out.png"));
+}
+
+/* Its operands are children; the path of what was clicked leads to it. */
+TEST(window_lists_operands_and_the_path_of_what_is_clicked) {
+    struct window_event press = PRESS, release = RELEASE;
+    press.control = release.control = true;
+    static struct person person;
+    const struct deed deeds[] = {{"ready", {.kind = WINDOW_NODES, .node = {.depth = 2, .path = {0, 1}}}, 0},
+                                 {"ready", press, 10},
+                                 {NULL, release, 0},
+                                 {"ready", ACTION(DO_HIDE), 20},
+                                 {"ready", ACTION(DO_QUIT), 20}};
+    const struct setting setting = {
+        .scene = "local m = gr.material({0.5, 0.5, 0.5}, {0, 0, 0}, 1)\nlocal r = gr.node('root')\n"
+                 "local a, b = gr.geometry('a', gr.sphere(m)), gr.geometry('b', gr.sphere(m))\n"
+                 "a:scale(1.5, 1.5, 1.5)\nb:translate(0, 0, 1.2)\nr:add_child(gr.node('other'))\n"
+                 "r:add_child(gr.csg_difference('cut', a, b))\n" RENDER(LIGHT),
+        .person = &person};
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    CHECK_EQ_INT(person.seen_nodes[2], 2);
+    const struct node_query *path = &person.state.selected;
+    CHECK(path->depth == 3 && path->path[0] == 0 && path->path[1] == 1 && path->path[2] == 1);
 }

@@ -1,8 +1,8 @@
 /* The inspector. */
-#ifndef GRAY_VIEWER_GTK_FORM_INTERNAL_H
-#define GRAY_VIEWER_GTK_FORM_INTERNAL_H
+#ifndef GRAY_WINDOW_GTK_FORM_INTERNAL_H
+#define GRAY_WINDOW_GTK_FORM_INTERNAL_H
 
-#include "viewer/gtk_internal.h"
+#include "window/gtk_internal.h"
 
 GtkWidget *gui_inspector_new(struct gui *gui);
 void gui_form_show(struct gui *gui); /* state.form */ /* of ORDER_FIELD and ORDER_FORM */

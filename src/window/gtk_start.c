@@ -1,7 +1,7 @@
 /* The page without a scene: files that were opened lately, and the demos, as cards. */
-#include "viewer/gtk_start_internal.h"
+#include "window/gtk_start_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <string.h>
 
@@ -39,7 +39,7 @@ static GtkWidget *make_card(struct gui *gui, const char *path) {
     gtk_button_set_child(GTK_BUTTON(button), box);
     gtk_widget_set_tooltip_text(button, path);
     gtk_widget_add_css_class(button, "card");
-    gtk_accessible_update_property(GTK_ACCESSIBLE(button), GTK_ACCESSIBLE_PROPERTY_LABEL, title ? title : name, -1);
+    gui_label(button, title ? title : name);
     g_object_set_data_full(G_OBJECT(button), "path", g_strdup(path), g_free);
     g_signal_connect(button, "clicked", G_CALLBACK(open_card), gui);
     g_free(title);
@@ -52,6 +52,7 @@ static GtkWidget *add_section(GtkWidget *page, const char *title) {
     GtkWidget *label = gtk_label_new(title), *cards = gtk_flow_box_new();
     gtk_label_set_xalign(GTK_LABEL(label), 0);
     gtk_widget_add_css_class(label, "title-4");
+    gui_label(cards, title);
     gtk_flow_box_set_selection_mode(GTK_FLOW_BOX(cards), GTK_SELECTION_NONE);
     gtk_flow_box_set_max_children_per_line(GTK_FLOW_BOX(cards), 12);
     gtk_flow_box_set_homogeneous(GTK_FLOW_BOX(cards), TRUE);

@@ -1,13 +1,13 @@
 /* The window: menus, header, panels around the picture, and what comes from the viewer. Numbers and letters are those
  * of the C locale; only texts of GTK are translated. */
 #define _GNU_SOURCE
-#include "viewer/gtk_window.h"
+#include "window/gtk_window.h"
 
-#include "viewer/gtk_form_internal.h"
-#include "viewer/gtk_picture_internal.h"
-#include "viewer/gtk_start_internal.h"
-#include "viewer/gtk_tree_internal.h"
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_form_internal.h"
+#include "window/gtk_picture_internal.h"
+#include "window/gtk_start_internal.h"
+#include "window/gtk_tree_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <glib-unix.h>
 #include <locale.h>
@@ -16,10 +16,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+void gui_label(GtkWidget *widget, const char *name) {
+    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+    if (GTK_IS_DROP_DOWN(widget)) /* its button */
+        gui_label(gtk_widget_get_first_child(widget), name);
+}
+
+void gui_name(GtkWidget *widget, const char *name) {
+    gtk_widget_set_tooltip_text(widget, name);
+    gui_label(widget, name);
+}
+
 /* To the viewer. */
+
+static void save_settings(struct gui *gui);
 
 /* Without a viewer there is nothing to show. */
 static void end_process(struct gui *gui) {
+    if (gui->window)
+        save_settings(gui);
     if (gui->window)
         gtk_window_destroy(GTK_WINDOW(gui->window));
     gui->window = NULL;
@@ -69,6 +84,9 @@ static void ask_to_leave(struct gui *gui, GFile *next) {
 
 void gui_send_action(struct gui *gui, enum window_action action) {
     struct window_event event = {.kind = WINDOW_ACTION, .action = action, .x = gui->mouse_x, .y = gui->mouse_y};
+    bool tool = action == DO_MOVE || action == DO_TURN || action == DO_SIZE;
+    if (tool && (gui->state.action_on >> NEEDS_SELECTION & 1))
+        gui->tool_begun = g_get_monotonic_time();
     if (action == DO_QUIT)
         ask_to_leave(gui, NULL);
     else
@@ -102,6 +120,68 @@ static void choose_action(GSimpleAction *action, GVariant *value, gpointer data)
         if (strcmp(window_action_table[i].name, name) == 0)
             gui_send_action(data, (enum window_action)i);
     }
+}
+
+/* The actions of a menu, found by their words. */
+
+static gboolean filter_action(GtkListBoxRow *row, gpointer data) {
+    const char *title = g_object_get_data(G_OBJECT(row), "title");
+    char *text = g_utf8_casefold(gtk_editable_get_text(GTK_EDITABLE(data)), -1), *in = g_utf8_casefold(title, -1);
+    bool found = strstr(in, text) != NULL;
+    g_free(text);
+    g_free(in);
+    return found;
+}
+
+static void filter_changed(GtkSearchEntry *entry, gpointer list) {
+    (void)entry;
+    gtk_list_box_invalidate_filter(list);
+}
+
+static void choose_row(GtkListBox *list, GtkListBoxRow *row, gpointer data) {
+    GtkWidget *popover = gtk_widget_get_ancestor(GTK_WIDGET(list), GTK_TYPE_POPOVER);
+    gtk_popover_popdown(GTK_POPOVER(popover));
+    gui_send_action(data, (enum window_action)GPOINTER_TO_INT(g_object_get_data(G_OBJECT(row), "action")));
+}
+
+/* Return takes the first row that is shown. */
+static void choose_first(GtkSearchEntry *entry, gpointer list) {
+    (void)entry;
+    GtkListBoxRow *row = gtk_list_box_get_row_at_y(list, 4);
+    if (row)
+        g_signal_emit_by_name(list, "row-activated", row);
+}
+
+static void show_add_list(GSimpleAction *action, GVariant *value, gpointer data) {
+    struct gui *gui = data;
+    GtkWidget *popover = gtk_popover_new(), *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 4);
+    GtkWidget *entry = gtk_search_entry_new(), *list = gtk_list_box_new();
+    (void)action, (void)value;
+    for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
+        if (window_action_table[i].menu != MENU_ADD)
+            continue;
+        char **words = g_strsplit(window_action_table[i].title, "_", -1), *title = g_strjoinv("", words);
+        GtkWidget *row = gtk_list_box_row_new(), *label = gtk_label_new(title);
+        gtk_label_set_xalign(GTK_LABEL(label), 0);
+        gtk_list_box_row_set_child(GTK_LIST_BOX_ROW(row), label);
+        g_object_set_data(G_OBJECT(row), "action", GINT_TO_POINTER(i));
+        g_object_set_data_full(G_OBJECT(row), "title", title, g_free);
+        gtk_list_box_append(GTK_LIST_BOX(list), row);
+        g_strfreev(words);
+    }
+    gui_name(entry, "Search what to add");
+    gtk_list_box_set_filter_func(GTK_LIST_BOX(list), filter_action, entry, NULL);
+    g_signal_connect(entry, "search-changed", G_CALLBACK(filter_changed), list);
+    g_signal_connect(entry, "activate", G_CALLBACK(choose_first), list);
+    g_signal_connect(list, "row-activated", G_CALLBACK(choose_row), gui);
+    gtk_box_append(GTK_BOX(box), entry);
+    gtk_box_append(GTK_BOX(box), list);
+    gtk_popover_set_child(GTK_POPOVER(popover), box);
+    gtk_widget_set_parent(popover, gui->picture);
+    gtk_popover_set_pointing_to(GTK_POPOVER(popover), &(GdkRectangle){(int)gui->mouse_x, (int)gui->mouse_y, 1, 1});
+    g_signal_connect_after(popover, "closed", G_CALLBACK(gtk_widget_unparent), NULL);
+    gtk_popover_popup(GTK_POPOVER(popover));
+    gtk_widget_grab_focus(entry);
 }
 
 static void finish_open(GtkNativeDialog *dialog, int answer, gpointer data) {
@@ -189,6 +269,7 @@ static void make_menus(struct gui *gui) {
         g_free(name);
         g_free(key);
     }
+    add_item(menus[MENU_ADD], "_Search…", "win.add", "<Shift>a");
     add_item(menus[MENU_VIEW], "_Dark Theme", "win.dark", NULL);
     GMenu *help = add_menu(bar, "_Help");
     add_item(help, "_Keys and Mouse", "win.keys-help", "F1");
@@ -202,6 +283,7 @@ static void add_actions(struct gui *gui) {
     static const GActionEntry entries[] = {
         {.name = "open", .activate = choose_scene},
         {.name = "keys-help", .activate = show_keys},
+        {.name = "add", .activate = show_add_list},
         {.name = "dark", .state = "false", .change_state = choose_dark},
         {.name = "keys", .parameter_type = "s", .state = "'Blender'", .change_state = choose_keys}};
     g_action_map_add_action_entries(G_ACTION_MAP(gui->window), entries, G_N_ELEMENTS(entries), gui);
@@ -280,12 +362,20 @@ static GtkWidget *action_button(const struct gui *gui, const char *icon, const c
     GtkWidget *button = gtk_button_new_from_icon_name(icon);
     char *full = g_strdup_printf("win.%s", name);
     (void)gui;
-    gtk_widget_set_tooltip_text(button, tip);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(button), GTK_ACCESSIBLE_PROPERTY_LABEL, tip, -1);
+    gui_name(button, tip);
     gtk_actionable_set_action_name(GTK_ACTIONABLE(button), full);
     gtk_widget_set_focus_on_click(button, FALSE);
     g_free(full);
     return button;
+}
+
+static void choose_integrator(GtkDropDown *choice, GParamSpec *property, gpointer data) {
+    struct gui *gui = data;
+    struct window_event event = {
+        .kind = WINDOW_FIELD, .field = gui->state.integrator.number, .numbers[0] = gtk_drop_down_get_selected(choice)};
+    (void)property;
+    if (!gui->updates)
+        gui_send_event(gui, &event);
 }
 
 static GtkWidget *make_header(struct gui *gui) {
@@ -301,6 +391,10 @@ static GtkWidget *make_header(struct gui *gui) {
     for (size_t i = 0; i < G_N_ELEMENTS(buttons); i++)
         gtk_header_bar_pack_start(GTK_HEADER_BAR(bar),
                                   action_button(gui, buttons[i].icon, buttons[i].name, buttons[i].tip));
+    gui->integrator = gtk_drop_down_new_from_strings((const char *const[]){NULL});
+    gui_name(gui->integrator, "Integrator");
+    g_signal_connect(gui->integrator, "notify::selected", G_CALLBACK(choose_integrator), gui);
+    gtk_header_bar_pack_start(GTK_HEADER_BAR(bar), gui->integrator);
     gtk_header_bar_pack_end(GTK_HEADER_BAR(bar),
                             action_button(gui, "help-browser-symbolic", "keys-help", "Keys and mouse (F1)"));
     return bar;
@@ -320,7 +414,7 @@ static GtkWidget *make_timeline(struct gui *gui) {
     gui->frame_scale = gtk_scale_new_with_range(GTK_ORIENTATION_HORIZONTAL, 0, 1, 1);
     gui->frame_label = gtk_label_new("");
     gtk_widget_set_hexpand(gui->frame_scale, TRUE);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(gui->frame_scale), GTK_ACCESSIBLE_PROPERTY_LABEL, "Frame", -1);
+    gui_label(gui->frame_scale, "Frame");
     g_signal_connect(gui->frame_scale, "value-changed", G_CALLBACK(frame_moved), gui);
     gtk_box_append(GTK_BOX(gui->timeline), gui->play_button);
     gtk_box_append(GTK_BOX(gui->timeline),
@@ -367,23 +461,67 @@ static void go_to_line(GtkButton *button, gpointer data) {
     g_free(at);
 }
 
-static GtkWidget *make_error_bar(struct gui *gui) {
-    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8), *button = gtk_button_new_with_label("Go to Line");
-    gui->error_bar = gtk_revealer_new();
-    gui->error_text = gtk_label_new("");
-    gtk_label_set_wrap(GTK_LABEL(gui->error_text), TRUE);
-    gtk_label_set_selectable(GTK_LABEL(gui->error_text), TRUE);
-    gtk_label_set_xalign(GTK_LABEL(gui->error_text), 0);
-    gtk_widget_set_hexpand(gui->error_text, TRUE);
-    gtk_widget_set_valign(button, GTK_ALIGN_CENTER);
-    g_signal_connect(button, "clicked", G_CALLBACK(go_to_line), gui);
-    gtk_box_append(GTK_BOX(box), gtk_image_new_from_icon_name("dialog-error-symbolic"));
-    gtk_box_append(GTK_BOX(box), gui->error_text);
-    gtk_box_append(GTK_BOX(box), button);
+static GtkWidget *text_label(const char *text) {
+    GtkWidget *label = gtk_label_new(text);
+    gtk_label_set_wrap(GTK_LABEL(label), TRUE);
+    gtk_label_set_selectable(GTK_LABEL(label), TRUE);
+    gtk_label_set_xalign(GTK_LABEL(label), 0);
+    gtk_widget_set_hexpand(label, TRUE);
+    return label;
+}
+
+/* A bar below the picture with an icon, a text and buttons. */
+static GtkWidget *make_bar(const char *icon, GtkWidget *text, GtkWidget *first, GtkWidget *second) {
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8), *bar = gtk_revealer_new();
+    GtkWidget *image = gtk_image_new_from_icon_name(icon);
+    gui_label(image, second ? "Problem" : "Notice");
+    gtk_box_append(GTK_BOX(box), image);
+    gtk_box_append(GTK_BOX(box), text);
+    gtk_box_append(GTK_BOX(box), first);
+    if (second)
+        gtk_box_append(GTK_BOX(box), second);
     gtk_widget_add_css_class(box, "bar");
-    gtk_widget_add_css_class(box, "problem");
-    gtk_revealer_set_child(GTK_REVEALER(gui->error_bar), box);
-    return gui->error_bar;
+    gtk_widget_add_css_class(box, second ? "problem" : "offer");
+    gtk_revealer_set_child(GTK_REVEALER(bar), box);
+    return bar;
+}
+
+static GtkWidget *render_button(void) {
+    GtkWidget *button = gtk_button_new_with_label("Render Again");
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(button), "win.render");
+    gtk_widget_set_valign(button, GTK_ALIGN_CENTER);
+    return button;
+}
+
+static void make_bars(struct gui *gui, GtkWidget *box) {
+    gui->error_text = text_label("");
+    gui->error_line = gtk_button_new_with_label("Go to Line");
+    gui->error_render = render_button();
+    gtk_widget_set_valign(gui->error_line, GTK_ALIGN_CENTER);
+    g_signal_connect(gui->error_line, "clicked", G_CALLBACK(go_to_line), gui);
+    gui->error_bar = make_bar("dialog-error-symbolic", gui->error_text, gui->error_line, gui->error_render);
+    gui->change_bar =
+        make_bar("view-refresh-symbolic", text_label("A file of the scene has changed."), render_button(), NULL);
+    gtk_box_append(GTK_BOX(box), gui->error_bar);
+    gtk_box_append(GTK_BOX(box), gui->change_bar);
+}
+
+/* Over the picture while a script runs that has made none yet. */
+static GtkWidget *make_busy(struct gui *gui) {
+    GtkWidget *spinner = gtk_spinner_new(), *button = gtk_button_new_with_label("End the Script (Esc)");
+    gui->busy = gtk_box_new(GTK_ORIENTATION_VERTICAL, 12);
+    gui->busy_text = gtk_label_new("");
+    gtk_widget_set_size_request(spinner, 32, 32);
+    gtk_spinner_start(GTK_SPINNER(spinner));
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(button), "win.escape");
+    gtk_box_append(GTK_BOX(gui->busy), spinner);
+    gtk_box_append(GTK_BOX(gui->busy), gui->busy_text);
+    gtk_box_append(GTK_BOX(gui->busy), button);
+    gtk_widget_set_halign(gui->busy, GTK_ALIGN_CENTER);
+    gtk_widget_set_valign(gui->busy, GTK_ALIGN_CENTER);
+    gtk_widget_add_css_class(gui->busy, "busy");
+    gtk_widget_set_visible(gui->busy, FALSE);
+    return gui->busy;
 }
 
 static GtkWidget *make_bottom(struct gui *gui) {
@@ -405,7 +543,7 @@ static GtkWidget *make_bottom(struct gui *gui) {
     gtk_box_append(GTK_BOX(line), gui->notice);
     gtk_widget_add_css_class(line, "bar");
     gtk_box_append(GTK_BOX(box), make_timeline(gui));
-    gtk_box_append(GTK_BOX(box), make_error_bar(gui));
+    make_bars(gui, box);
     gtk_box_append(GTK_BOX(box), line);
     return box;
 }
@@ -417,30 +555,87 @@ static GtkWidget *make_trace(struct gui *gui) {
     gui->trace_text = gtk_text_view_get_buffer(GTK_TEXT_VIEW(view));
     gtk_text_view_set_editable(GTK_TEXT_VIEW(view), FALSE);
     gtk_text_view_set_monospace(GTK_TEXT_VIEW(view), TRUE);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(view), GTK_ACCESSIBLE_PROPERTY_LABEL, "How the pixel got its colour",
-                                   -1);
+    gui_label(view, "How the pixel got its colour");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(gui->trace_box), view);
     gtk_widget_set_size_request(gui->trace_box, -1, 180);
     gtk_widget_set_visible(gui->trace_box, FALSE);
     return gui->trace_box;
 }
 
+static GtkWidget *make_pane(GtkOrientation orientation, GtkWidget *start, GtkWidget *end, bool start_grows) {
+    GtkWidget *pane = gtk_paned_new(orientation);
+    gtk_paned_set_start_child(GTK_PANED(pane), start);
+    gtk_paned_set_end_child(GTK_PANED(pane), end);
+    gtk_paned_set_resize_start_child(GTK_PANED(pane), start_grows);
+    gtk_paned_set_resize_end_child(GTK_PANED(pane), !start_grows);
+    gtk_paned_set_shrink_start_child(GTK_PANED(pane), FALSE);
+    gtk_paned_set_shrink_end_child(GTK_PANED(pane), FALSE);
+    return pane;
+}
+
 static GtkWidget *make_body(struct gui *gui) {
-    GtkWidget *paned = gtk_paned_new(GTK_ORIENTATION_HORIZONTAL), *middle = gtk_paned_new(GTK_ORIENTATION_VERTICAL);
-    gtk_paned_set_start_child(GTK_PANED(middle), gui->picture);
-    gtk_paned_set_end_child(GTK_PANED(middle), make_trace(gui));
-    gtk_paned_set_resize_end_child(GTK_PANED(middle), FALSE);
-    GtkWidget *left = gtk_paned_new(GTK_ORIENTATION_HORIZONTAL);
-    gtk_paned_set_start_child(GTK_PANED(left), gui_tree_new(gui));
-    gtk_paned_set_end_child(GTK_PANED(left), middle);
-    gtk_paned_set_resize_start_child(GTK_PANED(left), FALSE);
-    gtk_paned_set_position(GTK_PANED(left), 180);
-    gtk_paned_set_start_child(GTK_PANED(paned), left);
-    gtk_paned_set_end_child(GTK_PANED(paned), gui_inspector_new(gui));
-    gtk_paned_set_resize_end_child(GTK_PANED(paned), FALSE);
-    gtk_paned_set_position(GTK_PANED(paned), 950);
-    gtk_paned_set_shrink_end_child(GTK_PANED(paned), FALSE);
-    return paned;
+    GtkWidget *overlay = gtk_overlay_new();
+    gtk_overlay_set_child(GTK_OVERLAY(overlay), gui->picture);
+    gtk_overlay_add_overlay(GTK_OVERLAY(overlay), make_busy(gui));
+    gui->trace_pane = make_pane(GTK_ORIENTATION_VERTICAL, overlay, make_trace(gui), true);
+    gui->tree_pane = make_pane(GTK_ORIENTATION_HORIZONTAL, gui_tree_new(gui), gui->trace_pane, false);
+    gui->inspector_pane = make_pane(GTK_ORIENTATION_HORIZONTAL, gui->tree_pane, gui_inspector_new(gui), true);
+    return gui->inspector_pane;
+}
+
+/* Sizes and choices, from one run to the next. */
+
+static char *settings_path(void) {
+    return g_build_filename(g_get_user_config_dir(), "gray", "window.ini", NULL);
+}
+
+static int kept_number(GKeyFile *file, const char *name, int otherwise) {
+    GError *error = NULL;
+    int number = g_key_file_get_integer(file, "window", name, &error);
+    bool ok = !error && number > 0 && number < 32768;
+    g_clear_error(&error);
+    return ok ? number : otherwise;
+}
+
+static void load_settings(struct gui *gui) {
+    GKeyFile *file = g_key_file_new();
+    char *path = settings_path(), *keys;
+    (void)g_key_file_load_from_file(file, path, G_KEY_FILE_NONE, NULL);
+    int width = kept_number(file, "width", 1280), inspector = kept_number(file, "inspector", 330);
+    gtk_window_set_default_size(GTK_WINDOW(gui->window), width, kept_number(file, "height", 800));
+    gtk_paned_set_position(GTK_PANED(gui->tree_pane), kept_number(file, "tree", 200));
+    gtk_paned_set_position(GTK_PANED(gui->inspector_pane), MAX(width - inspector, 300));
+    gtk_paned_set_position(GTK_PANED(gui->trace_pane), kept_number(file, "trace", 400));
+    keys = g_key_file_get_string(file, "window", "keys", NULL);
+    if (g_strcmp0(keys, "OpenSCAD") == 0)
+        g_action_group_change_action_state(G_ACTION_GROUP(gui->window), "keys", g_variant_new_string(keys));
+    if (g_key_file_get_boolean(file, "window", "dark", NULL))
+        g_action_group_change_action_state(G_ACTION_GROUP(gui->window), "dark", g_variant_new_boolean(TRUE));
+    g_free(keys);
+    g_free(path);
+    g_key_file_free(file);
+}
+
+static void save_settings(struct gui *gui) {
+    static const char *const sets[] = {WINDOW_KEY_SETS(LIST_WORD)};
+    GKeyFile *file = g_key_file_new();
+    char *path = settings_path(), *folder = g_path_get_dirname(path);
+    int width, height;
+    gboolean dark;
+    gtk_window_get_default_size(GTK_WINDOW(gui->window), &width, &height);
+    g_object_get(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", &dark, NULL);
+    g_key_file_set_integer(file, "window", "width", width);
+    g_key_file_set_integer(file, "window", "height", height);
+    g_key_file_set_integer(file, "window", "tree", gtk_paned_get_position(GTK_PANED(gui->tree_pane)));
+    g_key_file_set_integer(file, "window", "inspector", width - gtk_paned_get_position(GTK_PANED(gui->inspector_pane)));
+    g_key_file_set_integer(file, "window", "trace", gtk_paned_get_position(GTK_PANED(gui->trace_pane)));
+    g_key_file_set_string(file, "window", "keys", sets[gui->key_set]);
+    g_key_file_set_boolean(file, "window", "dark", dark);
+    if (g_mkdir_with_parents(folder, 0700) == 0)
+        (void)g_key_file_save_to_file(file, path, NULL);
+    g_free(folder);
+    g_free(path);
+    g_key_file_free(file);
 }
 
 static gboolean ask_close(GtkWindow *window, gpointer data) {
@@ -454,7 +649,7 @@ static void make_window(struct gui *gui) {
     GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
     GtkCssProvider *css = gtk_css_provider_new();
     gui->window = gtk_application_window_new(gui->application);
-    gtk_window_set_default_size(GTK_WINDOW(gui->window), 1280, 800);
+
     gtk_window_set_title(GTK_WINDOW(gui->window), "gray");
     gtk_window_set_titlebar(GTK_WINDOW(gui->window), make_header(gui));
     add_actions(gui);
@@ -473,6 +668,9 @@ static void make_window(struct gui *gui) {
     gtk_css_provider_load_from_data(css,
                                     ".bar { padding: 4px 8px; border-top: 1px solid @borders; }"
                                     ".problem { background: alpha(@error_color, 0.2); }"
+                                    ".offer { background: alpha(@accent_color, 0.2); }"
+                                    ".busy { padding: 18px; border-radius: 8px; background: @theme_bg_color; }"
+                                    ".eye { padding: 0 4px; min-height: 18px; min-width: 18px; }"
                                     ".card { padding: 8px; }",
                                     -1);
     gtk_style_context_add_provider_for_display(gdk_display_get_default(), GTK_STYLE_PROVIDER(css),
@@ -482,6 +680,7 @@ static void make_window(struct gui *gui) {
     g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
     gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
     gui_add_keys(gui);
+    load_settings(gui);
 }
 
 /* From the viewer. */
@@ -515,6 +714,24 @@ static void show_page(struct gui *gui) {
     gui_picture_send_size(gui);
 }
 
+/* The choice in the header. */
+static void show_integrator(struct gui *gui, const struct window_state *was) {
+    const struct window_field *field = &gui->state.integrator;
+    GtkDropDown *choice = GTK_DROP_DOWN(gui->integrator);
+    gtk_widget_set_visible(gui->integrator, field->number != 0);
+    gui->updates = true;
+    if (strcmp(was->integrator.text, field->text) != 0) {
+        char **words = g_strsplit(field->text, "|", -1);
+        GtkStringList *list = gtk_string_list_new((const char *const *)words);
+        gtk_drop_down_set_model(choice, G_LIST_MODEL(list));
+        g_object_unref(list);
+        g_strfreev(words);
+    }
+    if (field->number != 0)
+        gtk_drop_down_set_selected(choice, (guint)field->numbers[0]);
+    gui->updates = false;
+}
+
 static void show_state(struct gui *gui) {
     static struct window_state was; /* large */
     struct window_state *state = &gui->state;
@@ -532,13 +749,23 @@ static void show_state(struct gui *gui) {
     gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(gui->progress), CLAMP(state->share, 0, 1));
     gtk_progress_bar_set_text(GTK_PROGRESS_BAR(gui->progress), state->state);
     gtk_label_set_text(GTK_LABEL(gui->figures), state->figures);
-    gtk_label_set_text(GTK_LABEL(gui->notice), state->notice);
+    gtk_label_set_text(GTK_LABEL(gui->notice), state->types ? state->tool : state->notice);
     gtk_label_set_text(GTK_LABEL(gui->error_text), state->message);
+    int line;
+    char *source = source_position(state->message, &line);
     gtk_revealer_set_reveal_child(GTK_REVEALER(gui->error_bar), state->message[0] != '\0');
+    gtk_widget_set_visible(gui->error_line, source != NULL);
+    gtk_widget_set_visible(gui->error_render, state->waits);
+    gtk_revealer_set_reveal_child(GTK_REVEALER(gui->change_bar), state->changed);
+    gtk_widget_set_visible(gui->busy, state->runs);
+    gtk_label_set_text(GTK_LABEL(gui->busy_text), state->state);
+    show_integrator(gui, &was);
+    g_free(source);
     show_timeline(gui);
     if (strcmp(was.trace, state->trace) != 0)
         gtk_text_buffer_set_text(gui->trace_text, state->trace, -1);
     gtk_widget_set_visible(gui->trace_box, state->trace[0] != '\0');
+    gui_tree_show(gui, &was);
     gui_form_show(gui);
     gui_picture_draw(gui);
 }
@@ -609,6 +836,8 @@ int gtk_window_run(struct channel channel) {
     gtk_disable_setlocale();
     (void)setlocale(LC_MESSAGES, "");
     (void)setlocale(LC_CTYPE, "C.UTF-8");
+    if (!g_getenv("DBUS_SESSION_BUS_ADDRESS"))
+        (void)g_setenv("GSETTINGS_BACKEND", "memory", FALSE); /* choices of colours are not kept */
     (void)g_setenv("GTK_A11Y", g_getenv("DBUS_SESSION_BUS_ADDRESS") ? "atspi" : "none", FALSE);
     if (!gtk_init_check()) {
         (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "there is no display (DISPLAY or WAYLAND_DISPLAY)");

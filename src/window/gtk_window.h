@@ -1,6 +1,6 @@
 /* The window's own process. */
-#ifndef GRAY_VIEWER_GTK_WINDOW_H
-#define GRAY_VIEWER_GTK_WINDOW_H
+#ifndef GRAY_WINDOW_GTK_WINDOW_H
+#define GRAY_WINDOW_GTK_WINDOW_H
 
 #include "session/messages.h"
 

@@ -1,8 +1,8 @@
 /* The picture, and its input. */
-#ifndef GRAY_VIEWER_GTK_PICTURE_INTERNAL_H
-#define GRAY_VIEWER_GTK_PICTURE_INTERNAL_H
+#ifndef GRAY_WINDOW_GTK_PICTURE_INTERNAL_H
+#define GRAY_WINDOW_GTK_PICTURE_INTERNAL_H
 
-#include "viewer/gtk_internal.h"
+#include "window/gtk_internal.h"
 
 GtkWidget *gui_picture_new(struct gui *gui);
 void gui_picture_attach(struct gui *gui, const struct window_order *order, int descriptor);

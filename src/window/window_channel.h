@@ -1,12 +1,12 @@
 /* A window in a process of its own, which starts before that process has a thread: the driver of the viewer sends what
  * the window shows, and receives what the user does. The picture and the state go through shared memory: the picture in
  * tiles, each with a number that grows when the tile changes; the window copies those that have changed. */
-#ifndef GRAY_VIEWER_WINDOW_CHANNEL_H
-#define GRAY_VIEWER_WINDOW_CHANNEL_H
+#ifndef GRAY_WINDOW_WINDOW_CHANNEL_H
+#define GRAY_WINDOW_WINDOW_CHANNEL_H
 
 #include "base/share.h"
 #include "session/messages.h"
-#include "viewer/window.h"
+#include "window/window.h"
 
 #include <stdatomic.h>
 

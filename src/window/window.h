@@ -1,16 +1,18 @@
 /* The interface to a window: it shows a picture with lines over it, has widgets for everything else, and reports input.
  * The driver of window_channel.c has the window in another process; tests have their own. All positions are pixels of
  * the screen, from the upper left corner of the place for the picture. */
-#ifndef GRAY_VIEWER_WINDOW_H
-#define GRAY_VIEWER_WINDOW_H
+#ifndef GRAY_WINDOW_WINDOW_H
+#define GRAY_WINDOW_WINDOW_H
 
 #include "base/error.h"
 #include "inspect/node_list.h"
-#include "viewer/actions.h"
-#include "viewer/fly_camera.h"
+#include "window/actions.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* Keys that move the camera while they are held. */
+enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 
 enum window_event_kind {
     WINDOW_CLOSE,
@@ -21,9 +23,11 @@ enum window_event_kind {
     WINDOW_RELEASE, /* the same */
     WINDOW_LEAVE,   /* the picture has lost the keyboard: no key is pressed */
     WINDOW_SIZE,    /* x, y: the size for the picture; density: pixels per dot of the desktop */
+    WINDOW_TYPE,    /* the character `typed` for a tool: an axis, a digit; backspace; return */
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
+    WINDOW_HIDE,    /* the node with the serial of `node` and the name `text` is hidden, or shown again */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
 enum { WINDOW_LEFT = 1, WINDOW_MIDDLE = 2, WINDOW_RIGHT = 4 };
@@ -33,12 +37,14 @@ struct window_event {
     enum fly_camera_key key;
     int button;
     bool down, control, shift; /* control, shift: held */
+    char typed;
     double x, y, dx, dy, density;
     enum window_action action;
     uint32_t field;
     double numbers[3];
     bool joins;
     struct node_query node;
+    char text[NODE_NAME];
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -79,22 +85,31 @@ struct window_line {
     float x0, y0, x1, y1;
     enum line_colour colour;
 };
-enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384 };
+enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384, WINDOW_HIDDEN = 256 };
+/* The rows of the tree: the node, then the lights, which have a list below them, and the camera. */
+enum window_section { SECTION_NODES, SECTION_LIGHTS, SECTION_CAMERA, WINDOW_SECTIONS };
 
 /* Everything that the window shows but the picture and the rows of the tree. */
 struct window_state {
     bool has_scene;                             /* else the page without a scene */
     bool flies;                                 /* letters move the camera */
     bool full_screen;                           /* the whole screen */
+    bool types;                                 /* a tool is chosen: letters and digits are for it */
     bool halted, busy, playing, loops, unsaved; /* unsaved: edits */
-    char file[256], state[64], figures[288], frame[64];
+    bool waits;   /* no script runs, so nothing is rendered until a file changes or the user wants it */
+    bool changed; /* a file has changed, but the picture would be lost: the user decides */
+    bool runs;    /* the scripts run, and there is no picture yet */
+    char file[256], state[64], figures[288], frame[64], tool[64];
     char message[512], notice[512]; /* an error that stays; a line that goes away by itself */
     double share;                   /* of the work, 0 to 1 */
     uint32_t action_on;             /* by enum action_need, as bits: what there is */
     uint32_t frame_index, frame_count;
-    char trace[WINDOW_TRACE];                 /* of a pixel, or empty */
-    int left, top, shown_width, shown_height; /* where the picture goes */
+    char trace[WINDOW_TRACE];                     /* of a pixel, or empty */
+    int left, top, shown_width, shown_height;     /* where the picture goes */
+    struct node_query selected;                   /* the node that is selected; depth 0: none */
+    uint32_t hidden_count, hidden[WINDOW_HIDDEN]; /* serials of nodes */
     struct window_form form;
+    struct window_field integrator; /* number 0: none */
     uint32_t line_count;
     struct window_line lines[WINDOW_LINES];
 };

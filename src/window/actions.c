@@ -1,4 +1,4 @@
-#include "viewer/actions.h"
+#include "window/actions.h"
 
 #define ROW(action, name, title, menu, need, blender, openscad, help)                                                  \
     [action] = {name, title, menu, need, {blender, openscad}, help},

@@ -1,6 +1,6 @@
 /* Nothing is sent that has not changed. The reader of a tile may see a part of its next state: it copies the tile
  * again, because the number of a tile grows after its pixels were written. */
-#include "viewer/window_channel.h"
+#include "window/window_channel.h"
 
 #include "base/mem.h"
 

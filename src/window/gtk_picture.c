@@ -1,8 +1,8 @@
 /* The picture: its tiles as textures, whose bytes are copies, because those of a texture must not change. Input is read
  * from raw events: the gestures of GTK 4.8 lose drags of the middle and the right button under Wayland. */
-#include "viewer/gtk_picture_internal.h"
+#include "window/gtk_picture_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -159,7 +159,7 @@ static void gray_picture_init(GrayPicture *picture) {
     gtk_widget_set_hexpand(widget, TRUE);
     gtk_widget_set_vexpand(widget, TRUE);
     gtk_widget_set_size_request(widget, 160, 120);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(widget), GTK_ACCESSIBLE_PROPERTY_LABEL, "Picture", -1);
+    gui_label(widget, "Picture");
 }
 
 /* The mouse. */
@@ -240,8 +240,23 @@ static void send_held_key(struct gui *gui, int key, bool down) {
     gui_send_event(gui, &(struct window_event){.kind = WINDOW_KEY, .key = (enum fly_camera_key)key, .down = down});
 }
 
+/* What the key is without Shift: 0 in place of a parenthesis. */
+static guint without_shift(const struct gui *gui, guint value, guint code) {
+    GdkKeymapKey *keys = NULL;
+    guint *values = NULL;
+    int count = 0;
+    if (gdk_display_map_keycode(gtk_widget_get_display(gui->window), code, &keys, &values, &count)) {
+        for (int i = 0; i < count; i++)
+            value = keys[i].level == 0 && keys[i].group == 0 ? values[i] : value;
+    }
+    g_free(keys);
+    g_free(values);
+    return value;
+}
+
 /* The action of a key in the chosen set, or -1. */
-static int action_of(const struct gui *gui, guint value, GdkModifierType state) {
+static int action_of(const struct gui *gui, guint value, guint code, GdkModifierType state) {
+    guint plain = without_shift(gui, value, code);
     state &= GDK_CONTROL_MASK | GDK_SHIFT_MASK | GDK_ALT_MASK;
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         char **keys = g_strsplit(window_action_table[i].keys[gui->key_set], " ", -1);
@@ -251,7 +266,8 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
             GdkModifierType with;
             /* Shift is part of the symbol of keys like plus. */
             bool symbol = value == gdk_keyval_to_lower(value) && value == gdk_keyval_to_upper(value) && value < 128;
-            found = gtk_accelerator_parse(*key, &wanted, &with) && wanted == gdk_keyval_to_lower(value) &&
+            found = gtk_accelerator_parse(*key, &wanted, &with) &&
+                    (wanted == gdk_keyval_to_lower(value) || (wanted == plain && with == state)) &&
                     (with == state || (symbol && with == (state & ~(guint)GDK_SHIFT_MASK)));
         }
         g_strfreev(keys);
@@ -261,16 +277,40 @@ static int action_of(const struct gui *gui, guint value, GdkModifierType state) 
     return -1;
 }
 
+/* The character of a key for a tool, or 0. */
+static char typed_char(guint value) {
+    guint32 c = gdk_keyval_to_unicode(value);
+    if (value == GDK_KEY_BackSpace)
+        return '\b';
+    if (value == GDK_KEY_Return || value == GDK_KEY_KP_Enter)
+        return '\r';
+    c = c == ',' ? '.' : c;
+    return c > 0 && c < 128 && strchr("xyz0123456789.-", (int)c) ? (char)c : '\0';
+}
+
 static gboolean press_key(GtkEventControllerKey *keys, guint value, guint code, GdkModifierType state, gpointer data) {
     struct gui *gui = data;
-    (void)keys, (void)code;
+    /* Panes of GTK take function keys for themselves. */
+    bool first = gtk_event_controller_get_propagation_phase(GTK_EVENT_CONTROLLER(keys)) == GTK_PHASE_CAPTURE;
+    if (first && (value < GDK_KEY_F2 || value > GDK_KEY_F12))
+        return GDK_EVENT_PROPAGATE;
     bool plain = (state & (GDK_CONTROL_MASK | GDK_ALT_MASK)) == 0 || gui->state.flies;
     int held = plain || value == GDK_KEY_Control_L ? held_key(gui, value) : -1;
     if (held >= 0 && gtk_widget_has_focus(gui->picture)) {
         send_held_key(gui, held, true);
         return held != FLY_FAST && held != FLY_SLOW;
     }
-    int action = action_of(gui, value, state);
+    bool types = gui->state.types || g_get_monotonic_time() - gui->tool_begun < 300000;
+    char typed = types && plain ? typed_char(value) : '\0';
+    if (typed != '\0') {
+        gui_send_event(gui, &(struct window_event){.kind = WINDOW_TYPE, .typed = typed});
+        return GDK_EVENT_STOP;
+    }
+    if (value == GDK_KEY_A && plain && (gui->state.action_on >> NEEDS_PICTURE & 1)) {
+        g_action_group_activate_action(G_ACTION_GROUP(gui->window), "add", NULL);
+        return GDK_EVENT_STOP;
+    }
+    int action = action_of(gui, value, code, state);
     if (action >= 0)
         gui_send_action(gui, (enum window_action)action);
     return action >= 0;
@@ -296,6 +336,10 @@ void gui_add_keys(struct gui *gui) {
     g_signal_connect(focus, "leave", G_CALLBACK(leave), gui);
     gtk_event_controller_set_propagation_phase(keys, GTK_PHASE_BUBBLE);
     gtk_widget_add_controller(gui->window, keys);
+    GtkEventController *first = gtk_event_controller_key_new();
+    g_signal_connect(first, "key-pressed", G_CALLBACK(press_key), gui);
+    gtk_event_controller_set_propagation_phase(first, GTK_PHASE_CAPTURE);
+    gtk_widget_add_controller(gui->window, first);
     gtk_widget_add_controller(gui->picture, focus);
 }
 

@@ -1,6 +1,6 @@
 /* What a user can ask the window for, once: menus, keys, the list of keys and tooltips are made from these rows. */
-#ifndef GRAY_VIEWER_ACTIONS_H
-#define GRAY_VIEWER_ACTIONS_H
+#ifndef GRAY_WINDOW_ACTIONS_H
+#define GRAY_WINDOW_ACTIONS_H
 
 #include "base/list.h"
 
@@ -46,8 +46,8 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
     X(DO_NEXT_LIGHT, "next-light", "Next _Light", MENU_EDIT, NEEDS_PICTURE, "l", "l", "Select the next light")         \
     X(DO_PREVIOUS_LIGHT, "previous-light", "Pre_vious Light", MENU_EDIT, NEEDS_PICTURE, "<Shift>l", "<Shift>l",        \
       "Select the previous light")                                                                                     \
-    X(DO_ESCAPE, "escape", "Clear Selec_tion", MENU_EDIT, NEEDS_PICTURE, "Escape", "Escape",                           \
-      "Clear the selection; without one, stop rendering")                                                              \
+    X(DO_ESCAPE, "escape", "Clear Selec_tion", MENU_EDIT, NEEDS_NOTHING, "Escape", "Escape",                           \
+      "End a tool, the selection, rendering, or a script that makes no picture")                                       \
     X(DO_ADD_SPHERE, "add-sphere", "_Sphere", MENU_ADD, NEEDS_PICTURE, "", "", "Add a sphere where you clicked last")  \
     X(DO_ADD_CUBE, "add-cube", "_Cube", MENU_ADD, NEEDS_PICTURE, "", "", "Add a cube where you clicked last")          \
     X(DO_ADD_CYLINDER, "add-cylinder", "C_ylinder", MENU_ADD, NEEDS_PICTURE, "", "",                                   \

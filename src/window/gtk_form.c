@@ -1,8 +1,8 @@
 /* The inspector: widgets for the fields of a form. Another subject makes them anew; else only values change, and not in
  * a widget in which the user types. */
-#include "viewer/gtk_form_internal.h"
+#include "window/gtk_form_internal.h"
 
-#include "viewer/gtk_window_internal.h"
+#include "window/gtk_window_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,9 +124,10 @@ static int parse_number(GtkSpinButton *button, double *out, gpointer data) {
 /* As few digits as the number needs. */
 static gboolean show_number(GtkSpinButton *button, gpointer data) {
     char text[G_ASCII_DTOSTR_BUF_SIZE];
+    double value = gtk_spin_button_get_value(button);
     (void)data;
     gtk_editable_set_text(GTK_EDITABLE(button),
-                          g_ascii_formatd(text, sizeof text, "%.6g", gtk_spin_button_get_value(button)));
+                          g_ascii_formatd(text, sizeof text, "%.6g", fabs(value) < 1e-9 ? 0 : value));
     return TRUE;
 }
 
@@ -160,7 +161,7 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
         gtk_widget_set_size_request(slider, 70, -1);
         gtk_widget_set_hexpand(slider, TRUE);
         gtk_box_append(GTK_BOX(box), slider);
-        gtk_accessible_update_property(GTK_ACCESSIBLE(slider), GTK_ACCESSIBLE_PROPERTY_LABEL, field->name, -1);
+        gui_label(slider, field->name);
     }
     if (field->kind == FIELD_COLOUR) {
         row->inputs[0] = gtk_color_button_new();
@@ -197,7 +198,7 @@ static void add_row(struct gui *gui, GtkGrid *grid, int at, struct form_row *row
     gtk_widget_add_css_class(label, "dim-label");
     for (int i = 0; i < 3 && row->inputs[i] && field->kind != FIELD_TEXT; i++) {
         char *name = field->kind == FIELD_VECTOR ? g_strdup_printf("%s %s", text, axes[i]) : g_strdup(text);
-        gtk_accessible_update_property(GTK_ACCESSIBLE(row->inputs[i]), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+        gui_label(row->inputs[i], name);
         g_free(name);
     }
     if (field->help[0] != '\0') {
@@ -229,6 +230,7 @@ static GtkGrid *add_group(GtkBox *box, const char *name) {
     gtk_widget_set_margin_top(grid, 4);
     gtk_widget_set_margin_start(grid, 12);
     gtk_expander_set_child(GTK_EXPANDER(expander), grid);
+    gui_label(expander, name);
     gtk_expander_set_expanded(GTK_EXPANDER(expander), !g_hash_table_contains(folded, name));
     g_signal_connect(expander, "notify::expanded", G_CALLBACK(note_fold), folded);
     gtk_box_append(box, expander);

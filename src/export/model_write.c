@@ -1,0 +1,291 @@
+/* STL: 80 bytes, a count, and 50 bytes a triangle. OBJ with MTL, and PLY, as their readers in src/formats describe
+ * them. 3MF ("3D Manufacturing Format, Core Specification", 1.3): a zip with a part in XML. */
+#include "export/model_write.h"
+
+#include "base/mem.h"
+#include "export/zip_internal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void export_model_destroy(struct export_model *model) {
+    for (size_t i = 0; i < model->parts.count; i++) {
+        list_destroy(&export_parts(model)[i].points);
+        list_destroy(&export_parts(model)[i].triangles);
+    }
+    list_destroy(&model->parts);
+    list_destroy(&model->materials);
+}
+
+/* A file that grows; without memory it stays as it is, and the result is an error. */
+struct writer {
+    const struct export_model *model;
+    const struct model_write_options *options;
+    struct list *out;
+    bool failed;
+};
+
+static void put(struct writer *w, const void *bytes, size_t size) {
+    char *room = list_room(w->out, size, 1);
+    w->failed = w->failed || !room;
+    if (!room)
+        return;
+    memcpy(room, bytes, size);
+    w->out->count += size;
+}
+
+static void print(struct writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void print(struct writer *w, const char *format, ...) {
+    char line[512];
+    va_list values;
+    va_start(values, format);
+    int length = vsnprintf(line, sizeof line, format, values);
+    va_end(values);
+    if (length > 0)
+        put(w, line, (size_t)length < sizeof line ? (size_t)length : sizeof line - 1);
+}
+
+static void put_number(struct writer *w, uint32_t number, int bytes) {
+    uint8_t little[4] = {(uint8_t)number, (uint8_t)(number >> 8), (uint8_t)(number >> 16), (uint8_t)(number >> 24)};
+    put(w, little, (size_t)bytes);
+}
+
+static void put_float(struct writer *w, double value) {
+    float number = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    put_number(w, bits, 4);
+}
+
+static const struct export_material *material_at(const struct writer *w, uint32_t material) {
+    return (struct export_material *)w->model->materials.items + material;
+}
+static const struct vec3 *points_of(const struct export_part *part) {
+    return part->points.items;
+}
+static const struct export_triangle *triangles_of(const struct export_part *part) {
+    return part->triangles.items;
+}
+
+static size_t count_of(const struct export_model *model, bool points) {
+    size_t count = 0;
+    for (size_t i = 0; i < model->parts.count; i++)
+        count += points ? export_parts(model)[i].points.count : export_parts(model)[i].triangles.count;
+    return count;
+}
+
+/* A name that text files can hold: other bytes become '_'. */
+static const char *plain_name(const char *name, char out[64]) {
+    size_t length = 0;
+    for (; name[length] && length < 63; length++) {
+        char c = name[length];
+        bool fine = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || strchr("_-.", c);
+        out[length] = fine ? c : '_';
+    }
+    out[length] = '\0';
+    return out;
+}
+
+static struct vec3 normal_of(const struct export_part *part, const struct export_triangle *triangle) {
+    const struct vec3 *points = points_of(part);
+    struct vec3 a = points[triangle->vertex[0]], b = points[triangle->vertex[1]], c = points[triangle->vertex[2]];
+    return vec3_normalize(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+}
+
+static void write_stl(struct writer *w) {
+    char header[80] = {0};
+    memcpy(header, model_stl_header, strlen(model_stl_header));
+    put(w, header, sizeof header);
+    put_number(w, (uint32_t)count_of(w->model, false), 4);
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        for (size_t t = 0; t < part->triangles.count; t++) {
+            const struct export_triangle *triangle = &triangles_of(part)[t];
+            struct vec3 normal = normal_of(part, triangle);
+            for (int k = 0; k < 12; k++)
+                put_float(w, vec3_get(k < 3 ? normal : points_of(part)[triangle->vertex[k / 3 - 1]], k % 3));
+            put_number(w, 0, 2);
+        }
+    }
+}
+
+static void write_text_stl(struct writer *w) {
+    char name[64];
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        print(w, "solid %s\n", plain_name(part->name, name));
+        for (size_t t = 0; t < part->triangles.count; t++) {
+            const struct export_triangle *triangle = &triangles_of(part)[t];
+            struct vec3 n = normal_of(part, triangle);
+            print(w, "facet normal %.9g %.9g %.9g\nouter loop\n", n.x, n.y, n.z);
+            for (int k = 0; k < 3; k++) {
+                struct vec3 p = points_of(part)[triangle->vertex[k]];
+                print(w, "vertex %.9g %.9g %.9g\n", p.x, p.y, p.z);
+            }
+            print(w, "endloop\nendfacet\n");
+        }
+        print(w, "endsolid %s\n", name);
+    }
+}
+
+static void write_obj(struct writer *w) {
+    char name[64];
+    size_t first = 1;
+    print(w, "%s\nmtllib %s\n", model_obj_header, w->options->mtl_name);
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        uint32_t material = UINT32_MAX;
+        print(w, "o %s\n", plain_name(part->name, name));
+        for (size_t v = 0; v < part->points.count; v++)
+            print(w, "v %.9g %.9g %.9g\n", points_of(part)[v].x, points_of(part)[v].y, points_of(part)[v].z);
+        for (size_t t = 0; t < part->triangles.count; t++) {
+            const struct export_triangle *triangle = &triangles_of(part)[t];
+            if (triangle->material != material)
+                print(w, "usemtl %s\n", material_at(w, triangle->material)->name);
+            material = triangle->material;
+            print(w, "f %zu %zu %zu\n", first + triangle->vertex[0], first + triangle->vertex[1],
+                  first + triangle->vertex[2]);
+        }
+        first += part->points.count;
+    }
+}
+
+static void write_mtl(struct writer *w) {
+    print(w, "%s\n", model_obj_header);
+    for (uint32_t i = 0; i < w->model->materials.count; i++) {
+        const struct export_material *material = material_at(w, i);
+        print(w, "newmtl %s\nKd %.6g %.6g %.6g\n", material->name, material->diffuse.r, material->diffuse.g,
+              material->diffuse.b);
+    }
+}
+
+static void write_ply(struct writer *w) {
+    print(w,
+          "ply\nformat binary_little_endian 1.0\ncomment written by gray\nelement vertex %zu\n"
+          "property float x\nproperty float y\nproperty float z\nelement face %zu\n"
+          "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+          "end_header\n",
+          count_of(w->model, true), count_of(w->model, false));
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        for (size_t k = 0; k < 3 * part->points.count; k++)
+            put_float(w, vec3_get(points_of(part)[k / 3], (int)(k % 3)));
+    }
+    uint32_t first = 0;
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        for (size_t t = 0; t < part->triangles.count; t++) {
+            const struct export_triangle *triangle = &triangles_of(part)[t];
+            put_number(w, 3, 1);
+            for (int k = 0; k < 3; k++)
+                put_number(w, first + triangle->vertex[k], 4);
+            put(w, material_at(w, triangle->material)->display, 3);
+        }
+        first += (uint32_t)part->points.count;
+    }
+}
+
+/* --- 3MF --- */
+
+static void print_escaped(struct writer *w, const char *text) {
+    for (; *text; text++) {
+        const char *entity = *text == '&' ? "&amp;" : *text == '<' ? "&lt;" : *text == '"' ? "&quot;" : NULL;
+        if (entity)
+            print(w, "%s", entity);
+        else
+            put(w, (unsigned char)*text < ' ' ? "_" : text, 1);
+    }
+}
+
+static void write_object(struct writer *w, const struct export_part *part, size_t id) {
+    const struct export_triangle *triangles = triangles_of(part);
+    print(w, "<object id=\"%zu\" type=\"model\" pid=\"1\" pindex=\"%u\" name=\"", id, triangles[0].material);
+    print_escaped(w, part->name);
+    print(w, "\"><mesh><vertices>\n");
+    for (size_t v = 0; v < part->points.count; v++)
+        print(w, "<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>\n", points_of(part)[v].x, points_of(part)[v].y,
+              points_of(part)[v].z);
+    print(w, "</vertices><triangles>\n");
+    for (size_t t = 0; t < part->triangles.count; t++) {
+        print(w, "<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"", triangles[t].vertex[0], triangles[t].vertex[1],
+              triangles[t].vertex[2]);
+        if (triangles[t].material != triangles[0].material)
+            print(w, " pid=\"1\" p1=\"%u\"", triangles[t].material);
+        print(w, "/>\n");
+    }
+    print(w, "</triangles></mesh></object>\n");
+}
+
+static void write_3mf_model(struct writer *w) {
+    static const char *const units[] = {
+        [MODEL_MM] = "millimeter", [MODEL_CM] = "centimeter", [MODEL_M] = "meter", [MODEL_IN] = "inch"};
+    print(w,
+          "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"%s\" xml:lang=\"en-US\" "
+          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+          "<metadata name=\"Application\">gray</metadata>\n<resources><basematerials id=\"1\">\n",
+          units[w->options->unit]);
+    for (uint32_t i = 0; i < w->model->materials.count; i++) {
+        const struct export_material *material = material_at(w, i);
+        print(w, "<base name=\"%s\" displaycolor=\"#%02X%02X%02X\"/>\n", material->name, material->display[0],
+              material->display[1], material->display[2]);
+    }
+    print(w, "</basematerials>\n");
+    for (size_t i = 0; i < w->model->parts.count; i++)
+        write_object(w, &export_parts(w->model)[i], i + 2);
+    print(w, "</resources><build>\n");
+    for (size_t i = 0; i < w->model->parts.count; i++)
+        print(w, "<item objectid=\"%zu\"/>\n", i + 2);
+    print(w, "</build></model>\n");
+}
+
+static bool write_3mf(struct writer *w) {
+    static const char types[] =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+        "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+        "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
+    static const char relations[] =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+    struct list model = {0}, *out = w->out;
+    w->out = &model;
+    write_3mf_model(w);
+    w->out = out;
+    struct zip_entry entries[] = {{"3D/3dmodel.model", model.items, model.count, 0, 0, 0},
+                                  {"[Content_Types].xml", types, sizeof types - 1, 0, 0, 0},
+                                  {"_rels/.rels", relations, sizeof relations - 1, 0, 0, 0}};
+    bool ok = !w->failed && zip_write(entries, 3, out);
+    list_destroy(&model);
+    return ok;
+}
+
+bool model_write(const struct export_model *model, const struct model_write_options *options, struct list *bytes,
+                 struct list *mtl, struct error *error) {
+    struct writer w = {model, options, bytes, false};
+    if (count_of(model, false) > INT32_MAX || count_of(model, true) > INT32_MAX)
+        return error_set(error, ERROR_SCENE, "the model has more triangles than its file can count");
+    switch (options->format) {
+    case FORMAT_STL:
+        options->text ? write_text_stl(&w) : write_stl(&w);
+        break;
+    case FORMAT_OBJ:
+        write_obj(&w);
+        w.out = mtl;
+        write_mtl(&w);
+        break;
+    case FORMAT_PLY:
+        write_ply(&w);
+        break;
+    case FORMAT_3MF:
+        w.failed = !write_3mf(&w);
+        break;
+    case FORMAT_GLTF:
+    case FORMAT_GLB:
+    case FORMAT_OTHER:
+        break;
+    }
+    return !w.failed || error_no_memory(error, "a model");
+}

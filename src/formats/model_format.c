@@ -1,0 +1,28 @@
+#include "formats/model_format.h"
+
+#include <string.h>
+#include <strings.h>
+
+const char model_stl_header[] = "gray: binary STL";
+const char model_obj_header[] = "# written by gray";
+
+enum model_format model_format_written(const char *name) {
+    static const char *const endings[] = {MODEL_FORMATS_WRITTEN(LIST_WORD)};
+    size_t length = strlen(name);
+    for (int i = 0; i < LIST_COUNT(MODEL_FORMATS_WRITTEN); i++)
+        if (length > strlen(endings[i]) && strcasecmp(name + length - strlen(endings[i]), endings[i]) == 0)
+            return (enum model_format)i;
+    return FORMAT_OTHER;
+}
+
+static bool begins(const uint8_t *head, size_t size, const char *text) {
+    return size >= strlen(text) && memcmp(head, text, strlen(text)) == 0;
+}
+
+bool model_file_is(const uint8_t *head, size_t size) {
+    /* The first file in a 3MF zip of gray is its model; other programs begin with a file that all such packages have.
+     */
+    bool package = begins(head, size, "PK\3\4") && size > 33 && memcmp(head + 30, "3D/", 3) == 0;
+    return package || begins(head, size, model_stl_header) || begins(head, size, model_obj_header) ||
+           begins(head, size, "solid ") || begins(head, size, "ply\n");
+}

@@ -1,0 +1,243 @@
+#include "host/model_export.h"
+
+#include "export/model_build.h"
+#include "export/print_check.h"
+#include "formats/model_format.h"
+#include "host/render_reports.h"
+#include "scene/traversal.h"
+#include "session/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What a model is made of. */
+struct model_work {
+    struct render_process *process;
+    struct scene *scene;
+    const struct node *node;
+    const char *file, *where;
+    double tolerance;
+    struct model_write_options write;
+    bool by_user, linear;
+};
+
+static void notice(void *context, const char *text) {
+    const struct model_work *work = context;
+    render_process_say(work->process, LINE_NOTICE, "%.400s: %s", work->where, text);
+}
+
+static void detail(const struct model_work *work, const struct export_model *model) {
+    size_t triangles = 0;
+    for (size_t i = 0; i < model->parts.count; i++)
+        triangles += export_parts(model)[i].triangles.count;
+    render_process_say(work->process, LINE_DETAIL, "%.400s: %zu parts, %zu triangles", work->file, model->parts.count,
+                       triangles);
+}
+
+static void print_report(const struct print_report *report) {
+    struct text_writer writer = {.put = render_process_print};
+    struct vec3 size = vec3_sub(report->box.max, report->box.min);
+    text_writer_print(&writer, "closed: %s\n", report->closed ? "yes" : "no");
+    text_writer_print(&writer, "volume: %.6g, surface: %.6g\n", report->volume, report->area);
+    text_writer_print(&writer, "size: %.6g x %.6g x %.6g\n", size.x, size.y, size.z);
+    text_writer_put(&writer, "thinnest wall: %g at %v\n", report->thinnest, report->thinnest_at);
+    if (report->overhang > 0)
+        text_writer_put(&writer, "steepest overhang: %g degrees from the vertical at %v; ", report->overhang,
+                        report->overhang_at);
+    else
+        text_writer_print(&writer, "steepest overhang: none; ");
+    text_writer_put(&writer, "area above 45 degrees: %g\n", report->overhang_area);
+    text_writer_put(&writer,
+                    report->is_standing ? "stands on the plate: yes, contact area %g\n"
+                                   : "stands on the plate: no, it falls over; contact area %g\n",
+                    report->contact_area);
+    text_writer_flush(&writer);
+}
+
+/* The world of the node alone, without lights; then the model of it. */
+static bool build_model(struct model_work *work, struct export_model *model, struct error *error) {
+    struct render_process *process = work->process;
+    const struct sky sky = {.kind = SKY_CONSTANT};
+    const struct world_input world_input = {.scene = work->scene,
+                                            .root = work->node,
+                                            .sky = &sky,
+                                            .accel = process->options->settings.accel,
+                                            .linear_colours = work->linear};
+    struct world world;
+    scene_set_time(work->scene, 0);
+    if (!world_build(&world, &world_input, &process->job, process->pool, error))
+        return false;
+    const struct model_build_input input = {.world = &world,
+                                            .name = work->node->name,
+                                            .tolerance = work->tolerance,
+                                            .linear = work->linear,
+                                            .arena = &process->job,
+                                            .pool = process->pool,
+                                            .notice = notice,
+                                            .context = work};
+    bool ok = model_build(&input, model, error);
+    struct print_report report;
+    if (ok && process->options->check_print)
+        ok = print_check(model, process->pool, &report, error);
+    if (ok && process->options->check_print)
+        print_report(&report);
+    world_destroy(&world);
+    return ok;
+}
+
+static bool make_bytes(struct model_work *work, struct list *bytes, struct list *mtl, struct error *error) {
+    struct render_process *process = work->process;
+    struct export_model model = {0};
+    bool ok = build_model(work, &model, error);
+    if (ok && !process->options->check) {
+        detail(work, &model);
+        ok = process->options->check_print || model_write(&model, &work->write, bytes, mtl, error);
+    }
+    export_model_destroy(&model);
+    arena_reset(&process->job);
+    return ok;
+}
+
+static struct model_request request_of(const struct model_work *work) {
+    struct model_request request = {.by_user = work->by_user};
+    (void)snprintf(request.file, sizeof request.file, "%s", work->file);
+    return request;
+}
+
+/* The materials of an OBJ file first: a reader of the new model finds them. */
+static bool send(const struct model_work *work, const struct list *bytes, const struct list *mtl, struct error *error) {
+    const struct host_services *services = work->process->services;
+    struct model_request request = request_of(work);
+    if (mtl->count > 0) {
+        request.beside = 1;
+        request.size = mtl->count;
+        if (!services->model(services->context, &request, mtl->items, error))
+            return false;
+    }
+    request.beside = 0;
+    request.size = bytes->count;
+    return services->model(services->context, &request, bytes->items, error);
+}
+
+/* The account of memory is that of pictures. keep: where the bytes stay, or NULL: they are written. */
+static bool run(struct model_work *work, struct kept_model *keep, struct error *error) {
+    struct render_process *process = work->process;
+    const struct host_services *services = process->services;
+    struct model_request request = request_of(work);
+    struct list bytes = {0}, mtl = {0};
+    char mtl_name[256];
+    const char *last = strrchr(work->file, '/');
+    last = last ? last + 1 : work->file;
+    if (strlen(work->file) >= sizeof request.file || strlen(last) >= sizeof mtl_name)
+        return error_set(error, ERROR_SCENE, "the name of the model is longer than %zu bytes", sizeof mtl_name - 1);
+    (void)snprintf(mtl_name, sizeof mtl_name, "%.*s.mtl", (int)strlen(last) - 4, last);
+    work->write.format = model_format_written(work->file);
+    work->write.mtl_name = mtl_name;
+    if (!render_process_need_pool(process, error))
+        return false;
+    bool asks = !process->options->check_print;
+    bool ok = !asks || services->model(services->context, &request, NULL, error);
+    struct mem_account *script = render_process_charge_picture(process);
+    ok = ok && make_bytes(work, &bytes, &mtl, error);
+    (void)mem_charge(script);
+    if (ok && keep)
+        *keep = (struct kept_model){true, bytes, mtl};
+    else if (ok && asks && !process->options->check)
+        ok = send(work, &bytes, &mtl, error);
+    if (!ok || !keep) {
+        list_destroy(&bytes);
+        list_destroy(&mtl);
+    }
+    if (asks)
+        services->model_end(services->context);
+    return ok;
+}
+
+bool model_export_node(void *context, const struct export_request *request, struct error *error) {
+    struct render_process *process = context;
+    struct model_work work = {.process = process,
+                              .scene = request->scene,
+                              .node = request->node,
+                              .file = request->file,
+                              .where = request->where,
+                              .tolerance = request->tolerance,
+                              .write = {.unit = (enum model_unit)request->unit, .text = request->text},
+                              .linear = request->linear};
+    process->models++;
+    /* With -o MODEL the command line has chosen the model. */
+    return process->skips || process->options->model || process->options->check_print || run(&work, NULL, error);
+}
+
+/* The first node of that name. */
+static const struct node *find_node(const struct node *root, const char *name, struct error *error) {
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
+    const struct node *found = NULL;
+    enum scene_event event;
+    scene_traversal_begin(&t, root);
+    while (!found && (event = scene_traversal_next(&t)) < SCENE_END) {
+        const struct node *node = scene_traversal_node(&t);
+        if (event == SCENE_ENTER && node->name && strcmp(node->name, name) == 0)
+            found = node;
+    }
+    scene_traversal_end(&t);
+    if (!found) {
+        (void)error_set(error, ERROR_SCENE, "--node %.200s: the scene has no node of this name", name);
+        (void)error_elsewhere(error);
+    }
+    return found;
+}
+
+bool model_export_picture(struct render_process *process, const struct render_request *request, struct error *error) {
+    const struct options *options = process->options;
+    struct model_work work = {.process = process,
+                              .scene = request->scene,
+                              .node = request->root,
+                              .file = options->model ? options->model : "check.stl",
+                              .where = request->where,
+                              .tolerance = options->tolerance,
+                              .write = {.unit = (enum model_unit)options->unit},
+                              .by_user = true,
+                              .linear = settings_linear(&request->settings)};
+    uint32_t number = ++process->model_pictures;
+    size_t length = strlen(process->picture_names);
+    (void)snprintf(process->picture_names + length, sizeof process->picture_names - length, "%s%u %.80s",
+                   number > 1 ? ", " : "", number, request->file);
+    if (options->picture > 0 ? number != (uint32_t)options->picture : number > 1)
+        return true;
+    if (request->frame.number > 0 && options->script.frames.selection.step == 0)
+        return error_set(error, ERROR_SCENE, "a model shows one frame: --frames N-N chooses it");
+    if (options->node && !(work.node = find_node(request->root, options->node, error)))
+        return false;
+    return run(&work, options->picture > 0 ? NULL : &process->kept_model, error);
+}
+
+bool model_export_finish(struct render_process *process, struct error *error) {
+    const struct options *options = process->options;
+    const struct host_services *services = process->services;
+    struct kept_model *kept = &process->kept_model;
+    struct model_work work = {.process = process, .file = options->model, .by_user = true};
+    const char *option = options->model ? options->model : "--check-print";
+    bool ok = true;
+    if (options->picture == 0 && process->model_pictures > 1)
+        ok = error_set(error, ERROR_USAGE,
+                       "%.200s: the script renders several pictures, %.600s; --picture N chooses one", option,
+                       process->picture_names);
+    else if (options->picture > 0 && process->model_pictures < (uint32_t)options->picture)
+        ok = error_set(error, ERROR_USAGE, "--picture %d: the script renders %u pictures", options->picture,
+                       process->model_pictures);
+    else if (process->model_pictures == 0)
+        ok = error_set(error, ERROR_USAGE, "%.200s: the script renders no picture whose scene could be the model",
+                       option);
+    else if (kept->ready && options->model && !options->check) {
+        ok = send(&work, &kept->bytes, &kept->mtl, error);
+        services->model_end(services->context);
+    }
+    model_export_forget(process);
+    return ok;
+}
+
+void model_export_forget(struct render_process *process) {
+    list_destroy(&process->kept_model.bytes);
+    list_destroy(&process->kept_model.mtl);
+    process->kept_model = (struct kept_model){0};
+}

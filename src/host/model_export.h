@@ -1,0 +1,16 @@
+/* Models: of node:export, of -o MODEL, and the reports of --check-print. */
+#ifndef GRAY_HOST_MODEL_EXPORT_H
+#define GRAY_HOST_MODEL_EXPORT_H
+
+#include "host/render_process_internal.h"
+
+/* For struct script_host; context: the render process. */
+bool model_export_node(void *context, const struct export_request *request, struct error *error);
+/* The scene of a picture as the model of the command line. Its bytes are kept until it is known that no other picture
+ * comes, unless --picture chooses one. */
+bool model_export_picture(struct render_process *process, const struct render_request *request, struct error *error);
+/* After the script: writes the model that was kept. Forgets it in any case. */
+bool model_export_finish(struct render_process *process, struct error *error);
+void model_export_forget(struct render_process *process);
+
+#endif

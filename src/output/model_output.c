@@ -1,0 +1,66 @@
+#include "output/model_output.h"
+
+#include "formats/model_format.h"
+
+#include <string.h>
+
+static bool choose_name(struct model_output *model, const struct picture_files *files,
+                        const struct model_request *request, struct error *error) {
+    const struct options *options = files->options;
+    const char *file = request->by_user && options->model ? options->model : request->file;
+    size_t length = strlen(file);
+    model->by_user = file != request->file;
+    if (model_format_written(file) == FORMAT_OTHER)
+        return error_set(error, ERROR_SCENE, "%.600s: the name of a model ends in" MODEL_FORMATS_HELP, file);
+    if (length >= sizeof model->name)
+        return error_set(error, ERROR_SCENE, "the name of the model is longer than %d bytes", NAME_LIMIT - 1);
+    if (!model->by_user && !options->script.no_sandbox && !path_policy_may_create(&files->folders, file))
+        return error_set(
+            error, ERROR_SCENE,
+            "%.600s: models of scripts must be below the working directory, without a hidden name (-o FILE "
+            "or --allow-write DIR allow other places)",
+            file);
+    memcpy(model->name, file, length + 1);
+    if (request->beside)
+        memcpy(model->name + length - 4, ".mtl", 4);
+    return true;
+}
+
+static const struct file_rules *rules_of(const struct model_output *model, const struct picture_files *files) {
+    return model->by_user ? &files->user_model : &files->model;
+}
+
+bool model_output_begin(struct model_output *model, struct picture_files *files, const struct model_request *request,
+                        struct error *error) {
+    if (files->folders_error.kind != ERROR_NONE) {
+        *error = files->folders_error;
+        return false;
+    }
+    if (!choose_name(model, files, request, error))
+        return false;
+    const struct file_target target = {.path = model->name, .rules = rules_of(model, files)};
+    if (!file_output_check(&target, error))
+        return model->by_user ? error_elsewhere(error) : false;
+    model->size = request->size;
+    if (request->size > files->quota.limit - files->quota.written)
+        return error_set_limit(error, "%s", files->quota.words);
+    if (request->size > script_picture_memory(&files->options->script))
+        return error_set_limit(error, "%.600s: the model takes more than --script-memory allows", model->name);
+    return request->size == 0 || share_create(&model->memory, request->size, error);
+}
+
+bool model_output_write(struct model_output *model, struct picture_files *files, struct error *error) {
+    struct file_output output = {0};
+    const struct file_target target = {.path = model->name, .rules = rules_of(model, files)};
+    bool ok = file_output_open(&output, &target, error) &&
+              file_output_write(&output, model->memory.block, model->size, error);
+    ok = ok && file_output_commit(&output, error);
+    if (!ok)
+        file_output_abandon(&output);
+    model_output_forget(model);
+    return ok || (model->by_user ? error_elsewhere(error) : false);
+}
+
+void model_output_forget(struct model_output *model) {
+    share_destroy(&model->memory);
+}

@@ -1,0 +1,24 @@
+/* Writing the files of models, from bytes that the render process has put into shared memory. */
+#ifndef GRAY_OUTPUT_MODEL_OUTPUT_H
+#define GRAY_OUTPUT_MODEL_OUTPUT_H
+
+#include "base/share.h"
+#include "output/picture_files.h"
+#include "session/messages.h"
+
+/* Zero value: none. */
+struct model_output {
+    struct share memory; /* of the bytes */
+    size_t size;
+    bool by_user;
+    char name[NAME_LIMIT];
+};
+
+/* Whether the file can be written, and memory for its bytes if their number is known. */
+bool model_output_begin(struct model_output *model, struct picture_files *files, const struct model_request *request,
+                        struct error *error);
+/* Writes the file and releases the memory. */
+bool model_output_write(struct model_output *model, struct picture_files *files, struct error *error);
+void model_output_forget(struct model_output *model);
+
+#endif
