@@ -2,8 +2,8 @@
 # How fast the window is. For each scene (default: ten demos, path-traced ones among them), at SIZE (default 1280x720) on a
 # virtual display (Xvfb): the first picture after the world was built; then, while xdotool orbits and while it walks:
 # pictures a second and their resolution, processor time of all processes for each, the first picture after the movement
-# began, all pixels after it ended, and the first picture of the integrator (denoised, if it traces paths). The program
-# reports the times (--verbose). STILL: seconds without a movement (default 3).
+# began, all pixels after it ended, and the first picture of the integrator (denoised, if it traces paths).
+# The program reports the times (--verbose).
 cd "$(dirname "$0")/.." || exit 1
 if [ "$1" != inside ]; then
     for tool in Xvfb xvfb-run xdotool; do
@@ -19,7 +19,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 export GDK_DEBUG=gl-disable GSK_RENDERER=cairo GTK_A11Y=none HOME="$work"
 
-said() { # waits until the file has this many lines with the words
+said() { # waits until the program has said so many lines with the words
     for i in $(seq 1200); do
         [ "$(grep -c "$1" "$work/said")" -ge "$2" ] && return 0
         sleep 0.05
@@ -31,8 +31,9 @@ ticks() { # of the processes of the program, in hundredths of a second
     cat $(ps -s $(ps -o sess= -p $$) -o pid=,args= | awk '/[g]ray/ { print "/proc/" $1 "/stat" }') 2>/dev/null |
         awk '{ sum += $14 + $15 } END { print sum + 0 }'
 }
-move() { # move WAY NUMBER: 3 seconds of it, then a pause; prints what the program said about it
+move() { # move WAY: 3 seconds of it; prints what the program says about its longest part
     before=$(ticks)
+    : >"$work/said"
     case $1 in
     orbits)
         xdotool mousemove 800 500 mousedown 2
@@ -44,26 +45,24 @@ move() { # move WAY NUMBER: 3 seconds of it, then a pause; prints what the progr
     walks) xdotool key grave keydown w sleep 3 keyup w key Escape ;;
     esac
     after=$(ticks)
-    said ' pictures in ' "$2" || return
-    said 'the integrator after' "$2"
-    sleep "${STILL:-3}"
-    line=$(grep ' pictures in ' "$work/said" | sed -n "$2p")
-    last=$(grep 'the integrator after' "$work/said" | sed -n "$2p")
-    echo "$line" | sed 's/.*: \([0-9]*\) pictures in \([0-9.]*\) s, at 1.\([0-9]*\), the first after \([0-9]*\) ms, all pixels \([0-9]*\) ms.*/\1 \2 \3 \4 \5/' |
-        awk -v way="$1" -v used=$((after - before)) -v last="$(echo "$last" | sed 's/.*after \([0-9]*\) ms.*/\1/')" '{
-            printf "    %-7s %5.1f pictures/s at 1/%d, %4.0f ms of processor each; first %4d ms, all pixels %5d ms, integrator %6d ms\n",
-                way, $1 / $2, $3, 10 * used / $1, $4, $5, last }'
+    said 'the integrator after' 1 || return
+    sed -n 's/.*: \([0-9]*\) pictures in \([0-9.]*\) s, at 1.\([0-9]*\), the first after \([0-9]*\) ms, all pixels \([0-9]*\) ms.*/\1 \2 \3 \4 \5/p' "$work/said" |
+        sort -n | awk -v way="$1" -v used=$((after - before)) \
+            -v last="$(sed -n 's/.*integrator after \([0-9]*\) ms.*/\1/p' "$work/said" | tail -1)" '
+            { count = $1; seconds = $2; divide = $3; first = $4; all = $5; sum += $1 }
+            END { printf "    %-6s %5.1f pictures/s at 1/%d, %4.0f ms of processor each; first %4d ms, all pixels %5d ms, integrator %6d ms\n",
+                way, seconds > 0 ? count / seconds : 0, divide, sum ? 10 * used / sum : 0, first, all, last }'
 }
 for scene in "$@"; do
     : >"$work/said"
     "$gray" -gui -q --verbose --progress=none --size "${SIZE:-1280x720}" --allow-read . "$scene" -o "$work/out.png" \
-        >"$work/out" 2>"$work/said" &
+        >"$work/out" 2>>"$work/said" &
     pid=$!
     said 'on the screen' 1 || { kill $pid; continue; }
     echo "$scene: first picture $(sed -n 's/.*on the screen \([0-9.]*\) ms.*/\1/p' "$work/said" | head -1) ms after building"
     sleep 1
-    move orbits 1
-    move walks 2
+    move orbits
+    move walks
     kill $pid
     wait $pid
 done
