@@ -138,7 +138,7 @@ enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
 /* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_aim.h. */
 struct path_stretch {
-    double distance;
+    double distance, end; /* the end of the ray */
     const struct medium *medium;
     struct path_tracked tracked;
 };
@@ -158,7 +158,7 @@ static __attribute__((noinline)) void aim(const struct path_tracer *tracer, stru
     if (!parts || colour_is_black(light))
         return;
     struct colour scattered[PATH_SCATTERINGS];
-    path_share_all(BSDF_DIFFUSE, scattered);
+    path_share_volume(scattered);
     add_to_groups(parts, path->depth + 1, path->depth == 0 ? scattered : parts->shares, light);
 }
 
@@ -235,6 +235,7 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
 static void pass_medium(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                         enum medium_ray kind, struct path_stretch *out) {
     const struct medium *medium = medium_stack_current(path->ray.media);
+    out->end = out->distance;
     out->medium = NULL;
     out->tracked.density = 0;
     if (medium->mixed)
@@ -475,7 +476,7 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
-    watch_medium(watch);
+    watch_medium(watch, path, end->end);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
