@@ -581,7 +581,8 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     if (is_solid)
         bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
-    set_coat_side(&l, tables, material, hit);
+    if (values.coat_weight > 0)
+        set_coat_side(&l, tables, material, hit);
     add_coat(&l);
     set_film(&l, (double)media->wavelength);
     bsdf->emission = colour_mul(inputs->emission, l.left);

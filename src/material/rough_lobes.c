@@ -455,15 +455,21 @@ static struct colour filmed_share(const struct bsdf *bsdf, const struct bsdf_fac
     return thin_film_metal(&bsdf->film, towards, bsdf_metal_fresnel(facets, towards));
 }
 
+static __attribute__((noinline)) struct colour filmed_weight(const struct bsdf *bsdf, const struct lobe *lobe,
+                                                             struct vec3 wo, struct vec3 wi) {
+    double towards = vec3_dot(wo, path_of(bsdf, lobe, wo, wi).half);
+    struct colour share = filmed_share(bsdf, &bsdf->facets[lobe->facets], towards);
+    bool transmits = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    return colour_mul(lobe->weight, transmits ? colour_sub(colour_all(1), share) : share);
+}
+
 struct colour rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
-    unsigned flags = lobe_flags(lobe->kind);
-    if (!(flags & BSDF_TINTED))
+    if (!(lobe_flags(lobe->kind) & BSDF_TINTED))
         return lobe->weight;
-    if (lobe->kind == LOBE_METAL)
-        return colour_mul(lobe->weight, bsdf_metal_fresnel(facets, vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)))));
-    struct colour share = filmed_share(bsdf, facets, vec3_dot(wo, path_of(bsdf, lobe, wo, wi).half));
-    return colour_mul(lobe->weight, flags & BSDF_TRANSMITS ? colour_sub(colour_all(1), share) : share);
+    if (lobe->kind != LOBE_METAL)
+        return filmed_weight(bsdf, lobe, wo, wi);
+    double towards = vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)));
+    return colour_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
 }
 
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
