@@ -117,6 +117,8 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
                         : ray->met        ? "surface"
                         : ray->area_light ? "light"
                                           : "background");
+        if (in_medium)
+            text_writer_put(writer, ",\"probability\":%j", ray->vertex.chance);
         if (ray->met && !in_medium)
             json_hit(report, writer, ray);
         else if (ray->is_vertex)

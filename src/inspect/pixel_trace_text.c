@@ -211,7 +211,9 @@ static void print_onward(struct text_state *t, const struct pixel_trace_ray *ray
 }
 
 static void print_scattering(struct text_state *t, const struct pixel_trace_ray *ray) {
-    text_writer_put(t->writer, "%ithe medium scatters it at distance %g\n", deep(t), ray->vertex.distance);
+    text_writer_put(t->writer,
+                    "%ithe medium scatters it at distance %g, with probability %g before the end of the ray\n", deep(t),
+                    ray->vertex.distance, ray->vertex.chance);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
         print_light(t, light);
     print_onward(t, ray);
