@@ -340,7 +340,7 @@ static struct colour metal_reflects(const struct layering *l, const struct bsdf_
 
 /* Over the hemisphere, at equal steps of the squared cosine where there is a film. */
 static struct colour metal_average(const struct layering *l, const struct bsdf_facets *facets) {
-    enum { COSINES = 6 };
+    enum { COSINES = 3 };
     struct colour sum = {0, 0, 0};
     if (!has_film(l))
         return bsdf_metal_fresnel_average(facets);

@@ -340,7 +340,7 @@ sums_of_boundary(const struct facet_distribution *d, struct vec3 direction, doub
     view = vec3_add_scaled(view, d->along, fabs(vec3_dot(direction, d->along)));
     view = vec3_add_scaled(view, d->across, fabs(vec3_dot(direction, d->across)));
     const bool dense = eta > 1; /* total reflection divides the facets */
-    const int points = dense ? 233 : 34, step = dense ? 144 : 21;
+    const int points = film ? 34 : dense ? 233 : 34, step = points == 34 ? 21 : 144; /* films take long */
     struct colour reflected = {0, 0, 0}, passed = {0, 0, 0};
     double all = 0;
     for (int i = 0; i < points; i++) {
