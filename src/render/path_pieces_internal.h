@@ -457,6 +457,7 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->medium_events++;
     watch_medium(watch, path, end->end);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
