@@ -28,7 +28,7 @@ for i = 1, 10 do
     local x, z = .62 * math.cos(a), .62 * math.sin(a)
     scene:add_child(gr.cylinder { from = { x, 10.95, z }, to = { x, 12.2, z }, radius = .03, material = slate })
 end
-scene:add_child(gr.cone { from = { 0, 12.2, 0 }, to = { 0, 13.1, 0 }, from_radius = .85, radius = .02, material = red })
+scene:add_child(gr.cone { from = { 0, 12.2, 0 }, to = { 0, 13.1, 0 }, from_radius = .85, radius = .02, material = slate })
 -- a hut
 scene:add_child(gr.cube { corner = { 2.1, .5, .9 }, size = { 1.7, 1.4, 1.5 }, material = white })
 scene:add_child(gr.cube { corner = { 2, 1.9, .8 }, size = { 1.9, .15, 1.7 }, material = slate })

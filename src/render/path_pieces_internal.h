@@ -462,8 +462,10 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
+    /* The depth is that of what is behind: that of single events would be noise. */
     if (parts && path->sight)
-        set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
+        set_features(state, path, medium_albedo(end->medium), vec3_all(0),
+                     end->end < INFINITY ? parts->travelled + end->end : 0);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct medium_stack *media = &path->media;
     const struct path_vertex vertex = {.ray = &path->ray,

@@ -11,7 +11,6 @@
 
 #include <float.h>
 
-#define VOXEL_WORD(type, word, more, bytes) " " word
 enum {
     MEDIUM_ABSORPTION,
     MEDIUM_SCATTERING,
@@ -58,7 +57,7 @@ static const struct script_parameter medium_parameters[] = {
     [MEDIUM_TOP] = {"top", KIND_NUMBER, OPTIONAL, ANY, NULL, "none", "The medium ends at this height y."},
     [MEDIUM_CELLS] = {"cells", KIND_TRIPLE, OPTIONAL, 1, VOXELS_LIMIT, NULL, NULL, NULL,
                       "Of a grid of numbers or plain values: how many there are along x, y and z; x varies fastest."},
-    [MEDIUM_TYPE] = {"type", KIND_CHOICE, OPTIONAL, 0, 0, VOXEL_TYPES(VOXEL_WORD), NULL, "'float'",
+    [MEDIUM_TYPE] = {"type", KIND_CHOICE, OPTIONAL, 0, 0, "float double uint8 int16 uint16", NULL, "'float'",
                      "Type of the values of a plain file, little-endian."},
 };
 

@@ -979,7 +979,7 @@ TEST(a_density_above_its_bound_is_one_warning_that_names_the_point) {
         "                    density = function(p) return 2 + p.x end}\n"
         "gr.render{node = gr.sphere{medium = m}, file = 'a.png', width = 16, height = 16, eye = {0, 0, 4},\n"
         "          background = {1, 1, 1}, integrator = 'path', spp = 4}\n";
-    struct test_result result = test_gray_scene(scene, "-q -j 1 scene.lua", NULL);
+    struct test_result result = test_gray_scene(scene, "-j 1 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     const char *warning = strstr(result.err, "warning: the density of a medium is ");
     CHECK(warning && strstr(warning, "at p = {"));
