@@ -1,6 +1,6 @@
 /* The viewer with a window that the test plays: camera flights by quaternions, the choice of the next pass, edits. */
 #include "base/mem.h"
-#include "render/render.h"
+#include "render/integrator.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "viewer/viewer_internal.h"
@@ -69,6 +69,17 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
     CHECK_NEAR(apart(fast.pose.position, fast.home.position), 4 * fast.speed, 1e-12);
     fly_camera_home(&fast);
     CHECK_NEAR(apart(fast.pose.position, vec3_make(1, 2, 3)), 0, 0);
+}
+
+TEST(fly_camera_is_slower_near_what_is_in_front) {
+    struct fly_camera fly_camera = some_traversal();
+    double usual = fly_camera.speed;
+    fly_camera_near(&fly_camera, 1e-9);
+    CHECK_NEAR(fly_camera.speed, 0.01 * usual, 1e-12);
+    fly_camera_near(&fly_camera, usual);
+    CHECK_NEAR(fly_camera.speed, 0.7 * usual, 1e-12);
+    fly_camera_near(&fly_camera, HUGE_VAL);
+    CHECK_NEAR(fly_camera.speed, usual, 1e-12);
 }
 
 TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_picture) {
@@ -202,11 +213,13 @@ static void build(struct table *t) {
     CHECK(t->viewer.pass.view.divide > 4 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
 }
 
-static void begin(struct table *t) {
+static void begin_with(struct table *t, struct film_record record, int samples) {
     struct error error;
     size_t bytes;
     *t = (struct table){.now = 100,
-                        .request = {.full_width = 100,
+                        .request = {.record = record,
+                                    .settings.path_samples = samples,
+                                    .full_width = 100,
                                     .full_height = 70,
                                     .width = 100,
                                     .height = 70,
@@ -219,12 +232,16 @@ static void begin(struct table *t) {
                                        .descriptor = fake_descriptor,
                                        .show = fake_show,
                                        .nodes = fake_nodes};
-    CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(100, 70, record, &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(
         viewer_begin(&t->viewer, &t->driver, &(struct viewer_picture){&t->request, t->block, "x.png"}, t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
     build(t);
+}
+
+static void begin(struct table *t) {
+    begin_with(t, stage_record(INTEGRATOR_WHITTED), 0);
 }
 
 /* The window of a script that has not rendered yet, and then a picture of its size. */
@@ -293,12 +310,19 @@ TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once)
     end(&t);
 }
 
+/* Presses the key: the viewer asks what is in front, and nothing is. */
+static void begin_flight(struct table *t, enum fly_camera_key code) {
+    key(&t->fake, code, true);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK(t->viewer.command.kind == COMMAND_PICK && t->viewer.command.x == 50.5);
+    print_news(t, &(struct preview_reply){.kind = REPLY_PICKED});
+}
+
 TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, FLY_FORWARD, true);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has passed yet */
+    begin_flight(&t, FLY_FORWARD);
     for (int i = 0; i < 5; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.divide > 1 && !t.viewer.pass.view.own);
@@ -332,8 +356,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, FLY_LEFT, true);
-    (void)step(&t);
+    begin_flight(&t, FLY_LEFT);
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
@@ -388,6 +411,65 @@ TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) 
         render_tile(&t, tile, 0.6f, FILM_TILE_DONE);
     finish_pass(&t, 0.01, false);
     CHECK_EQ_INT(pixels_with(&t, 153), 100 * 70);
+    end(&t);
+}
+
+static const uint8_t *middle_of(const struct table *t) {
+    return t->viewer.window.image + (size_t)3 * (35 * 100 + 50);
+}
+
+/* A scene without `denoise`: its film has features, and passes whose tiles are not denoised are not shown. */
+TEST(window_shows_samples_of_paths_only_denoised_and_doubles_them) {
+    static const struct {
+        uint32_t divide, samples, kept;
+    } want[] = {{3, 4, 0}, {2, 8, 0}, {1, 16, 0}, {1, 32, 16}, {1, 0, 32}};
+    struct table t;
+    const struct settings settings = {.integrator = INTEGRATOR_PATH, .denoise = DENOISER_GRAY};
+    begin_with(&t, render_record(&settings), 64);
+    while (t.viewer.pass.view.plain) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        const struct pass_view *view = &t.viewer.command.view;
+        CHECK_EQ_INT(view->divide, want[i].divide);
+        CHECK_EQ_INT(view->samples, want[i].samples);
+        CHECK_EQ_INT(view->kept, want[i].kept);
+        /* In progress: nothing of it is shown. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 1, FILM_TILE_PASSED + 1);
+        uint8_t before = middle_of(&t)[0];
+        CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+        CHECK_EQ_INT(middle_of(&t)[0], before);
+        /* Denoised: all of it. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 0.2f * (float)(i % 2 + 1), FILM_TILE_DONE);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(middle_of(&t)[0], i % 2 ? 102 : 51);
+        CHECK_EQ_INT(step(&t), want[i].samples ? VIEWER_SEND_COMMAND : VIEWER_WRITE_PICTURE);
+    }
+    end(&t);
+}
+
+TEST(window_that_shows_normals_ends_with_their_preview_and_writes_no_picture) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    do_action(&t.fake, DO_SHOW_NORMALS);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    t.viewer.written = false;
+    while (t.viewer.pass.view.divide > 1) {
+        CHECK(t.viewer.pass.view.headlight && t.viewer.pass.view.shows == HEADLIGHT_NORMALS);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    CHECK(t.viewer.pass.view.headlight);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(viewer_is_idle(&t.viewer));
+    do_action(&t.fake, DO_SHOW_PICTURE);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    go_to_the_end(&t);
     end(&t);
 }
 
@@ -450,8 +532,7 @@ TEST(window_keys_fly_and_escape_ends_it) {
     do_action(&t.fake, DO_SAVE_VIEW);
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_CAMERA);
     do_action(&t.fake, DO_FLY);
-    key(&t.fake, FLY_BACK, true);
-    (void)step(&t);
+    begin_flight(&t, FLY_BACK);
     CHECK(t.fake.state.flies);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.pass.view.camera.eye.z > 5);
