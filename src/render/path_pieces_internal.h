@@ -476,12 +476,15 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->medium_events++;
     watch_medium(watch, path, end->end);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
+    /* The depth is that of what is behind: that of single events would be noise. */
     if (parts && path->sight)
-        set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
+        set_features(state, path, medium_albedo(end->medium), vec3_all(0),
+                     end->end < INFINITY ? parts->travelled + end->end : 0);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
