@@ -23,7 +23,7 @@ struct picture_tiles {
 /* The widgets of a field of the form. */
 struct form_row {
     struct window_field field;
-    GtkWidget *inputs[3];
+    GtkWidget *inputs[3], *reset;
 };
 
 struct gui {

@@ -816,8 +816,10 @@ static void obey(struct gui *gui, const struct window_order *order, int descript
         gui_picture_attach(gui, order, descriptor);
         return;
     case ORDER_SHOW:
-        if (gui->memory.block)
+        if (gui->memory.block) {
+            atomic_store(&((struct window_shared *)gui->memory.block)->announced, 0);
             show_state(gui);
+        }
         return;
     case ORDER_NODES:
         gui_tree_receive(gui, order);
@@ -847,7 +849,8 @@ static void activate(GtkApplication *application, gpointer data) {
     (void)application;
     make_window(gui);
     gtk_window_present(GTK_WINDOW(gui->window));
-    (void)g_unix_fd_add(gui->channel.descriptor, G_IO_IN | G_IO_HUP, receive, gui);
+    /* After what is to be drawn, so that a viewer that has much to show does not keep it from the screen. */
+    (void)g_unix_fd_add_full(G_PRIORITY_DEFAULT_IDLE, gui->channel.descriptor, G_IO_IN | G_IO_HUP, receive, gui, NULL);
 }
 
 /* GL by software is slower than Cairo. */

@@ -75,7 +75,9 @@ static bool update_state(struct window_channel *window) {
 }
 
 static void show_state(struct window_channel *window, bool changed) {
-    if (update_state(window) || changed)
+    struct window_shared *shared = window->memory.block;
+    bool shows = update_state(window) || changed;
+    if (shows && (!shared || atomic_exchange(&shared->announced, 1) == 0))
         send(window, &(struct window_order){.kind = ORDER_SHOW}, -1);
 }
 
