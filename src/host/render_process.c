@@ -314,7 +314,7 @@ static struct picture_request picture_request_of(const struct options *options, 
     static const struct tone_table no_table = {{0}};
     const struct tone_table *table = job->settings.tone.table;
     struct settings recorded = job->settings;
-    if (options->window && recorded.denoise == DENOISER_AUTO) /* it shows no noise while it renders */
+    if (options->window) /* it shows no noise while it renders */
         recorded.denoise = DENOISER_GRAY;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,

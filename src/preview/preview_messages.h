@@ -4,6 +4,7 @@
 #define GRAY_PREVIEW_PREVIEW_MESSAGES_H
 
 #include "inspect/pick.h"
+#include "render/headlight.h"
 #include "render/overlay.h"
 #include "scene/change.h"
 #include "session/messages.h"
@@ -31,11 +32,12 @@ struct view_overlay_buffers {
 
 /* A pass of a picture in a window. */
 struct pass_view {
-    struct camera camera;   /* its view a direction */
-    double exposure;        /* stops: it decides which pixels are sampled again */
-    uint32_t divide;        /* one pixel represents a square with this side; from 1 */
-    bool plain;             /* one sample a pixel, coarse soft light */
-    bool headlight;         /* plain, and shaded by a light at the eye (render/headlight.h) */
+    struct camera camera;       /* its view a direction */
+    double exposure;            /* stops: it decides which pixels are sampled again */
+    uint32_t divide;            /* one pixel represents a square with this side; from 1 */
+    bool plain;                 /* one sample a pixel, coarse soft light */
+    bool headlight;             /* plain, and made by render_headlight ... */
+    enum headlight_shows shows; /* ... which shows this */
     uint32_t samples;       /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
     uint32_t kept;          /* samples of the pass before, which had all pixels: the pass goes on with the next */
     bool own;               /* the camera, lens and motion of the script */

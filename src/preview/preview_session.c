@@ -7,7 +7,6 @@
 #include "inspect/pick.h"
 #include "light/light_edit.h"
 #include "preview/view_overlay_internal.h"
-#include "render/headlight.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,16 +51,6 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     }
 }
 
-/* The bounds of all finite objects. */
-static struct box finite_bounds(const struct world *world) {
-    struct box bounds = box_empty();
-    for (uint32_t i = 0; i < world->primitive_count; i++) {
-        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
-            bounds = box_join(bounds, world->boxes[i]);
-    }
-    return bounds;
-}
-
 /* The supervisor requests a stop, and clears the request before it sends the next command. */
 bool preview_was_stopped(const struct control *control, const struct error *error) {
     return error->kind == ERROR_CANCELLED && atomic_load(&control->cancel) != CANCEL_ALL;
@@ -95,7 +84,7 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     progress_estimate_reset(progress_estimate, fine);
     job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = work->view.headlight ? render_headlight(&job, preview->pool, &report->rays, error)
+    bool ok = work->view.headlight ? render_headlight(&job, work->view.shows, preview->pool, &report->rays, error)
                                    : render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
@@ -244,7 +233,7 @@ static void describe_world(struct preview_state *work, struct preview_reply *rep
     reply->built = clock_now();
     reply->added = work->preview->request->added;
     reply->owned = work->preview->request->owned;
-    reply->report.bounds = finite_bounds(work->preview->world);
+    reply->report.bounds = world_finite_bounds(work->preview->world);
     reply->root = root->serial;
     reply->world_from_root = node_parent_from_node(root).forward;
     pick_copy_name(reply->root_name, root->name);

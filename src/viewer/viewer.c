@@ -10,20 +10,21 @@
 #include <string.h>
 
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
-static const double pass_goal = 0.033;
+static const double pass_goal = 1 / 30.0, margin = 1.02;
 
 static bool is_different(double a, double b) {
     return a < b || a > b;
 }
 
 static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
-    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera)
-                                                             : viewer->request.camera,
-                              .exposure = viewer->request.settings.tone.exposure,
-                              .divide = divide,
-                              .plain = plain,
-                              .headlight = plain && (!viewer_plays(viewer) || viewer_shows_denoised(viewer)),
-                              .own = !viewer->camera_moved};
+    return (struct pass_view){
+        .camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera) : viewer->request.camera,
+        .exposure = viewer->request.settings.tone.exposure,
+        .divide = divide,
+        .plain = plain,
+        .headlight = plain && (!viewer_plays(viewer) || viewer->window.mode.previews || viewer_shows_denoised(viewer)),
+        .shows = viewer->window.mode.shows,
+        .own = !viewer->camera_moved};
 }
 
 /* The scripts ran again: a moved camera and the edits are kept. */
@@ -235,9 +236,61 @@ bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
+void viewer_choose_mode(struct viewer *viewer, struct view_mode mode) {
+    viewer->window.mode = mode;
+    viewer_outdate(viewer);
+    viewer_halt(viewer, false);
+}
+
+void viewer_outdate(struct viewer *viewer) {
+    const double pause = 0.3; /* seconds; between two movements */
+    struct viewer_motion *motion = &viewer->motion;
+    if (motion->began <= 0 || viewer->stepped - motion->last > pause)
+        *motion = (struct viewer_motion){.began = viewer->stepped};
+    motion->last = viewer->stepped;
+    viewer->pass.outdated = true;
+}
+
+/* Counts the pictures of a movement; at the end reports how soon they came, and the first denoised one. */
+static void note_motion(struct viewer *viewer, double now) {
+    struct viewer_motion *motion = &viewer->motion;
+    const struct pass_view *view = &viewer->pass.view;
+    if (motion->began <= 0 || viewer->pass.began < motion->began)
+        return;
+    motion->first_shown = motion->first_shown > 0 ? motion->first_shown : now;
+    if (viewer->pass.began < motion->last + pass_goal) {
+        motion->pictures++;
+        motion->divide = view->divide;
+    }
+    if (view->headlight && view->divide == 1)
+        (void)snprintf(
+            viewer->note, sizeof viewer->note,
+            "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
+            viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
+            1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
+    if (view->headlight)
+        return;
+    (void)snprintf(viewer->note, sizeof viewer->note, "%.40s: the integrator after %.0f ms, at 1/%u",
+                   viewer->request.file, 1000 * (now - motion->last), view->divide);
+    motion->began = 0;
+}
+
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds) {
+    uint32_t divide = viewer->pass.divide;
+    if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
+        return;
+    double needed = fmin(divide * sqrt((now - viewer->pass.began) / seconds), 1.5 * divide);
+    if (needed > divide)
+        divide = needed < DIVIDE_LIMIT ? (uint32_t)ceil(needed) : DIVIDE_LIMIT;
+    else if (ceil(margin * needed) < divide)
+        divide = (uint32_t)fmax(1, ceil(margin * needed));
+    viewer->pass.divide = divide;
+}
+
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
-    bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
+    bool last = viewer->window.mode.previews && viewer->pass.view.headlight && viewer->pass.view.divide == 1;
+    bool few = (viewer->pass.view.plain && !last) || viewer->pass.view.samples > 0;
     viewer->pass.result = report->stopped ? RESULT_STOPPED : few ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
@@ -252,10 +305,9 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         return;
     }
     viewer_draw_tiles(viewer);
-    /* Passes that take no time do not help to choose divide. */
-    double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
-    if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
-        viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    note_motion(viewer, now);
+    if (known)
+        viewer_fit_resolution(viewer, now, pass_goal);
 }
 
 void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
@@ -513,8 +565,8 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;
-    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->pass.view.own &&
-        !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
+    if (viewer->pass.result == RESULT_COMPLETE && !viewer->pass.view.plain && viewer->pass.view.width == 0 &&
+        viewer->pass.view.own && !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
         viewer->written = true;
         if (viewer->request.settings.overlay != OVERLAY_NONE)
             overlay_lay(&viewer->pass.film, viewer->overlay.lines);

@@ -84,6 +84,12 @@ struct viewer_pass {
     double halted_at; /* 0: the time of the stop was reported */
 };
 
+/* A movement of the camera, for the log. */
+struct viewer_motion {
+    double began, last, first_shown; /* the first and the last change of the view, and the first picture after them */
+    uint32_t pictures, divide;       /* shown while it moved, the last one with this resolution */
+};
+
 /* Rows of the tree that the window wants; later ones are dropped, and wanted again when they come into view. */
 enum { NODE_QUERIES = 64 };
 struct viewer_nodes {
@@ -190,6 +196,12 @@ struct viewer_setting {
     double number;
 };
 
+/* What the view shows when the camera stands: the picture, or the preview of all pixels. */
+struct view_mode {
+    bool previews;
+    enum headlight_shows shows;
+};
+
 /* The window and its state: what stays from one picture to the next. */
 struct viewer_window {
     const struct window_driver *driver;
@@ -198,6 +210,7 @@ struct viewer_window {
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
+    struct view_mode mode;
     bool changed;                  /* a file has changed that an older picture was made of */
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
@@ -231,6 +244,7 @@ struct viewer {
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
     struct viewer_pass pass;
+    struct viewer_motion motion; /* began 0: reported */
     struct viewer_edit edit;
     struct viewer_nodes nodes;
     struct node_rows rows; /* the last ones that have come */

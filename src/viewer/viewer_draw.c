@@ -81,38 +81,50 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
-/* Bytes between those of four pixels of a row of 3 bytes each: part of 256. */
-static void blend_row(uint8_t *out, const uint8_t *above, const uint8_t *below, uint32_t down, uint32_t width) {
-    for (size_t i = 0; i < (size_t)3 * width; i++)
-        out[i] = (uint8_t)((above[i] * (256 - down) + below[i] * down) >> 8);
+/* The pixels of the film on both sides of the middle of a pixel, and how far it is to the second one, of 256. */
+struct between {
+    uint32_t first, second, far;
+};
+
+static struct between between_pixels(uint32_t at, uint32_t divide, uint32_t count) {
+    uint32_t middle = (256 * at + 128) / divide, first = middle < 128 ? 0 : (middle - 128) >> 8;
+    return (struct between){first, first + 1 < count ? first + 1 : first, middle < 128 ? 0 : (middle - 128) & 255};
+}
+
+static void blend(uint8_t *restrict out, const uint8_t *a, const uint8_t *b, uint32_t far, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        out[i] = (uint8_t)((a[i] * (256 - far) + b[i] * far) >> 8);
+}
+
+/* A row of the film as bytes, enlarged to the width of the picture. small: room for the former. */
+static void enlarge_row(const struct viewer *viewer, const struct tone *tone, uint32_t y, uint8_t *small,
+                        uint8_t *out) {
+    const struct film *film = &viewer->pass.film;
+    for (size_t i = 0; i < film->width; i++)
+        for (size_t c = 0; c < 3; c++)
+            small[3 * i + c] = png_write_byte(tone_apply(tone, (double)film->pixels[y * film->width + i].rgb[c]));
+    for (uint32_t x = 0; x < viewer->request.width; x++) {
+        struct between u = between_pixels(x, viewer->pass.view.divide, film->width);
+        blend(out + (size_t)3 * x, small + (size_t)3 * u.first, small + (size_t)3 * u.second, u.far, 3);
+    }
 }
 
 /* A pass of few samples, enlarged smoothly: what it shows is replaced soon. */
 static bool draw_smooth(struct viewer *viewer) {
     const struct film *film = &viewer->pass.film;
-    uint32_t width = film->width, divide = viewer->pass.view.divide;
+    size_t row = (size_t)3 * viewer->request.width;
     struct tone tone = picture_tone(&viewer->request);
-    uint8_t *small = mem_alloc_zero((size_t)3 * width, (size_t)film->height + 1), *row = small;
-    if (!small)
+    uint8_t *rows = mem_alloc_zero(3, row); /* two rows of the film, enlarged */
+    uint32_t done = 0;                      /* rows of the film */
+    if (!rows)
         return false;
-    for (size_t i = 0; i < (size_t)width * film->height; i++)
-        for (size_t c = 0; c < 3; c++)
-            small[3 * i + c] = png_write_byte(tone_apply(&tone, (double)film->pixels[i].rgb[c]));
-    row += (size_t)3 * width * film->height;
-    /* A row between two of the film, then pixels between two of that; positions in parts of 256, of pixels' middles. */
     for (uint32_t y = 0; y < viewer->request.height; y++) {
-        uint8_t *out = viewer->window.image + (size_t)3 * viewer->request.width * y;
-        uint32_t v = (256 * y + 128) / divide, v0 = v < 128 ? 0 : (v - 128) >> 8,
-                 v1 = v0 + 1 < film->height ? v0 + 1 : v0;
-        blend_row(row, small + (size_t)3 * width * v0, small + (size_t)3 * width * v1, v < 128 ? 0 : (v - 128) & 255,
-                  width);
-        for (uint32_t x = 0; x < viewer->request.width; x++) {
-            uint32_t u = (256 * x + 128) / divide, u0 = u < 128 ? 0 : (u - 128) >> 8, u1 = u0 + 1 < width ? u0 + 1 : u0;
-            blend_row(out + (size_t)3 * x, row + (size_t)3 * u0, row + (size_t)3 * u1, u < 128 ? 0 : (u - 128) & 255,
-                      1);
-        }
+        struct between v = between_pixels(y, viewer->pass.view.divide, film->height);
+        for (; done <= v.second; done++)
+            enlarge_row(viewer, &tone, done, rows + 2 * row, rows + done % 2 * row);
+        blend(viewer->window.image + row * y, rows + v.first % 2 * row, rows + v.second % 2 * row, v.far, row);
     }
-    mem_free(small);
+    mem_free(rows);
     viewer->window.dirty = true;
     return true;
 }

@@ -13,7 +13,7 @@
 
 static void show_view(struct viewer *viewer) {
     const struct pose *pose = &viewer->fly_camera.pose, *home = &viewer->fly_camera.home;
-    viewer->pass.outdated = true;
+    viewer_outdate(viewer);
     viewer->camera_moved = memcmp(pose, home, sizeof *pose) != 0;
     viewer_halt(viewer, false);
 }
@@ -158,8 +158,10 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_SAVE_CHANGES:
         viewer->action = (enum viewer_action)(VIEWER_SAVE_IMAGE + (action - DO_SAVE_PICTURE));
         return;
-    case DO_NEXT_PICTURE:
+    case DO_NEXT_PICTURE: /* which comes after this one was written */
         viewer->next = true;
+        if (viewer->window.mode.previews)
+            viewer_choose_mode(viewer, (struct view_mode){0});
         return;
     case DO_QUIT:
         viewer->quit = true;
@@ -241,6 +243,15 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         return;
     case DO_FLY:
         fly(viewer, !viewer->input.flies);
+        return;
+    case DO_SHOW_PICTURE:
+        viewer_choose_mode(viewer, (struct view_mode){0});
+        return;
+    case DO_SHOW_PREVIEW:
+    case DO_SHOW_NORMALS:
+    case DO_SHOW_DEPTH:
+    case DO_SHOW_COST:
+        viewer_choose_mode(viewer, (struct view_mode){true, (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
         return;
     case DO_BOXES:
     case DO_GRID:

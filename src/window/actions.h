@@ -77,6 +77,16 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "The view from which you returned")                                                                              \
     X(DO_FLY, "fly", "Fl_y", MENU_VIEW, NEEDS_PICTURE, "grave", "grave",                                               \
       "W, A, S, D, E and Q fly, a held button looks about; Shift is fast, Ctrl slow; Esc ends it")                     \
+    X(DO_SHOW_PICTURE, "show-picture", "Show the _Picture", MENU_VIEW, NEEDS_PICTURE, "<Alt>1", "<Alt>1",              \
+      "Show the picture of the integrator")                                                                            \
+    X(DO_SHOW_PREVIEW, "show-preview", "Show the Previe_w", MENU_VIEW, NEEDS_PICTURE, "<Alt>2", "<Alt>2",              \
+      "Show colours under a light at the eye; no picture is rendered")                                                 \
+    X(DO_SHOW_NORMALS, "show-normals", "Show _Normals", MENU_VIEW, NEEDS_PICTURE, "<Alt>3", "<Alt>3",                  \
+      "Show the directions of surfaces as colours")                                                                    \
+    X(DO_SHOW_DEPTH, "show-depth", "Show the _Depth", MENU_VIEW, NEEDS_PICTURE, "<Alt>4", "<Alt>4",                    \
+      "Show how near surfaces are")                                                                                    \
+    X(DO_SHOW_COST, "show-cost", "Show the _Cost", MENU_VIEW, NEEDS_PICTURE, "<Alt>5", "<Alt>5",                       \
+      "Show the work for each ray, from blue to red")                                                                  \
     X(DO_BOXES, "boxes", "_Boxes of the Objects", MENU_VIEW, NEEDS_PICTURE, "b", "b", "Draw the box of every object")  \
     X(DO_GRID, "grid", "_Grid of the Accelerator", MENU_VIEW, NEEDS_PICTURE, "n", "g",                                 \
       "Draw the cells of the acceleration structure")                                                                  \

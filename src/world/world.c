@@ -417,6 +417,15 @@ static bool is_inside_out(const struct geometry *geometry) {
     return geometry->csg && geometry->csg->inside_out;
 }
 
+struct box world_finite_bounds(const struct world *world) {
+    struct box bounds = box_empty();
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
+            bounds = box_join(bounds, world->boxes[i]);
+    }
+    return bounds;
+}
+
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < world->primitive_count; i++) {

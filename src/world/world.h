@@ -218,6 +218,8 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
     return scratch->shadow_cache[scratch->light];
 }
+/* The box around all finite primitives. */
+struct box world_finite_bounds(const struct world *world);
 /* The closed primitives whose box meets `region`: all that can contain a point of it, in flattening order. `out` (or
  * NULL) has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);

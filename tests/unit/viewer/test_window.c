@@ -1,6 +1,6 @@
 /* The viewer with a window that the test plays: camera flights by quaternions, the choice of the next pass, edits. */
 #include "base/mem.h"
-#include "render/render.h"
+#include "render/integrator.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "viewer/viewer_internal.h"
@@ -213,11 +213,13 @@ static void build(struct table *t) {
     CHECK(t->viewer.pass.view.divide > 4 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
 }
 
-static void begin(struct table *t) {
+static void begin_with(struct table *t, struct film_record record, int samples) {
     struct error error;
     size_t bytes;
     *t = (struct table){.now = 100,
-                        .request = {.full_width = 100,
+                        .request = {.record = record,
+                                    .settings.path_samples = samples,
+                                    .full_width = 100,
                                     .full_height = 70,
                                     .width = 100,
                                     .height = 70,
@@ -230,12 +232,16 @@ static void begin(struct table *t) {
                                        .descriptor = fake_descriptor,
                                        .show = fake_show,
                                        .nodes = fake_nodes};
-    CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(100, 70, record, &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(
         viewer_begin(&t->viewer, &t->driver, &(struct viewer_picture){&t->request, t->block, "x.png"}, t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
     build(t);
+}
+
+static void begin(struct table *t) {
+    begin_with(t, stage_record(INTEGRATOR_WHITTED), 0);
 }
 
 /* The window of a script that has not rendered yet, and then a picture of its size. */
@@ -405,6 +411,65 @@ TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) 
         render_tile(&t, tile, 0.6f, FILM_TILE_DONE);
     finish_pass(&t, 0.01, false);
     CHECK_EQ_INT(pixels_with(&t, 153), 100 * 70);
+    end(&t);
+}
+
+static const uint8_t *middle_of(const struct table *t) {
+    return t->viewer.window.image + (size_t)3 * (35 * 100 + 50);
+}
+
+/* A scene without `denoise`: its film has features, and passes whose tiles are not denoised are not shown. */
+TEST(window_shows_samples_of_paths_only_denoised_and_doubles_them) {
+    static const struct {
+        uint32_t divide, samples, kept;
+    } want[] = {{3, 4, 0}, {2, 8, 0}, {1, 16, 0}, {1, 32, 16}, {1, 0, 32}};
+    struct table t;
+    const struct settings settings = {.integrator = INTEGRATOR_PATH, .denoise = DENOISER_GRAY};
+    begin_with(&t, render_record(&settings), 64);
+    while (t.viewer.pass.view.plain) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        const struct pass_view *view = &t.viewer.command.view;
+        CHECK_EQ_INT(view->divide, want[i].divide);
+        CHECK_EQ_INT(view->samples, want[i].samples);
+        CHECK_EQ_INT(view->kept, want[i].kept);
+        /* In progress: nothing of it is shown. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 1, FILM_TILE_PASSED + 1);
+        uint8_t before = middle_of(&t)[0];
+        CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+        CHECK_EQ_INT(middle_of(&t)[0], before);
+        /* Denoised: all of it. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 0.2f * (float)(i % 2 + 1), FILM_TILE_DONE);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(middle_of(&t)[0], i % 2 ? 102 : 51);
+        CHECK_EQ_INT(step(&t), want[i].samples ? VIEWER_SEND_COMMAND : VIEWER_WRITE_PICTURE);
+    }
+    end(&t);
+}
+
+TEST(window_that_shows_normals_ends_with_their_preview_and_writes_no_picture) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    do_action(&t.fake, DO_SHOW_NORMALS);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    t.viewer.written = false;
+    while (t.viewer.pass.view.divide > 1) {
+        CHECK(t.viewer.pass.view.headlight && t.viewer.pass.view.shows == HEADLIGHT_NORMALS);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    CHECK(t.viewer.pass.view.headlight);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(viewer_is_idle(&t.viewer));
+    do_action(&t.fake, DO_SHOW_PICTURE);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    go_to_the_end(&t);
     end(&t);
 }
 
