@@ -805,6 +805,26 @@ static void show_state(struct gui *gui) {
     gui_picture_draw(gui);
 }
 
+/* Until then no order to show comes, so that a viewer that has much to show leaves time for drawing. */
+static const guint show_pause = 15; /* milliseconds */
+
+static gboolean allow_show(gpointer data);
+
+static void show_now(struct gui *gui) {
+    gui->number = atomic_load(&((struct window_shared *)gui->memory.block)->number);
+    show_state(gui);
+    (void)g_timeout_add(show_pause, allow_show, gui);
+}
+
+static gboolean allow_show(gpointer data) {
+    struct gui *gui = data;
+    struct window_shared *shared = gui->memory.block;
+    atomic_store(&shared->announced, 0);
+    if (gui->window && atomic_load(&shared->number) != gui->number && atomic_exchange(&shared->announced, 1) == 0)
+        show_now(gui);
+    return G_SOURCE_REMOVE;
+}
+
 static void obey(struct gui *gui, const struct window_order *order, int descriptor) {
     struct error ignored;
     switch (order->kind) {
@@ -816,10 +836,8 @@ static void obey(struct gui *gui, const struct window_order *order, int descript
         gui_picture_attach(gui, order, descriptor);
         return;
     case ORDER_SHOW:
-        if (gui->memory.block) {
-            atomic_store(&((struct window_shared *)gui->memory.block)->announced, 0);
-            show_state(gui);
-        }
+        if (gui->memory.block)
+            show_now(gui);
         return;
     case ORDER_NODES:
         gui_tree_receive(gui, order);
@@ -849,8 +867,7 @@ static void activate(GtkApplication *application, gpointer data) {
     (void)application;
     make_window(gui);
     gtk_window_present(GTK_WINDOW(gui->window));
-    /* After what is to be drawn, so that a viewer that has much to show does not keep it from the screen. */
-    (void)g_unix_fd_add_full(G_PRIORITY_DEFAULT_IDLE, gui->channel.descriptor, G_IO_IN | G_IO_HUP, receive, gui, NULL);
+    (void)g_unix_fd_add(gui->channel.descriptor, G_IO_IN | G_IO_HUP, receive, gui);
 }
 
 /* GL by software is slower than Cairo. */
