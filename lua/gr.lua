@@ -1267,7 +1267,7 @@ function gr.glyphs(font, text) end
 ---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
 ---@field geometry_normal? string|gr.texture|function geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
 ---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
----@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not implemented.
+---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default that of the base): The same for the coat.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
 ---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.

@@ -21,9 +21,9 @@ cd "$work" || exit 1
 openbox >/dev/null 2>&1 &
 manager=$!
 
-titled() { # waits until the title holds the words
+titled() { # waits until the title holds the words, and still does a moment later
     for i in $(seq 2400); do
-        xdotool search --name "$1" >/dev/null 2>&1 && return 0
+        xdotool search --name "$1" >/dev/null 2>&1 && sleep 0.2 && xdotool search --name "$1" >/dev/null 2>&1 && return 0
         sleep 0.05
     done
     echo "the title never said $1" >&2
@@ -34,24 +34,26 @@ take() { # take NAME [SECONDS]: the screen where the window is
     import -window root "$work/$1.png"
     convert "$work/$1.png" -trim +repage -strip +dither -colors 200 "$out/$1.png"
 }
-open() { # open OPTIONS...: the window in the upper left corner
+open() { # open TITLE OPTIONS...: the window in the upper left corner
+    title=$1
+    shift
     "$gray" -gui -q --progress=none "$@" >/dev/null 2>said.txt &
     pid=$!
-    titled "${title:-ready}"
-    xdotool search --onlyvisible --name "${title:-ready}" windowmove 0 0 sleep 0.5
+    titled "$title"
+    xdotool search --onlyvisible --name "$title" windowmove 0 0 sleep 0.5
 }
 leave() {
     kill $pid
     wait $pid 2>/dev/null
 }
 
-title=gray open
+open gray
 take start
 leave
-open 12demo.lua
+open 'png - ready' 12demo.lua
 take ready
 xdotool mousemove 560 420 click 1 sleep 1
-titled ready
+titled 'png - ready'
 take picked
 xdotool key p sleep 1
 take story
@@ -64,19 +66,32 @@ sleep 2
 take error
 cp keep.lua 12demo.lua
 leave
-GTK_THEME=Adwaita:dark open 12demo.lua
+export GTK_THEME=Adwaita:dark
+open 'png - ready' 12demo.lua
 xdotool mousemove 560 420 click 1 sleep 1
-titled ready
+titled 'png - ready'
 take dark
 leave
-GDK_SCALE=2 open 12demo.lua
+unset GTK_THEME
+export GDK_SCALE=2
+open 'png - ready' 12demo.lua
 xdotool mousemove 1120 840 click 1 sleep 1
-titled ready
+titled 'png - ready'
 take scale2
 leave
-title=playing open --size 640x480 "$demos/animation/waves.lua"
+unset GDK_SCALE
+if command -v xprop >/dev/null; then # letters of another size
+    xprop -root -format RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 144'
+    open 'png - ready' 12demo.lua
+    xdotool mousemove 560 420 click 1 sleep 1
+    titled 'png - ready'
+    take letters
+    leave
+    xprop -root -remove RESOURCE_MANAGER
+fi
+open ' - playing' --size 640x480 "$demos/animation/waves.lua"
 xdotool key space sleep 1
-titled ready
+titled 'png - ready'
 take playing
 leave
 kill $manager

@@ -18,7 +18,7 @@
 #include "render/overlay.h"
 #include "render/scene_check.h"
 #include "session/text.h"
-#include "viewer/preview_session.h"
+#include "preview/preview_session.h"
 #include "world/world_cache.h"
 
 #include <stdio.h>

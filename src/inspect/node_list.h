@@ -9,6 +9,9 @@
 
 enum { NODE_LEVELS = 32, NODE_ROWS = 32, NODE_NAME = 64, NODE_SEARCH = 32 };
 
+/* The first rows of a tree: the root, and lists of the lights, of the camera and of the materials. */
+enum node_section { SECTION_NODES, SECTION_LIGHTS, SECTION_CAMERA, SECTION_MATERIALS, NODE_SECTIONS };
+
 /* A node by the numbers of children from the root on, which is child 0 of what has depth 0; or, with depth 0, by its
  * serial, if that is not 0; and its first child that is wanted. Operands of solids are children after the others. With
  * a text the rows are the nodes whose name or kind has it, in any case. */

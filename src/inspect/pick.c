@@ -321,6 +321,29 @@ bool pick_node(const struct render_job *job, const struct node *root, const stru
     return true;
 }
 
+void material_rows(const struct world *world, const struct node_query *query, struct node_rows *out) {
+    if (query->depth == 0)
+        out->rows[SECTION_MATERIALS] =
+            (struct node_row){.children = world->material_count, .name = "Materials", .kind = " "};
+    if (query->depth != 1 || query->path[0] != SECTION_MATERIALS)
+        return;
+    for (uint32_t i = query->first; i < world->material_count && out->count < NODE_ROWS; i++) {
+        struct node_row *row = &out->rows[out->count++];
+        struct picked picked = {0};
+        describe_material(world->authored.materials[i], &picked);
+        (void)snprintf(row->name, sizeof row->name, "%u", picked.material_serial);
+        (void)snprintf(row->kind, sizeof row->kind, "%.15s", picked.material);
+    }
+}
+
+void pick_material(const struct world *world, const struct node_query *query, struct picked *out) {
+    *out = (struct picked){.path = *query};
+    if (query->depth != 2 || query->path[1] >= world->material_count)
+        return;
+    out->hit = true;
+    describe_material(world->authored.materials[query->path[1]], out);
+}
+
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error) {
     struct settings settings = job->settings;

@@ -79,6 +79,7 @@ struct colour bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 
                                         radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
             continue;
         case LOBE_MIRROR:
+        case LOBE_COAT:
         case LOBE_REFRACTION:
         case LOBE_GGX_REFLECTION:
         case LOBE_GGX_TRANSMISSION:
@@ -148,8 +149,9 @@ static double blinn_pdf(const struct lobe *lobe, struct vec3 normal, struct vec3
 /* --- smooth boundaries --- */
 
 /* A reflection about an interpolated normal may point into the surface: then the geometric normal is used. */
-static struct vec3 mirror_direction(const struct bsdf *bsdf, struct vec3 wo) {
-    struct vec3 direction = dielectric_mirror(bsdf->side, wo);
+static struct vec3 mirror_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo) {
+    struct vec3 side = lobe->kind == LOBE_COAT ? bsdf->facets[lobe->facets].distribution.normal : bsdf->side;
+    struct vec3 direction = dielectric_mirror(side, wo);
     return vec3_dot(direction, bsdf->geometric_side) > 0 ? direction : dielectric_mirror(bsdf->geometric_side, wo);
 }
 
@@ -241,6 +243,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_BLINN:
         return n_l > 0 ? blinn_pdf(lobe, bsdf->lit, wo, wi) : 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
     case LOBE_SUBSURFACE:
         return 0;
@@ -264,6 +267,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
     case LOBE_BLINN:
         return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
     case LOBE_SUBSURFACE:
         return 0;
@@ -318,7 +322,7 @@ static bool traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, s
     if (out->transmits)
         (void)bsdf_refract(bsdf, wo, &out->direction);
     else
-        out->direction = mirror_direction(bsdf, wo);
+        out->direction = mirror_direction(bsdf, lobe, wo);
     return true;
 }
 
@@ -342,6 +346,7 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
         out->direction = dielectric_mirror(facet, wo);
         return vec3_dot(wo, facet) > 0 && classic_cosine(bsdf, out->direction) > 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
         return traced_direction(bsdf, lobe, wo, bsdf->side, out);
     case LOBE_GGX_REFLECTION:

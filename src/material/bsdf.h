@@ -39,6 +39,7 @@ enum bsdf_flags {
     X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, r.v)^exponent / (pi n.l) */         \
     X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, n.h)^exponent / (pi n.l) */         \
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
+    X(LOBE_COAT, "coat", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA) /* a mirror with the normal of its facets */        \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
     X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */    \

@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+/* Too strong a dispersion has no index for long waves. */
+static const double smallest = 0.01;
+
 /* The lines d (helium), F and C (hydrogen) of Abbe's number (n_d - 1) / (n_F - n_C). */
 static const double line_d = 0.5875618, line_f = 0.4861327, line_c = 0.6562725;
 
@@ -42,5 +45,6 @@ static double change(uint32_t glass, double wavelength) {
 double dispersion_ior(struct dispersion dispersion, double ior, double wavelength) {
     if (!(dispersion.amount > 0 && wavelength > 0))
         return ior;
-    return 1 + (ior - 1) * (1 + dispersion.amount * change(dispersion.glass, wavelength));
+    double at = 1 + (ior - 1) * (1 + dispersion.amount * change(dispersion.glass, wavelength));
+    return at > smallest ? at : smallest;
 }

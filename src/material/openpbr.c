@@ -19,6 +19,7 @@
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
+#include "material/bump.h"
 #include "material/material_eval.h"
 #include "material/microfacet_internal.h"
 #include "material/rough_lobes_internal.h"
@@ -170,10 +171,12 @@ struct layering {
     struct colour turned; /* from inside: the fraction of light leaving the base that the layers turn back */
     struct colour mirror; /* of all smooth layers together */
     struct vec3 view, dpdu;
-    double cosine;  /* of the view to the normal */
-    double outside; /* refractive index of the surrounding medium */
-    bool inside;    /* of the solid, if it transmits light */
-    int facets;     /* used of bsdf->facets */
+    struct vec3 coat_side; /* the normal of the coat */
+    bool coat_turns;       /* it is not that of the base */
+    double cosine;         /* of the view to the normal */
+    double outside;        /* refractive index of the surrounding medium */
+    bool inside;           /* of the solid, if it transmits light */
+    int facets;            /* used of bsdf->facets */
     /* The effect of the coat on light from below: the fraction of the base under it, its reflectance for the view
      * direction, and its mean reflectance from inside. */
     double coated, coat_sees, coat_inside;
@@ -197,10 +200,15 @@ static void add_matt(struct layering *l, enum lobe_kind kind, struct colour weig
         l->bsdf->lobes[count].exponent = roughness;
 }
 
-static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, double roughness, double anisotropy) {
+static struct bsdf_facets *add_facets_on(struct layering *l, struct vec3 side, struct vec3 tangent, double roughness,
+                                         double anisotropy) {
     struct bsdf_facets *facets = &l->bsdf->facets[l->facets++];
-    bsdf_facets_shape(facets, l->bsdf->side, vec3_max_abs(tangent) == 0 ? l->dpdu : tangent, roughness, anisotropy);
+    bsdf_facets_shape(facets, side, vec3_max_abs(tangent) == 0 ? l->dpdu : tangent, roughness, anisotropy);
     return facets;
+}
+
+static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, double roughness, double anisotropy) {
+    return add_facets_on(l, l->bsdf->side, tangent, roughness, anisotropy);
 }
 
 static void add_fuzz(struct layering *l) {
@@ -222,20 +230,38 @@ static struct colour through_coat(const struct openpbr *v, struct colour colour,
     return colour_add(colour_scale(transmits, v->coat_weight), colour_all(1 - v->coat_weight));
 }
 
+/* The normal of the coat on the side of the view; that of the base where it has none of its own. */
+static void set_coat_side(struct layering *l, const struct surface_tables *tables,
+                          const struct surface_material *material, const struct hit *hit) {
+    struct vec3 normal = hit->normal;
+    l->coat_side = l->bsdf->side;
+    l->coat_turns = material->bump_count > 0 && bump_turn_coat(tables, material, hit, &normal);
+    if (!l->coat_turns)
+        return;
+    l->coat_side = hit->front ? normal : vec3_negate(normal);
+    if (!(vec3_dot(l->coat_side, l->view) > 0))
+        l->coat_side = l->bsdf->geometric_side;
+}
+
 static void add_coat(struct layering *l) {
     const struct openpbr *v = l->values;
     double eta = l->outside / v->coat_ior;
     l->coated = 0;
     if (!(v->coat_weight > 0) || l->inside)
         return;
-    double reflected = dielectric_fresnel(l->cosine, eta);
+    double cosine = l->coat_turns ? fmin(vec3_dot(l->coat_side, l->view), 1) : l->cosine;
+    double reflected = dielectric_fresnel(cosine, eta);
     l->coated = v->coat_weight;
     l->coat_sees = reflected;
     l->coat_inside = dielectric_fresnel_average(1 / eta);
-    if (v->coat_roughness < smooth_roughness) {
+    if (v->coat_roughness < smooth_roughness && l->coat_turns) {
+        (void)add_facets_on(l, l->coat_side, v->coat_tangent, smooth_roughness, 0);
+        add(l, LOBE_COAT, colour_scale(l->left, v->coat_weight * reflected), 1);
+    } else if (v->coat_roughness < smooth_roughness) {
         l->mirror = colour_add_scaled(l->mirror, l->left, v->coat_weight * reflected);
     } else if (eta != 1) {
-        struct bsdf_facets *facets = add_facets(l, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
+        struct bsdf_facets *facets =
+            add_facets_on(l, l->coat_side, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
         bsdf_facets_boundary(facets, eta);
         bsdf_facets_see(facets, l->view);
         reflected = facets->reflected;
@@ -555,6 +581,7 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     if (is_solid)
         bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
+    set_coat_side(&l, tables, material, hit);
     add_coat(&l);
     set_film(&l, (double)media->wavelength);
     bsdf->emission = colour_mul(inputs->emission, l.left);

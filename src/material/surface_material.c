@@ -64,6 +64,7 @@ static bool add_bump(struct surface_builder *builder, const struct bump *bump, u
                                  .height = bump->height,
                                  .relative = bump->relative,
                                  .from_above = bump->from_above,
+                                 .of_coat = bump->of_coat,
                                  .texture = TEXTURE_NONE};
     builder->authored_bumps[at] = bump;
     if (!texture_builder_add(&builder->textures, texture, bump->kind == MATERIAL_BUMP, &out->program))

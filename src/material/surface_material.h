@@ -12,7 +12,7 @@
 struct surface_bump {
     enum material_kind kind;
     double height;
-    bool relative, from_above;
+    bool relative, from_above, of_coat;
     uint32_t program; /* a number, or a colour of MATERIAL_NORMAL */
     uint32_t texture; /* of one image alone, or one recorded function: its index; else TEXTURE_NONE */
 };

@@ -18,6 +18,8 @@
 /* The longest difference of paths, in micrometres, at which white light interferes: what the observer sees of its
  * waves is below 1e-3 there, and the nodes still have several phases per period. Harmonics of more are left out. */
 static const double longest_path = 9;
+/* The phase of a single wavelength is unknown there. */
+static const double many_waves = 1e6;
 
 /* The amplitudes of the sides of the film for one polarisation. */
 struct amplitudes {
@@ -74,12 +76,12 @@ static double unit(double x) {
 
 /* The reflectance that the observer sees. */
 static struct colour seen(const struct thin_film *film, double path, struct amplitudes s, struct amplitudes p) {
+    if (!(path < many_waves) || (path > longest_path && !(film->wavelength > 0)))
+        return colour_all(unit(0.5 * (airy_of_harmonics(s, 0, 0) + airy_of_harmonics(p, 0, 0))));
     if (film->wavelength > 0) {
         double cosine = el_cos(2 * PI * path / film->wavelength);
-        return colour_all(0.5 * (airy(s, cosine) + airy(p, cosine)));
+        return colour_all(unit(0.5 * (airy(s, cosine) + airy(p, cosine))));
     }
-    if (path > longest_path)
-        return colour_all(0.5 * (airy_of_harmonics(s, 0, 0) + airy_of_harmonics(p, 0, 0)));
     int harmonics = path > 1 ? (int)(longest_path / path) : 0; /* 0: all */
     /* cos((i + 1) x) = 2 cos x cos(i x) - cos((i - 1) x) */
     const double first = 2 * PI * path * spectrum_node(0), step = 2 * PI * path * (spectrum_node(1) - spectrum_node(0));

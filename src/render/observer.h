@@ -100,6 +100,7 @@ struct observation {
             enum path_end end;
             double distance; /* of PATH_SEES_LIGHT and in_medium, world units */
             bool in_medium;  /* scattered by the medium of the ray, before its hit */
+            double chance;   /* of that */
             /* Of the emission of the hit or the sky and of lights, weighted by multiple importance sampling; direct:
              * photons and the light of the sampled light together. */
             struct colour emission, photons, direct;

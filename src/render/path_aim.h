@@ -13,7 +13,8 @@
  * least error in equal time. */
 enum { AIMED_DEPTHS = 3 };
 static inline bool path_aims(const struct path_tracer *tracer, const struct path *path) {
-    return tracer->lamp_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS;
+    return tracer->lamp_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS &&
+           !path_is_sealed(tracer, &path->media);
 }
 
 /* The light of a lamp that media scatter on the ray, for a path of weight 1; `path` has the weight before the ray. */

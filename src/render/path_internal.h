@@ -43,6 +43,11 @@ struct path_tracer {
     struct world_lights lights; /* immutable while the render runs */
 };
 
+/* Where no lamp reaches. */
+static inline bool path_is_sealed(const struct path_tracer *tracer, const struct medium_stack *media) {
+    return tracer->sealed && media->count > 0 && tracer->sealed[media->solids[media->count - 1]];
+}
+
 /* See render/integrator_internal.h. `tracer` is zero-initialised. */
 struct film_record path_tracer_record(const struct settings *settings);
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,

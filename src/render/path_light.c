@@ -111,7 +111,7 @@ struct colour path_light_arriving(const struct path_tracer *tracer, struct integ
 
 /* --- kinds of scattering --- */
 
-enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSION };
+enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSION, SCATTERING_VOLUME };
 
 static enum scattering scattering_of(unsigned lobe_flags) {
     return lobe_flags & BSDF_TRANSMITS ? SCATTERING_TRANSMISSION
@@ -124,11 +124,16 @@ void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]) {
         out[i] = colour_all((int)scattering_of(flags) == i ? 1 : 0);
 }
 
+void path_share_volume(struct colour out[PATH_SCATTERINGS]) {
+    for (int i = 0; i < PATH_SCATTERINGS; i++)
+        out[i] = colour_all(i == SCATTERING_VOLUME ? 1 : 0);
+}
+
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi,
                  struct colour out[PATH_SCATTERINGS]) {
     const struct bsdf *bsdf = vertex->at.bsdf;
     if (!bsdf) {
-        path_share_all(BSDF_DIFFUSE, out);
+        path_share_volume(out);
         return;
     }
     const uint32_t of_kind[PATH_SCATTERINGS] = {[SCATTERING_DIFFUSE] = lobes & bsdf_select(bsdf, BSDF_FOR_DIFFUSE),

@@ -64,6 +64,8 @@ void path_direct_shares(const struct path_vertex *vertex, const struct path_choi
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct colour out[PATH_SCATTERINGS]);
 /* The fractions of a lobe with these flags: all of its light belongs to one kind. */
 void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]);
+/* Those of a medium. */
+void path_share_volume(struct colour out[PATH_SCATTERINGS]);
 /* The light along scattered rays, weighted against path_direct: that of an emissive surface (`emission` at the hit);
  * that of the area lights that the ray crosses before t_max; that of skies if it hits nothing. */
 struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,

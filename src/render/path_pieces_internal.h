@@ -138,7 +138,7 @@ enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
 /* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_aim.h. */
 struct path_stretch {
-    double distance;
+    double distance, end; /* the end of the ray */
     const struct medium *medium;
     struct path_tracked tracked;
 };
@@ -158,7 +158,7 @@ static __attribute__((noinline)) void aim(const struct path_tracer *tracer, stru
     if (!parts || colour_is_black(light))
         return;
     struct colour scattered[PATH_SCATTERINGS];
-    path_share_all(BSDF_DIFFUSE, scattered);
+    path_share_volume(scattered);
     add_to_groups(parts, path->depth + 1, path->depth == 0 ? scattered : parts->shares, light);
 }
 
@@ -231,6 +231,19 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
         note_tracked(path, &mix, weight, end, out);
 }
 
+/* Passes what is around the ray, up to out->distance. */
+static void pass_medium(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                        enum medium_ray kind, struct path_stretch *out) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    out->end = out->distance;
+    out->medium = NULL;
+    out->tracked.density = 0;
+    if (medium->mixed)
+        pass_mix(tracer, state, path, kind, out);
+    else
+        pass_single(tracer, state, path, medium, kind, out);
+}
+
 /* Adds everything between the origin of the ray and its end: area lights, media. out: set unless it ends at
  * its hit without a medium. */
 static enum travelled travel(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -248,13 +261,7 @@ static enum travelled travel(const struct path_tracer *tracer, struct integrator
     if (!seen && !path_is_affected(tracer, kind, &path->ray))
         return ENDS_AT_HIT;
     out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    const struct medium *medium = medium_stack_current(path->ray.media);
-    out->medium = NULL;
-    out->tracked.density = 0;
-    if (medium->mixed)
-        pass_mix(tracer, state, path, kind, out);
-    else
-        pass_single(tracer, state, path, medium, kind, out);
+    pass_medium(tracer, state, path, kind, out);
     if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
@@ -449,6 +456,18 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
 
+/* The way to the hit in a sealed solid, where nothing but the medium is, before the hit is described: most rays do not
+ * come that far. False: it is another way, and nothing is done. */
+static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tracer, struct integrator_state *state,
+                                                    struct path *path, struct path_stretch *out) {
+    if (path->kind == RAY_BELOW || !path_is_sealed(tracer, &path->media) ||
+        touching_has(&state->job->world->touching, path->met.primitive))
+        return false;
+    out->distance = path->met.crossing.t * vec3_length(path->ray.direction);
+    pass_medium(tracer, state, path, MEDIUM_RAY_SCATTERED, out);
+    return true;
+}
+
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
                                                   struct path *path, const struct path_stretch *end,
@@ -456,22 +475,20 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
-    watch_medium(watch);
+    watch_medium(watch, path, end->end);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
-    const struct medium_stack *media = &path->media;
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
                                        .sight = path->sight,
                                        .thrown = path->thrown,
                                        .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
-                                       .sealed = tracer->sealed && media->count > 0 &&
-                                                 tracer->sealed[media->solids[media->count - 1]]};
+                                       .sealed = path_is_sealed(tracer, &path->media)};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
@@ -610,10 +627,14 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
                   struct path_shadow *shadow, struct path_watch *watch) {
     const struct world *world = state->job->world;
     bool met = path->met.primitive != WORLD_NOTHING;
+    struct path_stretch end;
     struct path_hit at;
     at.joint.joined = JOINED_NOT;
     shadow->part.light = LIGHT_NONE;
     shadow->sent = false;
+    bool travelled = !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
+    if (travelled && end.medium)
+        return meet_medium(tracer, state, path, &end, shadow, watch);
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
@@ -639,8 +660,7 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
 #endif
     /* The way to it, then the surface or the sky there. */
-    struct path_stretch end;
-    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &end);
+    enum travelled to = travelled ? ENDS_AT_HIT : travel(tracer, state, path, met ? &at.hit : NULL, watch, &end);
     if (to == ENDS_AT_LIGHT)
         return false;
     watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? end.distance : 0);

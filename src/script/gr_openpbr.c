@@ -69,8 +69,6 @@ enum {
         name, KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",                                \
             "Mean cosine of that scattering."                                                                          \
     }
-#define LATER(name, kind, otherwise)                                                                                   \
-    { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not implemented." }
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
@@ -144,8 +142,8 @@ static const struct script_parameter openpbr_parameters[] = {
                               "Whether the surface is a wall without thickness: nothing is inside."},
     [GEOMETRY_NORMAL] = {"geometry_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
     [GEOMETRY_TANGENT] = {"geometry_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
-    [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",
-                              "Not implemented."},
+    [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "that of the base",
+                              "The same for the coat."},
     [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
                                "The same for the coat."},
     [OPENPBR_GLASS] = GLASS_FIELD,
@@ -159,21 +157,6 @@ static double number_or(const struct script_value *value, double otherwise) {
 
 static struct colour colour_or(const struct script_value *value, struct colour otherwise) {
     return value->given ? value->colour : otherwise;
-}
-
-/* What the specification has and gray has not. */
-static bool is_there(const struct script_value *args, struct error *error) {
-    static const struct {
-        int parameter;
-        bool colour;
-    } later[] = {{GEOMETRY_COAT_NORMAL, false}};
-    for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
-        const struct script_value *value = &args[later[i].parameter];
-        bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
-        if (value->given && (used || later[i].parameter == GEOMETRY_COAT_NORMAL))
-            return error_set(error, ERROR_SCENE, "%s is not implemented", openpbr_parameters[later[i].parameter].name);
-    }
-    return true;
 }
 
 /* A material whose numbers are those of the specification. */
@@ -281,8 +264,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
 }
 
 /* A picture alone is a normal map. */
-static bool with_normal(struct script_context *context, struct material *m, const struct script_value *value,
-                        struct error *error) {
+static bool with_normal(struct script_context *context, struct material *m, bool of_coat,
+                        const struct script_value *value, struct error *error) {
     if (!value->given)
         return true;
     const struct bump *given = read_bump_values(context, value, error);
@@ -294,6 +277,7 @@ static bool with_normal(struct script_context *context, struct material *m, cons
         bump.height = 1;
         bump.relative = false;
     }
+    bump.of_coat = of_coat;
     return material_add_bump(m, &bump, &context->scene.arena, error);
 }
 
@@ -379,8 +363,7 @@ static bool openpbr(struct script_context *context, const struct script_value *a
     if (args[OPENPBR_GLASS].given && (args[SPECULAR_IOR].given || args[TRANSMISSION_DISPERSION_ABBE].given))
         return error_set(error, ERROR_SCENE, "glass has an index and a dispersion of its own: %s is not needed",
                          args[SPECULAR_IOR].given ? "specular_ior" : "transmission_dispersion_abbe_number");
-    if (!is_there(args, error) ||
-        !tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
+    if (!tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
         !tangent_is_fine(&openpbr_parameters[GEOMETRY_COAT_TANGENT], &args[GEOMETRY_COAT_TANGENT], error))
         return false;
     struct material *m = layered(context, &numbers, error);
@@ -388,7 +371,8 @@ static bool openpbr(struct script_context *context, const struct script_value *a
         return false;
     set_numbers(args, numbers, &m->phong);
     result->pointer = m;
-    return with_textures(context, m, args, error) && with_normal(context, m, &args[GEOMETRY_NORMAL], error);
+    return with_textures(context, m, args, error) && with_normal(context, m, false, &args[GEOMETRY_NORMAL], error) &&
+           with_normal(context, m, true, &args[GEOMETRY_COAT_NORMAL], error);
 }
 
 #define METAL_WORD(name, ...) " " name
@@ -438,7 +422,7 @@ static bool metal(struct script_context *context, const struct script_value *arg
     result->pointer = m;
     return with_texture(context, m, INPUT_ROUGHNESS, true, &args[METAL_ROUGHNESS], error) &&
            with_texture(context, m, INPUT_SPECULAR_ANISOTROPY, true, &args[METAL_ANISOTROPY], error) &&
-           with_normal(context, m, &args[METAL_NORMAL], error);
+           with_normal(context, m, false, &args[METAL_NORMAL], error);
 }
 
 static const struct script_function rows[] = {

@@ -195,7 +195,9 @@ enum { EXPOSURE_MAX = 100, EXPOSURES(LIST_MEMBER) }; /* of 101: until the light 
     X(AOV_SPECULAR_DIRECT, "specular_direct", "RGB")                                                                   \
     X(AOV_SPECULAR_INDIRECT, "specular_indirect", "RGB")                                                               \
     X(AOV_TRANSMISSION_DIRECT, "transmission_direct", "RGB")                                                           \
-    X(AOV_TRANSMISSION_INDIRECT, "transmission_indirect", "RGB")
+    X(AOV_TRANSMISSION_INDIRECT, "transmission_indirect", "RGB")                                                       \
+    X(AOV_VOLUME_DIRECT, "volume_direct", "RGB")                                                                       \
+    X(AOV_VOLUME_INDIRECT, "volume_indirect", "RGB")
 enum aov { AOVS(LIST_MEMBER) };
 enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_ALL ((UINT32_C(1) << AOV_COUNT) - 1)

@@ -9,10 +9,10 @@
 #include "base/file_output.h"
 #include "base/share.h"
 #include "film/film.h"
+#include "preview/preview_messages.h"
+#include "render/fly_camera.h"
+#include "scene/edits.h"
 #include "session/control.h"
-#include "viewer/edits.h"
-#include "viewer/fly_camera.h"
-#include "viewer/preview_messages.h"
 #include "window/window.h"
 
 enum viewer_action {
@@ -40,7 +40,7 @@ struct window_layout {
 };
 
 /* What was clicked on. */
-enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT };
+enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT, SELECTED_MATERIAL };
 struct selection {
     enum selected kind;
     struct picked picked;     /* of a node, as it was when it was picked */
@@ -128,7 +128,7 @@ struct viewer_trace {
     char text[WINDOW_TRACE]; /* empty: none is shown */
 };
 
-/* What is drawn over the picture (viewer_overlay.c): the render process makes lines of pixels, and the outline. */
+/* What is drawn over the picture (viewer_draw.c): the render process makes lines of pixels, and the outline. */
 struct viewer_overlay {
     enum overlay kind;               /* which lines are wanted */
     float (*lines)[4];               /* over the image, where has_lines; owned */
@@ -260,6 +260,7 @@ struct viewer {
     struct viewer_setting setting;  /* for VIEWER_CHANGE_SETTING */
     enum viewer_action action;      /* requested by a key or a button */
     bool next, quit;                /* likewise: the next picture, the end */
+    char save_as[1024];             /* the file for an action that saves; empty: a new name */
 };
 
 /* A picture to be rendered. */

@@ -549,11 +549,16 @@ void viewer_select_up(struct viewer *viewer, bool down) {
 
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     struct selection *selection = &viewer->edit.selection;
-    if (picked->hit)
+    if (picked->hit && picked->path.path[0] == SECTION_NODES)
         viewer->fly_camera.centre = picked->position;
-    if (viewer->edit.probes)
+    if (viewer->edit.probes) {
+        fly_camera_near(&viewer->fly_camera, picked->hit ? picked->distance : HUGE_VAL);
         return;
-    *selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
+    }
+    bool material = picked->path.depth > 0 && picked->path.path[0] == SECTION_MATERIALS;
+    *selection = (struct selection){.kind = !picked->hit ? SELECTED_NOTHING
+                                            : material   ? SELECTED_MATERIAL
+                                                         : SELECTED_NODE,
                                     .picked = *picked,
                                     .applied = transform_identity(),
                                     .x = viewer->edit.click.x,
@@ -571,7 +576,7 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
 
 void viewer_delete_selection(struct viewer *viewer) {
     bool light = viewer->edit.selection.kind == SELECTED_LIGHT;
-    if (viewer->edit.selection.kind == SELECTED_NOTHING)
+    if (viewer->edit.selection.kind != SELECTED_NODE && !light)
         return;
     struct change change = viewer_change(viewer, light ? CHANGE_DARK : CHANGE_GONE, 0);
     make_step(viewer, &change, true);
@@ -583,6 +588,13 @@ void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name) {
     (void)snprintf(change.name, sizeof change.name, "%s", name);
     bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
     make_step(viewer, &change, shown);
+}
+
+void viewer_solo(struct viewer *viewer) {
+    struct change change = viewer_change(viewer, CHANGE_SOLO, 0);
+    bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
+    if (!shown || viewer->edit.selection.kind == SELECTED_NODE)
+        make_step(viewer, &change, shown);
 }
 
 /* The position of new nodes: the last clicked point, or in front of the camera. */

@@ -58,6 +58,7 @@ void viewer_set_numbers(struct viewer *viewer, enum change_kind kind, enum mater
 void viewer_undo(struct viewer *viewer, bool again);
 void viewer_resend_edits(struct viewer *viewer);
 void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name); /* a node, or shows it again */
+void viewer_solo(struct viewer *viewer); /* only the selection is drawn, or everything again */
 void viewer_delete_selection(struct viewer *viewer);
 void viewer_copy_selection(struct viewer *viewer);
 void viewer_add_shape(struct viewer *viewer, enum added_kind kind); /* where the user clicked last */

@@ -2,8 +2,11 @@
 #include "viewer/viewer_internal.h"
 
 #include "light/light_edit.h"
+#include "math/elementary.h"
+#include "session/options_table.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,28 +150,13 @@ uint32_t viewer_needs_met(const struct viewer *viewer) {
     return bits;
 }
 
-/* Looks along a direction. */
-static void face(struct viewer *viewer, double x, double y, double z) {
-    fly_camera_face(&viewer->fly_camera, vec3_make(x, y, z));
-    viewer_change_view(viewer);
-}
-
-static void roll(struct viewer *viewer, double degrees) {
-    fly_camera_roll(&viewer->fly_camera, degrees);
-    viewer_change_view(viewer);
-}
-
 static void do_action(struct viewer *viewer, enum window_action action) {
     struct fly_camera *camera = &viewer->fly_camera;
     switch (action) {
     case DO_SAVE_PICTURE:
-        viewer->action = VIEWER_SAVE_IMAGE;
-        return;
     case DO_SAVE_VIEW:
-        viewer->action = VIEWER_SAVE_CAMERA;
-        return;
     case DO_SAVE_CHANGES:
-        viewer->action = VIEWER_SAVE_EDITS;
+        viewer->action = (enum viewer_action)(VIEWER_SAVE_IMAGE + (action - DO_SAVE_PICTURE));
         return;
     case DO_NEXT_PICTURE: /* which comes after this one was written */
         viewer->next = true;
@@ -184,19 +172,18 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         viewer_undo(viewer, action == DO_REDO);
         return;
     case DO_MOVE:
-        choose_tool(viewer, TOOL_MOVE);
-        return;
     case DO_TURN:
-        choose_tool(viewer, TOOL_TURN);
-        return;
     case DO_SIZE:
-        choose_tool(viewer, TOOL_SIZE);
+        choose_tool(viewer, (enum edit_tool)(TOOL_MOVE + (action - DO_MOVE)));
         return;
     case DO_COPY:
         viewer_copy_selection(viewer);
         return;
     case DO_DELETE:
         viewer_delete_selection(viewer);
+        return;
+    case DO_SOLO:
+        viewer_solo(viewer);
         return;
     case DO_OWN_MATERIAL:
         viewer_make_own_material(viewer);
@@ -234,23 +221,20 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         viewer_change_view(viewer);
         return;
     case DO_VIEW_FRONT:
-        face(viewer, 0, 0, -1);
-        return;
     case DO_VIEW_RIGHT:
-        face(viewer, -1, 0, 0);
-        return;
     case DO_VIEW_TOP:
-        face(viewer, 0, -1, 0);
+        fly_camera_face(camera, vec3_make(action == DO_VIEW_RIGHT ? -1 : 0, action == DO_VIEW_TOP ? -1 : 0,
+                                          action == DO_VIEW_FRONT ? -1 : 0));
+        viewer_change_view(viewer);
         return;
     case DO_LEVEL:
         fly_camera_level(camera);
         viewer_change_view(viewer);
         return;
     case DO_ROLL_LEFT:
-        roll(viewer, -5);
-        return;
     case DO_ROLL_RIGHT:
-        roll(viewer, 5);
+        fly_camera_roll(camera, action == DO_ROLL_LEFT ? -5 : 5);
+        viewer_change_view(viewer);
         return;
     case DO_VIEW_BACK:
     case DO_VIEW_FORWARD:
@@ -270,10 +254,8 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         viewer_choose_mode(viewer, (struct view_mode){true, (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
         return;
     case DO_BOXES:
-        viewer_choose_overlay(viewer, OVERLAY_OF_BOXES);
-        return;
     case DO_GRID:
-        viewer_choose_overlay(viewer, OVERLAY_OF_GRID);
+        viewer_choose_overlay(viewer, action == DO_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
         return;
     case DO_HIDE:
         viewer->window.hides_lines = !viewer->window.hides_lines;
@@ -300,10 +282,8 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         viewer_play(viewer, !viewer->player.playing);
         return;
     case DO_PREVIOUS_FRAME:
-        viewer_step_frames(viewer, -1);
-        return;
     case DO_NEXT_FRAME:
-        viewer_step_frames(viewer, 1);
+        viewer_step_frames(viewer, action == DO_NEXT_FRAME ? 1 : -1);
         return;
     case DO_LOOP:
         viewer_player_loop(viewer);
@@ -317,8 +297,20 @@ void viewer_do(struct viewer *viewer, enum window_action action) {
     if (action != DO_ESCAPE && action != DO_MOVE && action != DO_TURN && action != DO_SIZE)
         end_tool(viewer, true);
     viewer->display.hud_dirty = true;
-    (void)snprintf(viewer->note, sizeof viewer->note, "window: %s", window_action_table[action].name);
     do_action(viewer, action);
+    size_t used = strlen(viewer->note); /* what it did is noted first */
+    (void)snprintf(viewer->note + used, sizeof viewer->note - used, "%swindow: %s", used > 0 ? "; " : "",
+                   window_action_table[action].name);
+}
+
+/* The speed is that for what is in front. */
+static void handle_key(struct viewer *viewer, const struct window_event *event) {
+    const struct window_layout *layout = &viewer->window.layout;
+    if (!viewer->block) /* without a scene the camera does not move */
+        return;
+    if (event->down && !viewer->fly_camera.down[event->key])
+        viewer_probe(viewer, layout->left + layout->shown_width / 2, layout->top + layout->shown_height / 2);
+    viewer->fly_camera.down[event->key] = event->down;
 }
 
 /* The mouse. */
@@ -431,7 +423,8 @@ static void select_row(struct viewer *viewer, const struct node_query *query) {
     bool light = query->depth == 2 && query->path[0] == SECTION_LIGHTS;
     if (light && query->path[1] < viewer->lights.known)
         viewer_select_light(viewer, query->path[1] + 1);
-    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES))
+    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES) ||
+             (query->depth == 2 && query->path[0] == SECTION_MATERIALS))
         viewer_select_node(viewer, query);
     else
         viewer->edit.selection.kind = SELECTED_NOTHING;
@@ -441,7 +434,7 @@ static void select_row(struct viewer *viewer, const struct node_query *query) {
 /* Beside the root of the scene. */
 void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows) {
     if (query->depth == 0 && query->search[0] == '\0' && rows->count == 1) {
-        rows->count = WINDOW_SECTIONS;
+        rows->count = NODE_SECTIONS;
         rows->rows[SECTION_LIGHTS] = (struct node_row){.children = viewer->lights.count, .name = "Lights", .kind = " "};
         rows->rows[SECTION_CAMERA] = (struct node_row){.name = "Camera", .kind = " "};
     }
@@ -454,8 +447,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         viewer->quit = true;
         return;
     case WINDOW_KEY:
-        if (viewer->block) /* without a scene the camera does not move */
-            viewer->fly_camera.down[event->key] = event->down;
+        handle_key(viewer, event);
         return;
     case WINDOW_MOVE:
         handle_motion(viewer, event);
@@ -479,6 +471,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         return;
     case WINDOW_ACTION:
         take_position(viewer, event);
+        (void)snprintf(viewer->save_as, sizeof viewer->save_as, "%s", event->text);
         viewer_do(viewer, event->action);
         return;
     case WINDOW_NODES:
@@ -497,5 +490,291 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
     case WINDOW_FIELD:
         viewer_set_field(viewer, event);
         return;
+    }
+}
+
+/* --- The form --- */
+
+/* Each field of the form has a number, by which its change comes back; the rows of materials and settings are those of
+ * their tables. */
+
+enum field_number {
+    FIELD_NONE,
+    FIELD_POSITION = WINDOW_FIELD_FRAME + 1,
+    FIELD_ROTATION,
+    FIELD_SCALE,
+    FIELD_LIGHT_STOPS,
+    FIELD_LIGHT_COLOUR,
+    FIELD_EXPOSURE,
+    FIELD_FOV,
+    FIELD_EYE,
+    FIELD_DIRECTION,
+    FIELD_MATERIAL, /* and the parts of a material */
+    FIELD_SETTING = FIELD_MATERIAL + MATERIAL_PART_PARTS,
+};
+
+static struct window_field *add(struct window_form *form, const char *group, const char *name,
+                                enum window_field_kind kind, uint32_t number) {
+    static struct window_field beyond; /* what has no room is not shown */
+    struct window_field *field = form->count < FORM_FIELDS ? &form->fields[form->count++] : &beyond;
+    *field = (struct window_field){.kind = kind, .number = number, .low = -HUGE_VAL, .high = HUGE_VAL};
+    (void)snprintf(field->group, sizeof field->group, "%s", group);
+    (void)snprintf(field->name, sizeof field->name, "%s", name);
+    return field;
+}
+
+static void __attribute__((format(printf, 4, 5)))
+add_text(struct window_form *form, const char *group, const char *name, const char *format, ...) {
+    struct window_field *field = add(form, group, name, FIELD_TEXT, FIELD_NONE);
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(field->text, sizeof field->text, format, arguments);
+    va_end(arguments);
+}
+
+static void set_range(struct window_field *field, double low, double high, const char *unit) {
+    field->low = low;
+    field->high = high;
+    (void)snprintf(field->unit, sizeof field->unit, "%s", unit);
+}
+
+static void set_help(struct window_field *field, const char *help) {
+    (void)snprintf(field->help, sizeof field->help, "%s", help ? help : "");
+}
+
+/* The fields that are not rows of other tables. Those that act rotate and scale, and are 0 and 1 again. */
+static const struct {
+    const char *group, *name, *unit, *help;
+    enum window_field_kind kind;
+    double low, high;
+    bool acts;
+} fields[] = {
+    [FIELD_POSITION] = {"Position", "centre", "", "Moves it there", FIELD_VECTOR, -HUGE_VAL, HUGE_VAL, false},
+    [FIELD_ROTATION] = {"Position", "rotate by", "degrees",
+                        "Rotates it by this angle about the x, y or z axis through its middle", FIELD_VECTOR, -360, 360,
+                        true},
+    [FIELD_SCALE] = {"Position", "scale by", "", "Scales it about its middle by this factor", FIELD_NUMBER, 0.001, 1000,
+                     true},
+    [FIELD_LIGHT_STOPS] = {"Light", "brightness", "stops", "Above the brightness that the script gives it",
+                           FIELD_NUMBER, -10, 10, false},
+    [FIELD_LIGHT_COLOUR] = {"Light", "colour", "", "Before it is brightened", FIELD_COLOUR, 0, HUGE_VAL, false},
+    [FIELD_EXPOSURE] = {"Picture", "exposure", "stops", "A stop doubles all light", FIELD_NUMBER, -100, 100, false},
+    [FIELD_FOV] = {"Picture", "angle of view", "degrees", "From the upper to the lower edge", FIELD_NUMBER, 0.01, 170,
+                   false},
+    [FIELD_EYE] = {"Picture", "eye", "", "Where the camera is", FIELD_VECTOR, -HUGE_VAL, HUGE_VAL, false},
+    [FIELD_DIRECTION] = {"Picture", "direction", "", "The direction in which the camera looks", FIELD_VECTOR, -HUGE_VAL,
+                         HUGE_VAL, false}};
+
+static void add_fixed(struct window_form *form, enum field_number number, double a, double b, double c) {
+    struct window_field *field = add(form, fields[number].group, fields[number].name, fields[number].kind, number);
+    field->acts = fields[number].acts;
+    field->numbers[0] = a;
+    field->numbers[1] = b;
+    field->numbers[2] = c;
+    set_range(field, fields[number].low, fields[number].high, fields[number].unit);
+    set_help(field, fields[number].help);
+}
+
+static void add_pose(const struct viewer *viewer, struct window_form *form) {
+    struct vec3 at = viewer_selection_position(viewer);
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    bool is_light = viewer->edit.selection.kind == SELECTED_LIGHT;
+    if (viewer_can(viewer, TOOL_MOVE) && (!is_light || light->has_position))
+        add_fixed(form, FIELD_POSITION, at.x, at.y, at.z);
+    if (viewer_can(viewer, TOOL_TURN))
+        add_fixed(form, FIELD_ROTATION, 0, 0, 0);
+    if (viewer_can(viewer, TOOL_SIZE))
+        add_fixed(form, FIELD_SCALE, 1, 0, 0);
+}
+
+static void add_material(const struct viewer *viewer, struct window_form *form) {
+    const struct picked *picked = &viewer->edit.selection.picked;
+    for (int i = 0; picked->material_serial != 0 && i < MATERIAL_PART_PARTS; i++) {
+        enum material_part part = (enum material_part)i;
+        bool colour = material_part_count(part) == 3, idle = picked->idle_parts >> i & 1;
+        struct window_field *field = add(form, "Material", material_part_name(part),
+                                         colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
+        double low, high;
+        struct change change = viewer_change(viewer, CHANGE_MATERIAL, part);
+        memcpy(field->numbers, change.numbers, sizeof field->numbers);
+        material_part_range(part, &low, &high);
+        set_range(field, low, high, "");
+        if (idle)
+            set_help(field, "No effect at the point that was clicked: a texture replaces it");
+    }
+}
+
+static void add_node(const struct viewer *viewer, struct window_form *form) {
+    const struct picked *picked = &viewer->edit.selection.picked;
+    (void)snprintf(form->title, sizeof form->title, "%.60s", picked->name);
+    add_text(form, "Object", "path", "%.190s", picked->node_path);
+    add_text(form, "Object", "shape", "%s", picked->shape);
+    add_text(form, "Object", "material", "%s", picked->material);
+    add_text(form, "Object", "distance", "%.5g", picked->distance);
+    add_pose(viewer, form);
+    add_material(viewer, form);
+}
+
+static void add_light(const struct viewer *viewer, struct window_form *form) {
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    struct change change = viewer_change(viewer, CHANGE_LIGHT, 0);
+    if (!light)
+        return;
+    (void)snprintf(form->title, sizeof form->title, "Light %u of %u: %s", viewer->edit.selection.light,
+                   viewer->lights.count, light_kind_name((enum light_kind)light->kind));
+    add_pose(viewer, form);
+    add_fixed(form, FIELD_LIGHT_STOPS, el_log2(change.numbers[3]), 0, 0);
+    const double reported[3] = {light->colour.r, light->colour.g, light->colour.b};
+    double now[3];
+    for (int i = 0; i < 3; i++)
+        now[i] = change.colours              ? change.numbers[COLOUR_AT + i]
+                 : change.numbers[3 + i] > 0 ? reported[i] / change.numbers[3 + i]
+                                             : 0;
+    add_fixed(form, FIELD_LIGHT_COLOUR, now[0], now[1], now[2]);
+}
+
+/* As script and command line have set it. */
+static void describe_setting(const struct viewer *viewer, int index, struct window_field *field) {
+    const struct setting *row = &setting_table[index];
+    size_t dashes = strspn(row->option, "-");
+    bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
+    bool words = !flag && !number && row->words && row->words[0] != '\0';
+    uint64_t bits = setting_bits(row, &viewer->request.settings);
+    *field = (struct window_field){.kind = flag    ? FIELD_FLAG
+                                           : words ? FIELD_CHOICE
+                                                   : FIELD_NUMBER,
+                                   .number = FIELD_SETTING + (uint32_t)index,
+                                   .numbers[0] = (double)bits};
+    (void)snprintf(field->group, sizeof field->group, "%s", option_group_title(row->group));
+    (void)snprintf(field->name, sizeof field->name, "%.*s", (int)strcspn(row->option + dashes, "|"),
+                   row->option + dashes);
+    if (number)
+        memcpy(&field->numbers[0], &bits, sizeof bits);
+    set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    if (words)
+        (void)snprintf(field->text, sizeof field->text, "%s", row->words);
+    set_help(field, row->help);
+}
+
+/* Every setting of the picture that has an option, but those that have a field of their own or no single number. */
+static void add_settings(const struct viewer *viewer, struct window_form *form) {
+    for (int i = 0; i < setting_count; i++) {
+        const struct setting *row = &setting_table[i];
+        bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
+        if (row->option && row->kind != SETTING_LAYERS && row->kind != SETTING_CROP && !own)
+            describe_setting(viewer, i, add(form, "", "", FIELD_TEXT, FIELD_NONE));
+    }
+}
+
+/* The scripts run again, as with its option. */
+static void change_setting(struct viewer *viewer, int index, double number) {
+    const struct setting *row = &setting_table[index];
+    if (row->kind == SETTING_NUMBER || row->kind == SETTING_WHOLE || row->kind == SETTING_CAUSTICS)
+        number = fmin(fmax(number, row->low), row->high);
+    viewer->setting = (struct viewer_setting){index, number};
+    viewer->action = VIEWER_CHANGE_SETTING;
+}
+
+static void add_picture(const struct viewer *viewer, struct window_form *form) {
+    struct camera camera = fly_camera_current(&viewer->fly_camera);
+    add_fixed(form, FIELD_EXPOSURE, viewer->request.settings.tone.exposure, 0, 0);
+    if (!viewer->block)
+        return;
+    add_fixed(form, FIELD_FOV, camera.fov, 0, 0);
+    add_fixed(form, FIELD_EYE, camera.eye.x, camera.eye.y, camera.eye.z);
+    add_fixed(form, FIELD_DIRECTION, camera.view.x, camera.view.y, camera.view.z);
+}
+
+/* Another selection has other widgets. */
+static uint64_t subject_of(const struct viewer *viewer) {
+    const struct selection *selection = &viewer->edit.selection;
+    bool node = selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL;
+    uint64_t of = node ? selection->picked.serial : selection->light;
+    of = of << 24 ^ (node ? (uint64_t)selection->picked.material_serial : viewer->lights.known);
+    return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
+}
+
+void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
+    struct window_form *form = &state->form;
+    state->integrator.number = FIELD_NONE;
+    if (viewer->name[0] != '\0')
+        describe_setting(viewer, SETTING_INDEX(integrator), &state->integrator);
+    form->count = 0;
+    form->subject = subject_of(viewer);
+    form->title[0] = '\0';
+    if (viewer->block && viewer->edit.selection.kind == SELECTED_NODE)
+        add_node(viewer, form);
+    else if (viewer->block && viewer->edit.selection.kind == SELECTED_MATERIAL) {
+        const struct picked *picked = &viewer->edit.selection.picked;
+        (void)snprintf(form->title, sizeof form->title, "Material %u", picked->material_serial);
+        add_text(form, "Material", "kind", "%s", picked->material);
+        add_material(viewer, form);
+    } else if (viewer->block && viewer->edit.selection.kind == SELECTED_LIGHT)
+        add_light(viewer, form);
+    if (viewer->name[0] != '\0')
+        add_picture(viewer, form);
+    if (viewer->name[0] != '\0' && viewer->edit.selection.kind == SELECTED_NOTHING)
+        add_settings(viewer, form);
+}
+
+/* Fields of the selection. */
+static void set_selected(struct viewer *viewer, const struct window_event *event) {
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
+    viewer->edit.joins = event->joins;
+    switch (event->field) {
+    case FIELD_POSITION:
+        viewer_move(viewer, vec3_sub(vec3_make(numbers[0], numbers[1], numbers[2]), viewer_selection_position(viewer)));
+        return;
+    case FIELD_ROTATION:
+        for (int i = 0; i < 3; i++) {
+            if (numbers[i] < 0 || numbers[i] > 0)
+                viewer_turn(viewer, axes[i], numbers[i]);
+        }
+        return;
+    case FIELD_SCALE:
+        viewer_scale(viewer, vec3_all(numbers[0]));
+        return;
+    case FIELD_LIGHT_STOPS:
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, 3, factors);
+        return;
+    case FIELD_LIGHT_COLOUR:
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, COLOUR_AT, numbers);
+        return;
+    default:
+        if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
+            viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0,
+                               numbers);
+    }
+}
+
+void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
+    double number = event->numbers[0];
+    viewer->display.hud_dirty = true;
+    switch (event->field) {
+    case FIELD_EXPOSURE:
+        viewer_set_exposure(viewer, number);
+        return;
+    case WINDOW_FIELD_FRAME:
+        if (viewer->player.count > 0)
+            viewer_go_to_frame(viewer, viewer_frame_number(viewer, number));
+        return;
+    case FIELD_FOV:
+        if (viewer->block && number > 0 && number < 180) {
+            viewer->fly_camera.pose.fov = number;
+            viewer_change_view(viewer);
+        }
+        return;
+    case FIELD_EYE:
+    case FIELD_DIRECTION:
+        if (viewer->block && fly_camera_put(&viewer->fly_camera, event->field == FIELD_EYE,
+                                            vec3_make(number, event->numbers[1], event->numbers[2])))
+            viewer_change_view(viewer);
+        return;
+    default:
+        if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)
+            change_setting(viewer, (int)(event->field - FIELD_SETTING), number);
+        else if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
+            set_selected(viewer, event);
     }
 }

@@ -12,5 +12,8 @@ void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query,
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 /* Stops rendering and building, and keeps the image; or continues. */
 void viewer_halt(struct viewer *viewer, bool on);
+/* The form, and the integrator, as they are now. */
+void viewer_make_form(const struct viewer *viewer, struct window_state *state);
+void viewer_set_field(struct viewer *viewer, const struct window_event *event);
 
 #endif

@@ -4,10 +4,8 @@
 
 #include "viewer/viewer_draw_internal.h"
 #include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_form_internal.h"
 #include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_overlay_internal.h"
 #include "viewer/viewer_player_internal.h"
 
 /* The picture is complete, and there is nothing to do. */

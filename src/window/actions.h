@@ -37,6 +37,8 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
     X(DO_SIZE, "size", "Si_ze", MENU_EDIT, NEEDS_SELECTION, "s", "z", "Scale the selection by dragging")               \
     X(DO_COPY, "copy", "_Copy", MENU_EDIT, NEEDS_SELECTION, "<Shift>d", "<Control>d", "Copy the selection")            \
     X(DO_DELETE, "delete", "_Delete", MENU_EDIT, NEEDS_SELECTION, "x Delete", "Delete", "Remove the selection")        \
+    X(DO_SOLO, "solo", "Sh_ow It Alone", MENU_EDIT, NEEDS_PICTURE, "slash KP_Divide", "slash",                         \
+      "Draw the selection only; again: draw everything")                                                               \
     X(DO_OWN_MATERIAL, "own-material", "Give It Its _Own Material", MENU_EDIT, NEEDS_SELECTION, "", "",                \
       "Edits of the material then change no other shape")                                                              \
     X(DO_SELECT_PARENT, "select-parent", "Select _Parent", MENU_EDIT, NEEDS_SELECTION, "Page_Up", "Page_Up",           \

@@ -249,7 +249,7 @@ void gui_tree_show(struct gui *gui, const struct window_state *was) {
 static void reset(struct gui *gui) {
     const struct node_query above = {0};
     GtkTreeListModel *model =
-        gtk_tree_list_model_new(nodes_new(gui, &above, WINDOW_SECTIONS), FALSE, FALSE, children_of, gui, NULL);
+        gtk_tree_list_model_new(nodes_new(gui, &above, NODE_SECTIONS), FALSE, FALSE, children_of, gui, NULL);
     gui->updates = true;
     gtk_single_selection_set_model(gui->node_selection, G_LIST_MODEL(model));
     gui->updates = false;

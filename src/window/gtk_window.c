@@ -208,6 +208,36 @@ static void choose_scene(GSimpleAction *action, GVariant *value, gpointer data) 
     gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
 }
 
+/* A name for what is saved; the viewer replaces no file. */
+
+static void finish_save(GtkNativeDialog *dialog, int answer, gpointer data) {
+    struct gui *gui = data;
+    struct window_event event = {.kind = WINDOW_ACTION, .x = gui->mouse_x, .y = gui->mouse_y};
+    event.action = (enum window_action)GPOINTER_TO_INT(g_object_get_data(G_OBJECT(dialog), "action"));
+    if (answer == GTK_RESPONSE_ACCEPT) {
+        GFile *file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
+        char *path = g_file_get_path(file);
+        if (path && g_strlcpy(event.text, path, sizeof event.text) < sizeof event.text)
+            gui_send_event(gui, &event);
+        g_free(path);
+        g_object_unref(file);
+    }
+    g_object_unref(dialog);
+}
+
+static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
+    struct gui *gui = data;
+    bool picture = strcmp(g_action_get_name(G_ACTION(action)), "save-picture-as") == 0;
+    GtkFileChooserNative *dialog =
+        gtk_file_chooser_native_new(picture ? "Save the Picture" : "Save the Edits", GTK_WINDOW(gui->window),
+                                    GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
+    (void)value;
+    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), picture ? "view.png" : "changes.lua");
+    g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(picture ? DO_SAVE_PICTURE : DO_SAVE_CHANGES));
+    g_signal_connect(dialog, "response", G_CALLBACK(finish_save), gui);
+    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+}
+
 static void choose_dark(GSimpleAction *action, GVariant *value, gpointer data) {
     (void)data;
     g_simple_action_set_state(action, value);
@@ -262,6 +292,8 @@ static void make_menus(struct gui *gui) {
     for (size_t i = 0; i < G_N_ELEMENTS(titles); i++)
         menus[i] = add_menu(bar, titles[i]);
     add_item(menus[MENU_FILE], "_Open…", "win.open", "<Control>o");
+    add_item(menus[MENU_FILE], "Save Picture _As…", "win.save-picture-as", NULL);
+    add_item(menus[MENU_FILE], "Save E_dits As…", "win.save-edits-as", NULL);
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         char *name = g_strdup_printf("win.%s", window_action_table[i].name),
              *key = first_key(gui, (enum window_action)i);
@@ -282,6 +314,8 @@ static void make_menus(struct gui *gui) {
 static void add_actions(struct gui *gui) {
     static const GActionEntry entries[] = {
         {.name = "open", .activate = choose_scene},
+        {.name = "save-picture-as", .activate = choose_name},
+        {.name = "save-edits-as", .activate = choose_name},
         {.name = "keys-help", .activate = show_keys},
         {.name = "add", .activate = show_add_list},
         {.name = "dark", .state = "false", .change_state = choose_dark},
@@ -311,10 +345,10 @@ static void add_key(GString *xml, const char *keys, const char *title) {
 }
 
 static void begin_key_group(GString *xml, const char *title) {
-    char *words = g_strdelimit(g_strdup(title), "_", ' ');
-    g_string_append_printf(xml, "<child><object class='GtkShortcutsGroup'><property name='title'>%s</property>",
-                           g_strstrip(words));
-    g_free(words);
+    char **words = g_strsplit(title, "_", -1), *plain = g_strjoinv("", words);
+    g_string_append_printf(xml, "<child><object class='GtkShortcutsGroup'><property name='title'>%s</property>", plain);
+    g_strfreev(words);
+    g_free(plain);
 }
 
 static void add_mouse(GString *xml) {
@@ -393,6 +427,7 @@ static GtkWidget *make_header(struct gui *gui) {
                                   action_button(gui, buttons[i].icon, buttons[i].name, buttons[i].tip));
     gui->integrator = gtk_drop_down_new_from_strings((const char *const[]){NULL});
     gui_name(gui->integrator, "Integrator");
+    gtk_widget_set_visible(gui->integrator, FALSE);
     g_signal_connect(gui->integrator, "notify::selected", G_CALLBACK(choose_integrator), gui);
     gtk_header_bar_pack_start(GTK_HEADER_BAR(bar), gui->integrator);
     gtk_header_bar_pack_end(GTK_HEADER_BAR(bar),

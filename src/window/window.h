@@ -6,13 +6,11 @@
 
 #include "base/error.h"
 #include "inspect/node_list.h"
+#include "render/fly_camera.h"
 #include "window/actions.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/* Keys that move the camera while they are held. */
-enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
 
 enum window_event_kind {
     WINDOW_CLOSE,
@@ -44,7 +42,7 @@ struct window_event {
     double numbers[3];
     bool joins;
     struct node_query node;
-    char text[NODE_NAME];
+    char text[1024]; /* a name; of an action that saves: the file, or empty */
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -86,8 +84,6 @@ struct window_line {
     enum line_colour colour;
 };
 enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384, WINDOW_HIDDEN = 256 };
-/* The rows of the tree: the node, then the lights, which have a list below them, and the camera. */
-enum window_section { SECTION_NODES, SECTION_LIGHTS, SECTION_CAMERA, WINDOW_SECTIONS };
 
 /* Everything that the window shows but the picture and the rows of the tree. */
 struct window_state {

@@ -581,6 +581,10 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         numbers.base_metalness = i & 8 ? 0.5 : 0;
         numbers.base_diffuse_roughness = numbers.fuzz_weight = i & 16 ? 0.5 : 0;
         numbers.film_weight = i & 32 ? 1 : 0;
+        numbers.coat_weight = i & 1;
+        struct texture flat = texture_constant(colour_make(0.5, 0.5, 1));
+        struct bump bump = {.kind = MATERIAL_NORMAL, .height = 1, .texture = &flat, .of_coat = true};
+        layered.bump = &bump;
         numbers.subsurface_weight = i & 64 ? 0.5 : 0;
         surface_eval(&layered, &hit, NULL, &(struct material_context){.walks = true}, &bsdf);
         for (int k = 0; k < bsdf.count; k++)

@@ -69,6 +69,7 @@ TEST(the_law_of_cauchy_has_the_abbe_number_that_the_material_states) {
         }
     }
     CHECK_NEAR(dispersion_ior((struct dispersion){0, 0}, 1.6, 0.4), 1.6, 0);
+    CHECK(dispersion_ior((struct dispersion){1e30, 0}, 1.6, 0.7) > 0); /* no index is 0 or below */
 }
 
 /* --- a prism --- */

@@ -344,6 +344,67 @@ TEST(rough_glass_of_the_index_of_air_is_invisible) {
     }
 }
 
+/* --- the normal of the coat --- */
+
+static void make_metal_below_a_coat(struct layers *l) {
+    l->numbers.coat_weight = l->numbers.base_metalness = 1;
+    l->material.phong.roughness = 0.3;
+}
+
+/* Seen with a normal map for the coat, of this colour everywhere. */
+static struct bsdf coated(struct layers *layers, struct colour map) {
+    struct texture texture = texture_constant(map);
+    struct bump bump = {.kind = MATERIAL_NORMAL, .height = 1, .texture = &texture, .of_coat = true};
+    struct hit hit = {.view = view_of(0.8, true), .front = true, .primitive = 4, .dpdu = {1, 0, 0}, .dpdv = {0, 1, 0}};
+    const struct material_context context = {.total_reflection = true};
+    struct bsdf bsdf;
+    hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
+    layers->material.bump = &bump;
+    surface_eval(&layers->material, &hit, NULL, &context, &bsdf);
+    layers->material.bump = NULL;
+    return bsdf;
+}
+
+TEST(a_coat_reflects_about_its_own_normal_and_its_base_about_that_of_the_surface) {
+    struct layers layers;
+    layers_init(&layers);
+    layers.numbers.coat_weight = 1;
+    const struct vec3 wo = view_of(0.8, true), tilted = vec3_normalize(vec3_make(0.2, 0, 1));
+    struct bsdf bsdf = coated(&layers, colour_make(0.6, 0.5, 1));
+    int found = 0;
+    for (int i = 0; i < bsdf.count; i++) {
+        struct bsdf_sample sample;
+        bool is_coat = bsdf.lobes[i].kind == LOBE_COAT;
+        if (!is_coat && bsdf.lobes[i].kind != LOBE_MIRROR)
+            continue;
+        CHECK(bsdf_sample(&bsdf, 1U << i, BSDF_RADIANCE, wo, (struct sample2){0.5, 0.5}, &sample));
+        struct vec3 expected = dielectric_mirror(is_coat ? tilted : vec3_make(0, 0, 1), wo);
+        CHECK_NEAR(vec3_length(vec3_sub(sample.direction, expected)), 0, 1e-12);
+        if (is_coat)
+            CHECK_NEAR(sample.weight.g, dielectric_fresnel(vec3_dot(tilted, wo), 1 / 1.6), 1e-12);
+        found++;
+    }
+    CHECK_EQ_INT(found, 2);
+    layers.numbers.coat_roughness = layers.material.phong.roughness = 0.4;
+    bsdf = coated(&layers, colour_make(0.6, 0.5, 1));
+    CHECK_NEAR(bsdf.facets[0].distribution.normal.x, tilted.x, 1e-12);
+    CHECK_NEAR(bsdf.facets[1].distribution.normal.x, 0, 0);
+}
+
+TEST(a_flat_normal_map_of_the_coat_changes_no_light) {
+    struct layers layers;
+    layers_init(&layers);
+    make_metal_below_a_coat(&layers);
+    for (int rough = 0; rough < 2; rough++) {
+        layers.numbers.coat_roughness = rough ? 0.3 : 0;
+        struct bsdf with = coated(&layers, colour_make(0.5, 0.5, 1)), without = seen(&layers, 0.8, true);
+        struct colour mirror = colour_add(weight_of(&with, LOBE_MIRROR), weight_of(&with, LOBE_COAT));
+        CHECK_NEAR(mirror.g, weight_of(&without, LOBE_MIRROR).g, 1e-15);
+        CHECK_NEAR(weight_of(&with, LOBE_METAL).g, weight_of(&without, LOBE_METAL).g, 1e-15);
+        CHECK_NEAR(weight_of(&with, LOBE_GLOSS).g, weight_of(&without, LOBE_GLOSS).g, 1e-15);
+    }
+}
+
 /* --- the furnace --- */
 
 struct furnace {

@@ -1,8 +1,10 @@
 /* The albedo under a surface for a colour, against half spaces that are solved in other ways than for its table. */
 #include "tests/harness.h"
 
+#include "material/bsdf_select.h"
 #include "material/phase.h"
 #include "material/subsurface.h"
+#include "tests/unit/surface_makers.h"
 
 #include <math.h>
 
@@ -70,6 +72,24 @@ TEST_TIMES(walks_in_a_half_space_of_the_albedo_for_a_colour_bring_it_back, 100) 
             double found = brought_back(subsurface_albedo(colours[k], g[i]), g[i], 4000 * times, &random, &error);
             CHECK_NEAR(found, colours[k], 4 * error + fmax(0.005 * colours[k], 0.001));
         }
+}
+
+/* What denoisers take for the colour of a surface. */
+TEST(the_guide_of_a_surface_with_light_under_it_has_its_colour) {
+    struct openpbr layers = openpbr_defaults();
+    struct material wax = {.kind = MATERIAL_OPENPBR, .depth = 1, .openpbr = &layers};
+    const struct material_context context = {.walks = true};
+    const struct vec3 up = {0, 0, 1};
+    struct hit hit = {.view = up, .front = true, .dpdu = {1, 0, 0}, .normal = up, .normal_geometric = up};
+    struct bsdf bsdf;
+    layers.subsurface_weight = 1;
+    layers.subsurface_colour = colour_make(0.25, 0.5, 0.75);
+    layers.specular_weight = 0;
+    surface_eval(&wax, &hit, NULL, &context, &bsdf);
+    struct bsdf_guide guide = bsdf_guide(&bsdf, colour_all(0));
+    CHECK(guide.scatters && bsdf.count == 1 && bsdf.lobes[0].kind == LOBE_SUBSURFACE);
+    CHECK(colour_equal(guide.albedo, layers.subsurface_colour));
+    CHECK(colour_equal(bsdf.albedo, layers.subsurface_colour));
 }
 
 TEST(white_is_scattered_alone_and_black_never) {

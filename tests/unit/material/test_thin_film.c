@@ -135,3 +135,17 @@ TEST(a_wall_without_another_index_is_its_film_alone) {
     CHECK(agrees(thin_film_pane(&film, 0.8, 1), soap, 0.01));
     CHECK_NEAR(thin_film_pane(&film, 0.8, 1 / 1.5).r, 2 * side.r / (1 + side.r), 1e-12);
 }
+
+TEST(extreme_films_reflect_between_nothing_and_all) {
+    static const double values[] = {0, 1e-30, 1e-3, 1, 1e3, 1e30, INFINITY};
+    for (int k = 0; k < 7 * 7 * 4; k++) {
+        const struct thin_film film = {1, values[k % 7], fmax(values[k / 7 % 7], 0.01), 1, k / 49 % 2 ? 0.5 : 0};
+        double cosine = k / 98 ? 1 : 1e-12;
+        struct colour glass = thin_film_boundary(&film, cosine, 1 / 1.5);
+        struct colour metal = thin_film_metal(&film, cosine, colour_make(1, 0.5, 0));
+        for (int c = 0; c < 3; c++)
+            if (!(colour_get(glass, c) >= 0 && colour_get(glass, c) <= 1 && colour_get(metal, c) >= 0 &&
+                  colour_get(metal, c) <= 1))
+                test_fail(__FILE__, __LINE__, "film %d: %g, %g", k, colour_get(glass, c), colour_get(metal, c));
+    }
+}

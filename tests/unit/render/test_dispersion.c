@@ -131,6 +131,17 @@ TEST(whitted_s_integrator_has_one_notice_of_dispersion) {
     test_free_result(&result);
 }
 
+TEST(the_trace_of_a_pixel_has_the_wavelength_of_its_path) {
+    static const char scene[] = "gr.render{node = gr.sphere(gr.glass{glass = 'F2'}), eye = {0.3, 0.2, 9}, "
+                                "target = {0, 0, 0}, fov = 10, integrator = 'path'}\n";
+    struct test_result result = test_gray_scene(scene, "-q --size 9x9 --spp 2 --pixel 4,4 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *text = strstr(result.out, ", wavelength ");
+    double nanometres = text ? strtod(text + strlen(", wavelength "), NULL) : 0;
+    CHECK(nanometres > 380 && nanometres < 760);
+    test_free_result(&result);
+}
+
 /* Beside a bright bar behind a ball of flint are colours that no display shows. */
 TEST(colours_outside_of_the_display_keep_their_sign_in_files_of_light) {
     static const char scene[] =

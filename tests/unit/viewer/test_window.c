@@ -71,6 +71,17 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
     CHECK_NEAR(apart(fast.pose.position, vec3_make(1, 2, 3)), 0, 0);
 }
 
+TEST(fly_camera_is_slower_near_what_is_in_front) {
+    struct fly_camera fly_camera = some_traversal();
+    double usual = fly_camera.speed;
+    fly_camera_near(&fly_camera, 1e-9);
+    CHECK_NEAR(fly_camera.speed, 0.01 * usual, 1e-12);
+    fly_camera_near(&fly_camera, usual);
+    CHECK_NEAR(fly_camera.speed, 0.7 * usual, 1e-12);
+    fly_camera_near(&fly_camera, HUGE_VAL);
+    CHECK_NEAR(fly_camera.speed, usual, 1e-12);
+}
+
 TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_picture) {
     struct fly_camera fly_camera = some_traversal();
     struct camera before = fly_camera_current(&fly_camera);
@@ -299,12 +310,19 @@ TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once)
     end(&t);
 }
 
+/* Presses the key: the viewer asks what is in front, and nothing is. */
+static void begin_flight(struct table *t, enum fly_camera_key code) {
+    key(&t->fake, code, true);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK(t->viewer.command.kind == COMMAND_PICK && t->viewer.command.x == 50.5);
+    print_news(t, &(struct preview_reply){.kind = REPLY_PICKED});
+}
+
 TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, FLY_FORWARD, true);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has passed yet */
+    begin_flight(&t, FLY_FORWARD);
     for (int i = 0; i < 5; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.divide > 1 && !t.viewer.pass.view.own);
@@ -338,8 +356,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, FLY_LEFT, true);
-    (void)step(&t);
+    begin_flight(&t, FLY_LEFT);
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
@@ -515,8 +532,7 @@ TEST(window_keys_fly_and_escape_ends_it) {
     do_action(&t.fake, DO_SAVE_VIEW);
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_CAMERA);
     do_action(&t.fake, DO_FLY);
-    key(&t.fake, FLY_BACK, true);
-    (void)step(&t);
+    begin_flight(&t, FLY_BACK);
     CHECK(t.fake.state.flies);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.pass.view.camera.eye.z > 5);

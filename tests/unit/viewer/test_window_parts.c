@@ -2,9 +2,9 @@
  * without memory. */
 #include "base/fault.h"
 #include "host/file_watch.h"
+#include "scene/edits.h"
 #include "tests/harness.h"
-#include "viewer/edits.h"
-#include "viewer/fly_camera.h"
+#include "render/fly_camera.h"
 
 #include <math.h>
 #include <stdio.h>

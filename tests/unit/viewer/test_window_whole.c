@@ -469,7 +469,7 @@ TEST(window_lists_nodes_and_selects_them_in_the_tree) {
         {"ready", ACTION(DO_QUIT), 20}};
     static struct person person;
     CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.person = &person}), 0);
-    CHECK(person.seen_nodes[0] == WINDOW_SECTIONS && person.seen_nodes[1] == 2 && person.seen_nodes[2] == 0);
+    CHECK(person.seen_nodes[0] == NODE_SECTIONS && person.seen_nodes[1] == 2 && person.seen_nodes[2] == 0);
     char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
     CHECK(saved && strstr(saved, "gr.change_delete('many', "));
     free(saved);
@@ -702,4 +702,45 @@ TEST(window_lists_operands_and_the_path_of_what_is_clicked) {
     CHECK_EQ_INT(person.seen_nodes[2], 2);
     const struct node_query *path = &person.state.selected;
     CHECK(path->depth == 3 && path->path[0] == 0 && path->path[1] == 1 && path->path[2] == 1);
+}
+
+/* A ball in a group beside another one: alone it is what a script without the other shows. */
+TEST(window_shows_a_node_alone_and_everything_again) {
+#define TWO(other)                                                                                                     \
+    "local m = gr.material({0.5, 0.5, 0.5}, {0, 0, 0}, 1)\nlocal r, g = gr.node('root'), gr.node('group')\n"           \
+    "r:add_child(g)\ng:add_child(gr.geometry('a', gr.sphere(m)))\n" other                                              \
+    RENDER(LIGHT)
+    const struct setting setting = {.scene =
+                                        TWO("g:add_child(gr.geometry('b', gr.sphere(m)):translate(1.5, 0, 0))\n"
+                                            "r:add_child(gr.geometry('c', gr.sphere(m)):translate(-1.5, 0, 0))\n")};
+    const struct deed deeds[] = {{"ready", {.kind = WINDOW_SELECT, .node = {.depth = 3, .path = {0, 0, 0}}}, 0},
+                                 {"ready", ACTION(DO_SOLO), 20},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SOLO), 0},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 0},
+                                 QUIT};
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    CHECK(test_same_files("out-view2.png", "out.png") && !test_same_files("out-view1.png", "out.png"));
+    test_write_text(test_path("one.lua"), TWO(""));
+    CHECK_EQ_INT(test_run_shell("$gray -q --progress=none one.lua -o one.png && cmp one.png out-view1.png", ">out.txt"),
+                 0);
+}
+
+TEST(window_changes_a_material_of_the_list_and_saves_under_a_chosen_name) {
+    const struct window_event save = {.kind = WINDOW_ACTION, .action = DO_SAVE_PICTURE, .text = "mine.png"};
+    const struct deed deeds[] = {
+        {"ready", {.kind = WINDOW_NODES, .node = {.depth = 1, .path = {SECTION_MATERIALS}}}, 0},
+        {"ready", {.kind = WINDOW_SELECT, .node = {.depth = 2, .path = {SECTION_MATERIALS, 0}}}, 0},
+        {NULL, FIELD(0.1, 0.2, 0.9), 5, "kd"},
+        {"ready", save, 20},
+        {"mine.png is written", save, 0},
+        {"mine.png: the file exists", ACTION(DO_SAVE_CHANGES), 0},
+        {NULL, ACTION(DO_SAVE_PICTURE), 5},
+        QUIT};
+    static struct person person;
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT), .person = &person}), 0);
+    CHECK(person.seen_nodes[1] >= 1 && test_same_files("mine.png", "out-view1.png"));
+    check_saved(1);
+    check_contains("out-changes1.lua", (const char *[]){"gr.change_material(", NULL});
 }

@@ -1,6 +1,6 @@
 /* Rotations are multiplied on the camera's side (about its own axes) or, around a centre, on the world's side. After
  * each one the quaternion is normalised, so errors do not accumulate. */
-#include "viewer/fly_camera.h"
+#include "render/fly_camera.h"
 
 #include "math/elementary.h"
 
@@ -77,7 +77,11 @@ void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds)
     /* For a wide floor under a small scene the position of the camera is used, too. */
     fly_camera->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
     double away = vec3_length(vec3_sub(fly_camera->centre, fly_camera->home.position));
-    fly_camera->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
+    fly_camera->speed = fly_camera->usual = (size < 2 * away || away == 0 ? size : 2 * away) / 4;
+}
+
+void fly_camera_near(struct fly_camera *fly_camera, double distance) {
+    fly_camera->speed = fmin(fmax(0.7 * distance, 0.01 * fly_camera->usual), fly_camera->usual);
 }
 
 struct camera fly_camera_current(const struct fly_camera *fly_camera) {

@@ -1,7 +1,7 @@
 /* Edits made in a window: steps, each with its inverse, that can be undone and redone, and the current changes.
  * Independent of window and scene. */
-#ifndef GRAY_VIEWER_EDITS_H
-#define GRAY_VIEWER_EDITS_H
+#ifndef GRAY_SCENE_EDITS_H
+#define GRAY_SCENE_EDITS_H
 
 #include "scene/change.h"
 #include "settings/settings.h"

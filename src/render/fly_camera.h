@@ -1,12 +1,11 @@
 /* Flying through a scene: a position and an orientation that keys and the mouse change. The orientation is a quaternion
  * (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985), so no direction is special. Independent of
  * the window: times are seconds, distances of the mouse are fractions of the window's height. */
-#ifndef GRAY_VIEWER_FLY_CAMERA_H
-#define GRAY_VIEWER_FLY_CAMERA_H
+#ifndef GRAY_RENDER_FLY_CAMERA_H
+#define GRAY_RENDER_FLY_CAMERA_H
 
 #include "math/box.h"
 #include "settings/settings.h"
-#include "window/window.h"
 
 struct quaternion {
     double w, x, y, z;
@@ -20,9 +19,13 @@ struct pose {
 
 enum { FLY_VIEWS = 64 };
 
+/* Keys that move the camera while they are held. */
+enum fly_camera_key { FLY_FORWARD, FLY_BACK, FLY_LEFT, FLY_RIGHT, FLY_UP, FLY_DOWN, FLY_FAST, FLY_SLOW, FLY_KEYS };
+
 struct fly_camera {
     struct pose pose, home;
-    double speed;                 /* world units a second */
+    double speed;                 /* world units a second ... */
+    double usual;                 /* ... where nothing is in front */
     struct vec3 centre;           /* that orbits go round */
     bool down[FLY_KEYS];          /* which keys are held */
     struct pose views[FLY_VIEWS]; /* in the order of time */
@@ -34,6 +37,8 @@ struct fly_camera {
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
 /* Sets speed and centre for other bounds; the camera does not move. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
+/* The speed for what is in front at this distance: not faster than through the scene in four seconds. */
+void fly_camera_near(struct fly_camera *fly_camera, double distance);
 /* The camera at its current position. */
 struct camera fly_camera_current(const struct fly_camera *fly_camera);
 /* Applies the pressed keys for `seconds`. True: the camera has moved. */

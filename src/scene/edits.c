@@ -1,6 +1,6 @@
 /* A step stores the state before and after, so undoing applies the state before; the list of current changes is never
  * computed from the beginning. */
-#include "viewer/edits.h"
+#include "scene/edits.h"
 
 #include "base/mem.h"
 
@@ -141,6 +141,7 @@ static void format_change(const struct change *c, char *line, size_t size) {
         else
             (void)snprintf(line, size, "gr.change_add_light(%s, %s)\n", a, b);
         return;
+    case CHANGE_SOLO:
     case CHANGE_KINDS:
         break;
     }

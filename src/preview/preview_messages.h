@@ -1,7 +1,7 @@
 /* The messages of a window: commands of the supervisor, replies of the render process, and where the overlay is in the
  * memory of the film, which both map. */
-#ifndef GRAY_VIEWER_PREVIEW_MESSAGES_H
-#define GRAY_VIEWER_PREVIEW_MESSAGES_H
+#ifndef GRAY_PREVIEW_PREVIEW_MESSAGES_H
+#define GRAY_PREVIEW_PREVIEW_MESSAGES_H
 
 #include "inspect/pick.h"
 #include "render/headlight.h"

@@ -1,7 +1,7 @@
 /* One ray through the centre of each pixel determines which pixels show a node, within the rectangle around the boxes
  * of the node's primitives in the picture. The first hit of the ray is used: a node behind another one has no outline
  * there. */
-#include "viewer/view_overlay_internal.h"
+#include "preview/view_overlay_internal.h"
 
 #include "base/mem.h"
 #include "csg/csg.h"

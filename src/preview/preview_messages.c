@@ -1,6 +1,6 @@
 /* The film of a picture in a window is followed in its memory by the layers, and these by the overlay: lines, four
  * floats a pixel, and the outline, a byte. */
-#include "viewer/preview_messages.h"
+#include "preview/preview_messages.h"
 
 #include "film/aov.h"
 

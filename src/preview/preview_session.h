@@ -1,7 +1,7 @@
 /* Executes commands of the viewer in the render process: renders passes, picks and changes nodes, traces pixels. The
  * world is kept as long as only the camera or a colour changes. */
-#ifndef GRAY_VIEWER_PREVIEW_SESSION_H
-#define GRAY_VIEWER_PREVIEW_SESSION_H
+#ifndef GRAY_PREVIEW_PREVIEW_SESSION_H
+#define GRAY_PREVIEW_PREVIEW_SESSION_H
 
 #include "base/pool.h"
 #include "render/render.h"

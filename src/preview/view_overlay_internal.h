@@ -1,10 +1,10 @@
 /* The part of the overlay of a picture in a window that needs rays, so that only the render process can make it: the
  * lines of --overlay, and the pixels that show the selected node. The render process stores it in the memory of the
  * film, after the layers, and replies; the supervisor copies it before it sends another command. */
-#ifndef GRAY_VIEWER_VIEW_OVERLAY_INTERNAL_H
-#define GRAY_VIEWER_VIEW_OVERLAY_INTERNAL_H
+#ifndef GRAY_PREVIEW_VIEW_OVERLAY_INTERNAL_H
+#define GRAY_PREVIEW_VIEW_OVERLAY_INTERNAL_H
 
-#include "viewer/preview_messages.h"
+#include "preview/preview_messages.h"
 #include "world/node_path.h"
 
 struct view_overlay_scene {

@@ -1,12 +1,12 @@
 /* Executes a command, replies, and waits for the next one; the viewer makes all decisions. All changes are undone and
  * applied again together, so that their order is that of the list, as in a script. */
-#include "viewer/preview_session.h"
+#include "preview/preview_session.h"
 
 #include "base/clock.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "light/light_edit.h"
-#include "viewer/view_overlay_internal.h"
+#include "preview/view_overlay_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -197,8 +197,11 @@ static bool answer_click(const struct preview_state *work, const struct preview_
     struct render_job job = view_job(work, &command->view);
     const struct node *root = work->preview->request->root;
     const struct pick_query query = {command->x, command->y, command->up};
-    if (!(command->by_node ? pick_node(&job, root, &command->node, picked, error)
-                           : pick_at(&job, root, query, picked, error)))
+    bool material = command->by_node && command->node.depth > 0 && command->node.path[0] == SECTION_MATERIALS;
+    if (material)
+        pick_material(job.world, &command->node, picked);
+    else if (!(command->by_node ? pick_node(&job, root, &command->node, picked, error)
+                                : pick_at(&job, root, query, picked, error)))
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < MATERIAL_PART_PARTS; part++)
@@ -301,6 +304,7 @@ static bool execute_command(struct preview_state *work, const struct preview_com
     case COMMAND_NODES:
         reply->kind = REPLY_NODES;
         node_list_rows(work->preview->request->root, &command->node, &reply->nodes);
+        material_rows(work->preview->job->world, &command->node, &reply->nodes);
         return true;
     case COMMAND_END:
         break;
