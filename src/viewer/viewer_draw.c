@@ -88,7 +88,8 @@ struct interpolation {
 
 static struct interpolation interpolate_pixels(uint32_t at, uint32_t divide, uint32_t count) {
     uint32_t middle = (256 * at + 128) / divide, first = middle < 128 ? 0 : (middle - 128) >> 8;
-    return (struct interpolation){first, first + 1 < count ? first + 1 : first, middle < 128 ? 0 : (middle - 128) & 255};
+    return (struct interpolation){first, first + 1 < count ? first + 1 : first,
+                                  middle < 128 ? 0 : (middle - 128) & 255};
 }
 
 static void blend(uint8_t *restrict out, const uint8_t *a, const uint8_t *b, uint32_t far, size_t count) {
