@@ -155,12 +155,18 @@ static void survey_loop(const struct cell_work *work, const struct loop *loop, s
     }
 }
 
-/* Each plane is taken where its piece of the surface is near to the point. */
+/* Each plane is taken where its piece of the surface is near to the point; from a little below the others, for a line
+ * in a face would miss. */
 static void move_planes(const struct cell_work *work, struct plane *planes, int count, struct vec3 at) {
+    struct vec3 below = at;
+    double depth = 1e-5 * work->size;
+    for (int i = 0; i < count; i++)
+        below = vec3_add_scaled(below, planes[i].normal, -depth);
     for (int i = 0; i < count; i++) {
         struct plane *region = &planes[i];
+        struct vec3 origin = vec3_add_scaled(below, region->normal, depth);
         struct solid_crossing met;
-        if (solid_cast_near(&work->contour->probe, at, region->normal, work->size, &met) &&
+        if (solid_cast_near(&work->contour->probe, origin, region->normal, work->size, &met) &&
             met.surface == region->surface && vec3_dot(met.normal, region->normal) > 0.7)
             *region = (struct plane){met.point, met.normal, met.surface};
     }
@@ -517,7 +523,8 @@ bool cell_mesh(struct contour *contour, const struct cell *cell) {
         at[i / 2] += i % 2 * cell->size;
         collect_face(&work, i / 2, at, cell->size, i % 2);
     }
-    for (int i = 0; i < work.count && !contour->failed && !(work.bad && cell->size > 1); i++) {
+    bool last = cell->size == 1 || (cell->size <= contour->grid.small && contour->divisions == 0);
+    for (int i = 0; i < work.count && !contour->failed && !(work.bad && !last); i++) {
         if (work.arcs[i].used)
             continue;
         if (follow_loop(&work, i, &loop))
@@ -525,10 +532,11 @@ bool cell_mesh(struct contour *contour, const struct cell *cell) {
         else
             work.bad = true;
     }
-    if (cell->size == 1 || contour->failed)
+    if (last || contour->failed)
         return true;
     if (!work.bad && !some_intersect(contour, first) && !some_sag(contour, first) && passes(&work, cell, first))
         return true;
+    contour->divisions -= cell->size <= contour->grid.small;
     contour->triangles.count = first;
     return false;
 }

@@ -194,17 +194,19 @@ static void cast_leaf_lines(struct contour *contour) {
     }
 }
 
-/* Finest cells along a side: crossings of lines have 32 bits, and keys of cells 16 for each axis. */
-enum { FINEST = 4096 };
+/* Finest cells along a side: keys of cells have 16 bits for each axis. */
+enum { FINEST = 32000, DEEPEST = 32, SMALL_DIVISIONS = 4000 };
 
 bool line_grid_build(struct contour *contour, uint32_t cells, struct pool *pool, struct error *error) {
     struct line_grid *grid = &contour->grid;
     const struct box *bounds = &contour->probe.csg->bounds;
     struct vec3 extent = vec3_sub(bounds->max, bounds->min);
     double side = contour->size / cells;
-    /* As fine as half the tolerance. */
-    grid->base = 1;
-    while (grid->base * 2 * (int)cells <= FINEST && side / grid->base > 0.5 * contour->tolerance)
+    int size = 1;
+    /* Small cells are about half the tolerance, the finest ones a 64th of it. */
+    for (grid->small = 1; size * 2 * (int)cells <= FINEST && side / size > 0.5 * contour->tolerance;)
+        size *= 2;
+    for (grid->base = size; grid->small < DEEPEST && grid->base * 2 * (int)cells <= FINEST; grid->small *= 2)
         grid->base *= 2;
     grid->step = side / grid->base;
     for (int axis = 0; axis < 3; axis++) {
@@ -222,6 +224,7 @@ bool line_grid_build(struct contour *contour, uint32_t cells, struct pool *pool,
     if (!cast_base_lines(contour, pool, error))
         return false;
     cast_leaf_lines(contour);
+    contour->divisions = SMALL_DIVISIONS;
     return !contour->failed || error_no_memory(error, "the lines through a solid");
 }
 

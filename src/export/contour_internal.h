@@ -34,11 +34,12 @@ struct known_point {
 };
 
 /* The nodes of the finest cells are those of a regular grid. A base cell has `base` finest cells on each side; the
- * sizes of cells are powers of two. */
+ * sizes of cells are powers of two. Cells of the size `small` are as small as the tolerance asks for; only some are
+ * divided further, where the solid is nearly no manifold. */
 struct line_grid {
     struct vec3 origin;
     double step;
-    int base, count[3], base_count[3];
+    int base, small, count[3], base_count[3];
     struct list lines, crossings; /* struct grid_line, grid_crossing */
     struct key_map line_numbers;
     struct list known;     /* struct known_point */
@@ -65,6 +66,7 @@ struct contour {
     struct list vertices, triangles; /* struct solid_vertex, solid_triangle */
     struct list arcs, faces;
     struct key_map face_numbers, divided, passed; /* cells that are divided, that passed the tests which take long */
+    int divisions;                                /* of small cells that are left */
     bool failed;                                  /* no memory: the mesh is of no use */
 };
 

@@ -14,7 +14,8 @@
 #define NOTHING UINT32_MAX
 enum { RING_LIMIT = 64, PASS_LIMIT = 60 };
 
-static const double growth = 1.7; /* of the limit of the length, in a pass */
+static const double growth = 1.7;       /* of the limit of the length, in a pass */
+static const double sliver_share = 0.3; /* of the tolerance, for triangles without a height */
 
 struct sample {
     struct vec3 point;
@@ -160,7 +161,7 @@ static bool is_edge_of_solid(const struct simplifier *s, uint32_t corner) {
 
 static void find_creases(struct simplifier *s) {
     for (uint32_t corner = 0; corner < 3 * s->mesh->triangles.count; corner++)
-        if (is_edge_of_solid(s, corner))
+        if (vertices_of(s, corner / 3)[0] != NOTHING && is_edge_of_solid(s, corner))
             s->crease[corner / 3] |= (uint8_t)(1 << corner % 3);
     for (uint32_t i = 0; i < s->mesh->vertices.count; i++) {
         int creases = 0;
@@ -453,6 +454,29 @@ static bool remove_vertex(struct simplifier *s, uint32_t vertex, double limit, b
     return false;
 }
 
+/* Triangles without a height lie along edges of the solid, and their normals mean nothing: the vertex in the middle of
+ * the three goes, before creases are looked for. */
+static void remove_slivers(struct simplifier *s) {
+    s->tolerance = sliver_share * s->input->tolerance;
+    for (uint32_t i = 0; i < s->mesh->triangles.count; i++) {
+        const uint32_t *vertex = vertices_of(s, i);
+        if (vertex[0] == NOTHING)
+            continue;
+        struct corners c = corners_of(s->mesh, i);
+        double length = longest_edge(c.point), twice_area = vec3_length(triangle_normal(c.point));
+        if (twice_area > 8 * s->input->resolution * length)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            double opposite = vec3_length(vec3_sub(c.point[(k + 1) % 3], c.point[(k + 2) % 3]));
+            if (opposite < length)
+                continue;
+            if (!collapse_edge(s, c.vertex[k], c.vertex[(k + 1) % 3]))
+                (void)collapse_edge(s, c.vertex[k], c.vertex[(k + 2) % 3]);
+            break;
+        }
+    }
+}
+
 static uint32_t *shuffled(uint32_t count) {
     uint32_t *order = mem_alloc((size_t)count * sizeof *order);
     for (uint32_t i = 0; order && i < count; i++)
@@ -511,6 +535,7 @@ static bool begin(struct simplifier *s) {
         attach(s, corner);
     if (!note_pieces(s))
         return false;
+    remove_slivers(s);
     find_creases(s);
     return true;
 }

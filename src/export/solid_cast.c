@@ -1,9 +1,13 @@
 #include "export/solid_cast_internal.h"
 
 #include "base/mem.h"
+#include "base/unreachable.h"
 #include "math/frame.h"
+#include "mesh/mesh.h"
+#include "shape/height_field.h"
 
-enum { FIRST_CROSSINGS = 64, FIRST_SCRATCH = 1024 };
+enum { FIRST_CROSSINGS = 64, FIRST_SCRATCH = 1024, FEW_FACETS = 4096 };
+#define FEW_FACETS_STEP 0.03 /* about as many, of the unit square */
 
 bool solid_probe_init(struct solid_probe *probe, const struct csg *csg) {
     *probe = (struct solid_probe){.csg = csg, .capacity = FIRST_CROSSINGS};
@@ -19,11 +23,30 @@ void solid_probe_destroy(struct solid_probe *probe) {
     mem_free(probe->found);
 }
 
-/* The parts of implicit solids and meshes are no faces: there an edge is where the normal turns. */
+/* Whether the parts of a shape are smooth pieces that meet in edges. Those of implicit solids are none; of many facets
+ * most edges are to be forgotten: there an edge is where the normal turns much. */
+static bool has_pieces(const struct shape *shape) {
+    switch (shape->kind) {
+    case SHAPE_IMPLICIT:
+        return false;
+    case SHAPE_MESH:
+        return mesh_triangle_count(shape->mesh) <= FEW_FACETS;
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_step(shape->height_field) > FEW_FACETS_STEP;
+        ANALYTIC_SHAPES(LIST_LABEL)
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_SWEEP:
+    case SHAPE_BLOB:
+    case SHAPE_CURVE:
+        return true;
+    }
+    UNREACHABLE("a shape has a kind");
+}
+
 static uint32_t surface_of(const struct csg *csg, const struct crossing *crossing) {
-    enum shape_kind kind = csg->leaves[crossing->leaf].shape.kind;
-    bool has_faces = kind != SHAPE_IMPLICIT && kind != SHAPE_MESH && kind != SHAPE_HEIGHT_FIELD;
-    return (uint32_t)crossing->leaf << 16 | (has_faces ? crossing->part & 0xffff : 0);
+    bool pieces = has_pieces(&csg->leaves[crossing->leaf].shape);
+    return (uint32_t)crossing->leaf << 16 | (pieces ? crossing->part & 0xffff : 0);
 }
 
 static bool make_room(struct solid_probe *probe, uint32_t count) {

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "export/contour_internal.h"
 #include "export/key_map_internal.h"
+#include "export/separate_internal.h"
 #include "export/simplify_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/triangles_internal.h"
@@ -138,151 +139,6 @@ bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct er
     mem_free(degree);
     mem_free(seen);
     return memory || error_no_memory(error, "the edges of a mesh");
-}
-
-/* --- touching parts --- */
-
-/* Shares of the tolerance: parts of the surface that are nearer than the first recede by the second. */
-static const double touch_share = 0.05, recede_share = 0.15;
-
-struct separation {
-    struct solid_mesh *mesh;
-    struct box_tree tree;
-    double slack;
-    uint32_t *first, *triangles; /* by vertex, its triangles */
-    uint32_t hits;
-};
-
-static void count_hit(void *context, uint32_t one, uint32_t other) {
-    (void)one, (void)other;
-    ++*(uint32_t *)context;
-}
-
-/* The direction in which a vertex recedes: against its normals, of a corner those of its triangles. */
-static struct vec3 outward_at(const struct separation *s, uint32_t vertex) {
-    const struct solid_vertex *at = solid_vertex_at(s->mesh, vertex);
-    if (at->sharp == VERTEX_SMOOTH)
-        return at->normal[0];
-    if (at->sharp == VERTEX_EDGE)
-        return vec3_normalize(vec3_add(at->normal[0], at->normal[1]));
-    struct vec3 sum = vec3_all(0);
-    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
-        struct corners corners = corners_of(s->mesh, s->triangles[i]);
-        sum = vec3_add(sum, triangle_normal(corners.point));
-    }
-    return vec3_normalize(sum);
-}
-
-static bool is_neighbour(const struct separation *s, uint32_t vertex, const struct corners *corners) {
-    if (corners->vertex[0] == vertex || corners->vertex[1] == vertex || corners->vertex[2] == vertex)
-        return true;
-    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
-        const uint32_t *own = solid_triangle_at(s->mesh, s->triangles[i])->vertex;
-        for (int k = 0; k < 9; k++)
-            if (own[k / 3] == corners->vertex[k % 3])
-                return true;
-    }
-    return false;
-}
-
-/* Another part of the surface is within the distance; `opposite`: one that faces this one. */
-static bool is_touched(const struct separation *s, uint32_t vertex, double distance, bool opposite) {
-    struct vec3 point = solid_vertex_at(s->mesh, vertex)->point, margin = vec3_all(distance);
-    struct vec3 outward = outward_at(s, vertex);
-    struct region_search search;
-    uint32_t other;
-    region_search_begin(&search, &s->tree, (struct box){vec3_sub(point, margin), vec3_add(point, margin)});
-    while (region_search_next(&search, &other)) {
-        struct corners corners = corners_of(s->mesh, other);
-        if (triangle_distance_squared(point, corners.point) < distance * distance &&
-            !is_neighbour(s, vertex, &corners) &&
-            (!opposite || vec3_dot(outward, vec3_normalize(triangle_normal(corners.point))) < 0.3))
-            return true;
-    }
-    return false;
-}
-
-static bool list_triangles(struct separation *s) {
-    size_t vertices = s->mesh->vertices.count, corners = 3 * s->mesh->triangles.count;
-    s->first = mem_alloc_zero(vertices + 2, sizeof *s->first);
-    s->triangles = mem_alloc(corners * sizeof *s->triangles);
-    if (!s->first || !s->triangles)
-        return false;
-    for (size_t i = 0; i < corners; i++)
-        s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 2]++;
-    for (size_t i = 0; i < vertices; i++)
-        s->first[i + 2] += s->first[i + 1];
-    for (size_t i = 0; i < corners; i++)
-        s->triangles[s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 1]++] = (uint32_t)(i / 3);
-    return true;
-}
-
-/* Of all vertices; NULL: no memory. */
-static uint8_t *find_touched(const struct separation *s, double distance, bool opposite, uint32_t *count) {
-    uint8_t *touched = mem_alloc_zero(s->mesh->vertices.count, 1);
-    *count = 0;
-    for (uint32_t i = 0; touched && i < s->mesh->vertices.count; i++) {
-        touched[i] = is_touched(s, i, distance, opposite);
-        *count += touched[i];
-    }
-    return touched;
-}
-
-/* Moves the vertices; taken back if that makes more triangles intersect. */
-static bool recede(struct separation *s, const uint8_t *touched, double tolerance, struct pool *pool,
-                   struct solid_findings *findings, struct error *error) {
-    uint32_t count = (uint32_t)s->mesh->vertices.count, moved = 0, hits = 0;
-    struct vec3 *before = mem_alloc(count * sizeof *before), *after = mem_alloc(count * sizeof *after);
-    struct box_tree tree;
-    bool ok = (before && after) || error_no_memory(error, "the mesh of a solid");
-    for (uint32_t i = 0; ok && i < count; i++) {
-        before[i] = after[i] = solid_vertex_at(s->mesh, i)->point;
-        if (touched[i])
-            after[i] = vec3_add_scaled(after[i], outward_at(s, i), -recede_share * tolerance);
-    }
-    for (uint32_t i = 0; ok && i < count; i++) {
-        solid_vertex_at(s->mesh, i)->point = after[i];
-        if (!touched[i])
-            continue;
-        findings->position = before[i];
-        moved++;
-    }
-    ok = ok && triangle_tree_build(&tree, s->mesh, pool, error);
-    if (ok) {
-        find_intersections(s->mesh, &tree, s->slack, count_hit, &hits);
-        box_tree_destroy(&tree);
-        bool worse = hits > s->hits || (hits == s->hits && hits > 0);
-        for (uint32_t i = 0; worse && i < count; i++)
-            solid_vertex_at(s->mesh, i)->point = before[i];
-        findings->separated = worse ? 0 : moved;
-    }
-    mem_free(before);
-    mem_free(after);
-    return ok;
-}
-
-/* Where parts of the solid touch or cross, a mesh cannot be both exact and free of intersections: they recede. */
-static bool separate(const struct solid_input *input, double size, struct solid_mesh *mesh,
-                     struct solid_findings *findings, struct error *error) {
-    struct separation s = {.mesh = mesh, .slack = 1e-13 * size};
-    uint32_t count = 0;
-    if (!triangle_tree_build(&s.tree, mesh, input->pool, error))
-        return false;
-    bool ok = list_triangles(&s) || error_no_memory(error, "the mesh of a solid");
-    if (ok)
-        find_intersections(mesh, &s.tree, s.slack, count_hit, &s.hits);
-    uint8_t *touched = ok ? find_touched(&s, 1e-7 * size, false, &count) : NULL;
-    if (touched && (count > 0 || s.hits > 0)) {
-        mem_free(touched);
-        touched = find_touched(&s, touch_share * input->tolerance, true, &count);
-        ok = touched && recede(&s, touched, input->tolerance, input->pool, findings, error);
-    }
-    ok = ok && (touched || error_no_memory(error, "the mesh of a solid"));
-    mem_free(touched);
-    mem_free(s.first);
-    mem_free(s.triangles);
-    box_tree_destroy(&s.tree);
-    return ok;
 }
 
 /* --- tests of a mesh --- */
@@ -445,8 +301,8 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
         solid_mesh_destroy(&fine);
         return is_empty(input, error);
     }
-    bool ok = separate(input, size, &fine, findings, error);
     round_coordinates(&fine);
+    bool ok = separate_parts(&fine, input, findings, error);
     uint8_t *fixed = mem_alloc_zero(fine.vertices.count, 1);
     v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
     while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))

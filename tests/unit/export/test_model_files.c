@@ -1,0 +1,246 @@
+/* -o MODEL, node:export and --check-print, and the files that they write. */
+#include "base/file.h"
+#include "base/mem.h"
+#include "formats/model.h"
+#include "image/zlib_memory.h"
+#include "math/elementary.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char part[] =
+    "local red = gr.material({0.8, 0.2, 0.1}, {0, 0, 0}, 20)\n"
+    "local part = gr.difference{gr.box{material = red, min = {0, 0, 0}, max = {40, 30, 5}},\n"
+    "    gr.cylinder{name = 'drill', from = {20, 15, -1}, to = {20, 15, 6}, radius = 8}, name = 'part'}\n";
+
+/* The part with more lines after it. */
+static const char *part_and(const char *more) {
+    static char text[4096];
+    (void)snprintf(text, sizeof text, "%s%s", part, more);
+    return text;
+}
+
+static void expect(const char *scene, const char *options, int status, const char *words) {
+    struct test_result result = test_gray_scene(scene, options, NULL);
+    CHECK_EQ_INT(result.status, status);
+    if (words && !strstr(result.err, words) && !strstr(result.out, words))
+        test_fail(__FILE__, __LINE__, "no '%s' in '%s%s'", words, result.err, result.out);
+    test_free_result(&result);
+}
+
+static double volume_of(const struct mesh *mesh) {
+    double volume = 0;
+    for (uint32_t i = 0; i < mesh_triangle_count(mesh); i++) {
+        struct vec3 c[3];
+        uint32_t slot;
+        mesh_triangle(mesh, i, c, &slot);
+        volume += vec3_dot(c[0], vec3_cross(c[1], c[2])) / 6;
+    }
+    return volume;
+}
+
+TEST(models_are_read_again_with_their_volume_and_are_closed) {
+    static const char *const names[] = {"part.stl", "text.stl", "part.obj", "part.ply"};
+    expect(part_and("part:export('part.stl')\npart:export('text.stl', {text = true})\npart:export('part.obj')\n"
+                    "part:export('part.ply', {tolerance = 0.1})\n"),
+           "scene.lua", 0, NULL);
+    for (int i = 0; i < 4; i++) {
+        struct model model = {0};
+        struct model_options options = {0};
+        struct error error = {0};
+        if (!model_read(&model, test_path(names[i]), &options, &error)) {
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+            continue;
+        }
+        const struct mesh *mesh = model_meshes(&model)[0].mesh;
+        CHECK(mesh_is_closed(mesh) && mesh_is_outward(mesh));
+        CHECK_NEAR(volume_of(mesh), 6000 - PI * 320, 0.1 * 2 * PI * 40);
+        if (i == 2) { /* the cut has the material of the drill */
+            CHECK_EQ_INT(model.materials.count, 2);
+            CHECK_NEAR(model_materials(&model)[0].kd.r + model_materials(&model)[1].kd.r, 1.3, 1e-6);
+        }
+        model_destroy(&model);
+    }
+}
+
+/* The first file of a zip, inflated. */
+static char *first_of_zip(const char *path) {
+    size_t size = 0;
+    char *bytes = test_read_file(path, &size), *out = mem_alloc_zero(1 << 20, 1);
+    z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
+    CHECK(bytes && size > 60 && memcmp(bytes, "PK\3\4", 4) == 0 && memcmp(bytes + 30, "3D/3dmodel.model", 16) == 0);
+    CHECK(inflateInit2(&stream, -15) == Z_OK);
+    stream.next_in = (Bytef *)bytes + 46;
+    stream.avail_in = (uInt)(size - 46);
+    stream.next_out = (Bytef *)out;
+    stream.avail_out = (1 << 20) - 1;
+    CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END);
+    (void)inflateEnd(&stream);
+    free(bytes);
+    return out;
+}
+
+TEST(a_3mf_file_has_units_names_and_colours) {
+    expect(part_and("gr.union{part, gr.sphere{name = 'ball', centre = {100, 0, 0}, radius = 3}}"
+                    ":export('part.3mf', {unit = 'in'})\n"),
+           "scene.lua", 0, NULL);
+    expect("local root = gr.node 'root'\nroot:add_child(gr.sphere{name = 'left & \"right\"', radius = 1})\n"
+           "root:add_child(gr.sphere{name = 'other', centre = {5, 0, 0}, radius = 1})\nroot:export('two.3mf')\n",
+           "scene.lua", 0, NULL);
+    char *xml = first_of_zip(test_path("part.3mf"));
+    CHECK(strstr(xml, "unit=\"inch\"") && strstr(xml, "displaycolor=\"#CC331A\""));
+    mem_free(xml);
+    xml = first_of_zip(test_path("two.3mf"));
+    CHECK(strstr(xml, "name=\"left &amp; &quot;right&quot;\"") && strstr(xml, "name=\"other\""));
+    CHECK(strstr(xml, "<item objectid=\"3\"/>"));
+    mem_free(xml);
+}
+
+TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
+    expect("gr.mesh(gr.material({1, 1, 1}, {0, 0, 0}, 1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, "
+           "{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}):export('four.stl')\n",
+           "scene.lua", 0, NULL);
+    size_t size = 0;
+    char *bytes = test_read_file(test_path("four.stl"), &size);
+    CHECK_EQ_INT(size, 84 + 4 * 50);
+    free(bytes);
+}
+
+TEST(a_model_of_the_command_line_is_the_scene_of_the_only_picture_or_of_a_chosen_one) {
+    static const char two[] = "gr.render{node = gr.sphere{name = 'a', radius = 1}, file = 'a.png', width = 8}\n"
+                              "gr.render{node = gr.sphere{name = 'b', radius = 2}, file = 'b.png', width = 8}\n";
+    expect(part_and("gr.render{node = part, file = 'x.png', width = 8}\n"), "-o one.stl scene.lua", 0, NULL);
+    CHECK(file_is_regular(test_path("one.stl")) && !file_is_regular(test_path("x.png")));
+    expect(part_and("gr.render{node = part, file = 'x.png', width = 8}\n"), "-o both.stl -o y.png scene.lua", 0, NULL);
+    CHECK(file_is_regular(test_path("both.stl")) && file_is_regular(test_path("y.png")));
+    expect(two, "-o two.stl scene.lua", 2, "1 a.png, 2 b.png; --picture N chooses one");
+    CHECK(!file_is_regular(test_path("two.stl")));
+    expect(two, "-o two.stl --picture 2 scene.lua", 0, NULL);
+    expect(two, "-o two.stl --picture 3 scene.lua", 2, "the script renders 2 pictures");
+    expect(two, "-o b.stl --picture 2 --node c scene.lua", 1, "--node c: the scene has no node of this name");
+    expect("gr.frames{count = 2, draw = function() return {node = gr.sphere{radius = 1}, width = 8} end}\n",
+           "-o frame.stl scene.lua", 1, "--frames N-N chooses it");
+    expect("gr.frames{count = 2, draw = function() return {node = gr.sphere{radius = 1}, width = 8} end}\n",
+           "-o frame.stl --frames 2-2 scene.lua", 0, NULL);
+    expect("print(1)\n", "-o none.stl scene.lua", 2, "the script renders no picture");
+}
+
+TEST(what_is_no_solid_is_an_error_that_names_the_node_and_writes_nothing) {
+    expect("gr.rectangle{name = 'sheet'}:export('x.stl')\n", "scene.lua", 1,
+           "node 'sheet' is no solid, because it is flat");
+    expect("gr.plane{name = 'ground', normal = {0, 0, 1}}:export('x.stl')\n", "scene.lua", 1,
+           "node 'ground' has no end");
+    expect("gr.mesh{name = 'hole', verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces = {{0, 1, 2}}}"
+           ":export('x.stl')\n",
+           "scene.lua", 1, "node 'hole' is no solid, because its mesh is open");
+    expect("gr.node('nothing'):export('x.stl')\n", "scene.lua", 1, "node 'nothing' is empty");
+    CHECK(!file_is_regular(test_path("x.stl")));
+}
+
+TEST(models_follow_the_rules_of_pictures_for_names_and_replaced_files) {
+    expect(part_and("part:export('../x.stl')\n"), "scene.lua", 1,
+           "models of scripts must be below the working directory");
+    expect(part_and("part:export('x.png')\n"), "scene.lua", 1, "the name of a model ends in .stl .obj .ply .3mf");
+    test_write_text(test_path("mine.stl"), "my notes\n");
+    expect(part_and("part:export('mine.stl')\n"), "scene.lua", 1, "exists already and is not a model");
+    expect(part_and("gr.render{node = part, width = 8}\n"), "-o mine.stl scene.lua", 1, "--force replaces it");
+    expect(part_and("gr.render{node = part, width = 8}\n"), "-o mine.stl --force scene.lua", 0, NULL);
+    expect(part_and("part:export('mine.stl')\npart:export('mine.stl')\n"), "scene.lua", 0, NULL);
+    expect(part_and("part:export('checked.stl')\n"), "--check scene.lua", 0, NULL);
+    CHECK(!file_is_regular(test_path("checked.stl")));
+    expect(part_and("part:export('x.stl')\n"), "--tolerance 1 scene.lua", 2, "--tolerance is only for -o MODEL");
+}
+
+TEST(the_bytes_of_a_model_depend_on_no_number_of_threads) {
+    expect(part_and("part:export('one.3mf')\n"), "-j 1 scene.lua", 0, NULL);
+    expect(part_and("part:export('three.3mf')\n"), "-j 3 scene.lua", 0, NULL);
+    size_t one = 0, three = 0;
+    char *a = test_read_file(test_path("one.3mf"), &one), *b = test_read_file(test_path("three.3mf"), &three);
+    CHECK(a && b && one == three && memcmp(a, b, one) == 0);
+    free(a);
+    free(b);
+}
+
+/* Numbers after a word of the report. */
+static double number_after(const char *text, const char *word) {
+    const char *at = strstr(text, word);
+    return at ? strtod(at + strlen(word), NULL) : NAN;
+}
+
+static double thinnest(const char *solid) {
+    char scene[1024];
+    (void)snprintf(scene, sizeof scene, "gr.render{node = %s, width = 8}\n", solid);
+    struct test_result result = test_gray_scene(scene, "--check-print scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    double wall = number_after(result.out, "thinnest wall: ");
+    test_free_result(&result);
+    return wall;
+}
+
+TEST(the_thinnest_wall_of_a_shell_a_tube_and_two_plates_is_found_within_2_percent) {
+    CHECK_NEAR(thinnest("gr.difference{gr.sphere{radius = 10}, gr.sphere{radius = 9.8}}"), 0.2, 0.004);
+    CHECK_NEAR(thinnest("gr.difference{gr.cylinder{from = {0, 0, 0}, to = {0, 0, 30}, radius = 5}, "
+                        "gr.cylinder{from = {0, 0, -1}, to = {0, 0, 31}, radius = 4.5}}"),
+               0.5, 0.01);
+    CHECK_NEAR(
+        thinnest("gr.union{gr.box{min = {0, 0, 0}, max = {20, 20, 2}}, gr.box{min = {0, 0, 2}, max = {1, 20, 20}}}"), 1,
+        0.02);
+}
+
+TEST(check_print_reports_volume_overhang_and_contact) {
+    struct test_result result = test_gray_scene(
+        "local t = gr.union{gr.box{min = {4, 4, 0}, max = {6, 6, 8}}, gr.box{min = {0, 0, 8}, max = {10, 10, 10}}}\n"
+        "gr.render{node = t, width = 8}\n",
+        "--check-print scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.out, "closed: yes") && strstr(result.out, "size: 10 x 10 x 10"));
+    CHECK_NEAR(number_after(result.out, "volume: "), 232, 1e-3);
+    CHECK_NEAR(number_after(result.out, "steepest overhang: "), 90, 1e-3);
+    CHECK_NEAR(number_after(result.out, "area above 45 degrees: "), 96, 1e-3);
+    CHECK_NEAR(number_after(result.out, "contact area "), 4, 1e-3);
+    CHECK(strstr(result.out, "stands on the plate: yes"));
+    test_free_result(&result);
+    result = test_gray_scene("gr.render{node = gr.union{gr.box{min = {0, 0, 0}, max = {1, 1, 2}}, "
+                             "gr.box{min = {0, 0, 2}, max = {9, 1, 3}}}, width = 8}\n",
+                             "--check-print scene.lua", NULL);
+    CHECK(strstr(result.out, "stands on the plate: no"));
+    test_free_result(&result);
+}
+
+TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 20) {
+    static const char *const endings[] = {"stl", "obj", "ply", "3mf"};
+    test_need_tools("timeout");
+    for (int kind = 0; kind < 4; kind++) {
+        char scene[1024], name[32], command[256];
+        size_t old_size = 0, new_size = 0, size = 0;
+        (void)snprintf(name, sizeof name, "x.%s", endings[kind]);
+        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 1}:export('x.%s', {tolerance = 0.02})\n",
+                       endings[kind]);
+        expect(scene, "scene.lua", 0, NULL);
+        char *old = test_read_file(test_path(name), &old_size);
+        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 2}:export('x.%s', {tolerance = 0.02})\n",
+                       endings[kind]);
+        test_write_text(test_path("new.lua"), scene);
+        (void)snprintf(command, sizeof command, "cp %s keep && $gray -q new.lua && mv %s new && mv keep %s", name, name,
+                       name);
+        CHECK_EQ_INT(test_run_shell(command, ""), 0);
+        char *new = test_read_file(test_path("new"), &new_size);
+        for (int i = 0; i < 2 * times; i++) {
+            (void)snprintf(command, sizeof command, "timeout -s KILL %.4f $gray -q new.lua; true",
+                           0.02 + 0.1 * (i + 0.5) / (2 * times));
+            CHECK_EQ_INT(test_run_shell(command, ""), 0);
+            char *now = test_read_file(test_path(name), &size);
+            bool is_old = now && size == old_size && memcmp(now, old, size) == 0;
+            bool is_new = now && size == new_size && memcmp(now, new, size) == 0;
+            if (!is_old && !is_new)
+                test_fail(__FILE__, __LINE__, "%s is neither the old nor the new model", name);
+            free(now);
+            test_write_file(test_path(name), old, old_size);
+        }
+        free(old);
+        free(new);
+    }
+}
