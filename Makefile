@@ -31,7 +31,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon render sandbox record call compat script session inspect output viewer host
+MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon render sandbox record call compat script session inspect output preview window viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual
@@ -79,14 +79,12 @@ MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exis
 MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
 MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
 FREETYPE_LIBS := $(shell $(PKG_CONFIG) --libs freetype2 2>/dev/null)
-SDL_CFLAGS := $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags sdl2 2>/dev/null))
-SDL_LIBS := $(shell $(PKG_CONFIG) --libs sdl2 2>/dev/null)
 GTK_CFLAGS := $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags gtk4 2>/dev/null))
 GTK_LIBS := $(shell $(PKG_CONFIG) --libs gtk4 2>/dev/null)
 OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags libjpeg)) \
     $(if $(JANSSON_LIBS),-DHAVE_JANSSON $(shell $(PKG_CONFIG) --cflags jansson)) \
     $(if $(FREETYPE_LIBS),-DHAVE_FREETYPE $(shell $(PKG_CONFIG) --cflags freetype2)) \
-    $(if $(SDL_LIBS),-DHAVE_SDL) $(if $(GTK_LIBS),-DHAVE_GTK) $(if $(MPI_LIBS),-DHAVE_MPI) \
+    $(if $(GTK_LIBS),-DHAVE_GTK) $(if $(MPI_LIBS),-DHAVE_MPI) \
     $(if $(EXR_LIBS),-DHAVE_EXR $(patsubst -I%,-isystem %,$(filter -I%,$(shell $(PKG_CONFIG) --cflags OpenEXR))))
 
 # PLAIN=1: as if no optional library were there.
@@ -100,18 +98,16 @@ override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETY
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
-# Files with a main function; those of gray-gui, gray-gtk and gray-mpi replace the one of program.c.
+# Files with a main function; those of gray-gui and gray-mpi replace the one of program.c.
 MAIN := src/host/program.c
 MPI_MAIN := src/host/main_mpi.c
-GUI_MAIN := src/host/main_gui.c
-GTK_SOURCES := src/host/main_gtk.c $(wildcard src/viewer/gtk_*.c)
+GUI_SOURCES := src/host/main_gui.c $(wildcard src/window/gtk_*.c)
 # Lua and tables in src, which become constants of the program: their lines.
 EMBEDDED := $(sort $(wildcard src/*/*.lua src/*/*.txt))
 EMBEDDED_OBJECTS := $(EMBEDDED:%=$(BUILD)/%.o)
-OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN) $(GTK_SOURCES),$(SOURCES))) $(EMBEDDED_OBJECTS)
+OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_SOURCES),$(SOURCES))) $(EMBEDDED_OBJECTS)
 MAIN_OBJECT := $(patsubst %.c,$(BUILD)/%.o,$(MAIN))
-GUI_OBJECT := $(if $(SDL_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_MAIN)))
-GTK_OBJECTS := $(if $(GTK_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GTK_SOURCES)))
+GUI_OBJECTS := $(if $(GTK_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(GUI_SOURCES)))
 MPI_OBJECT := $(if $(MPI_LIBS),$(patsubst %.c,$(BUILD)/%.o,$(MPI_MAIN)))
 TEST_SOURCES := $(sort $(wildcard tests/unit/*.c tests/unit/*/*.c)) tests/harness.c tests/stage.c tests/attack.c tests/attack_files.c
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(TEST_SOURCES))
@@ -123,15 +119,15 @@ ifeq ($(filter $(config),fuzz afl),)
 $(FUZZ_OBJECTS): override CPPFLAGS += -DLLVMFuzzerTestOneInput=$(notdir $*)_input
 TEST_OBJECTS += $(FUZZ_OBJECTS) $(FUZZ_HELP)
 endif
-ALL_OBJECTS := $(FUZZ_OBJECTS) $(FUZZ_HELP) $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(GUI_OBJECT) $(GTK_OBJECTS) $(TEST_OBJECTS)
+ALL_OBJECTS := $(FUZZ_OBJECTS) $(FUZZ_HELP) $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT) $(GUI_OBJECTS) $(TEST_OBJECTS)
 
 ifeq ($(config),release)
-all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui) $(if $(GTK_LIBS),$(BUILD)/gray-gtk)
+all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(GTK_LIBS),$(BUILD)/gray-gui)
 ifndef BUILD_GIVEN
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
 endif
 else
-all: check-libraries $(BUILD)/gray $(if $(SDL_LIBS),$(BUILD)/gray-gui) $(if $(GTK_LIBS),$(BUILD)/gray-gtk)
+all: check-libraries $(BUILD)/gray $(if $(GTK_LIBS),$(BUILD)/gray-gui)
 ifeq ($(config),coverage)
 all: $(if $(MPI_LIBS),$(BUILD)/gray-mpi)
 endif
@@ -150,14 +146,10 @@ $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 $(BUILD)/gray-mpi: $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
-$(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECT)
-	$(call say,LINK,$@)
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(SDL_LIBS)
-$(BUILD)/gray-gtk: $(OBJECTS) $(MAIN_OBJECT) $(GTK_OBJECTS)
+$(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(GTK_LIBS)
-$(GTK_OBJECTS): override CPPFLAGS += $(GTK_CFLAGS)
-$(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
+$(GUI_OBJECTS): override CPPFLAGS += $(GTK_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/src/image/webp_read.o $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o $(BUILD)/tests/unit/image/test_bitmaps.o: override CPPFLAGS += $(WEBP_CFLAGS)
@@ -235,7 +227,7 @@ read-sources: $(ALL_OBJECTS)
 	@echo "clang: $(words $(ALL_OBJECTS)) files"
 endif
 # Files whose text depends on the optional libraries.
-PLAIN_SOURCES := $(if $(PLAIN),$(shell grep -l 'HAVE_' $(filter-out $(MPI_MAIN) $(GUI_MAIN) $(GTK_SOURCES),$(SOURCES))))
+PLAIN_SOURCES := $(if $(PLAIN),$(shell grep -l 'HAVE_' $(filter-out $(MPI_MAIN) $(GUI_SOURCES),$(SOURCES))))
 read-sources-plain: $(patsubst %.c,$(BUILD)/%.o,$(PLAIN_SOURCES))
 	@echo "clang: $(words $^) files without the optional libraries"
 check-clang:
@@ -294,11 +286,11 @@ format:
 
 # What install writes, below DESTDIR and PREFIX: trees of files, and files with the folder and name that others expect.
 TO = $(DESTDIR)$(PREFIX)
-PROGRAMS = gray $(if $(SDL_LIBS),gray-gui) $(if $(GTK_LIBS),gray-gtk) $(if $(MPI_LIBS),gray-mpi)
+PROGRAMS = gray $(if $(GTK_LIBS),gray-gui) $(if $(MPI_LIBS),gray-mpi)
 SHARED = $(shell find lua data textures -type f 2>/dev/null)
 DOCUMENTS = $(shell find docs -type f 2>/dev/null) $(wildcard *.md) LICENSE
 COMPLETIONS = share/bash-completion/completions/gray share/zsh/site-functions/_gray share/fish/vendor_completions.d/gray.fish
-DESKTOP = $(if $(SDL_LIBS),share/applications/gray.desktop share/mime/packages/gray.xml)
+DESKTOP = $(if $(GTK_LIBS),share/applications/gray.desktop share/mime/packages/gray.xml)
 PAGES = share/man/man1/gray.1 share/man/man5/gray-scene.5
 INSTALLED = $(PROGRAMS:%=bin/%) $(SHARED:%=share/gray/%) $(DOCUMENTS:%=share/doc/gray/%) $(COMPLETIONS) $(DESKTOP) $(PAGES)
 install: all
@@ -325,7 +317,7 @@ uninstall:
 REFRESH = [ -n "$(DESTDIR)" ] || [ ! -e $(TO)/share/mime/mime.cache ] || update-mime-database $(TO)/share/mime
 
 # A folder that the caller names may hold other files.
-BUILT = src tests bench gray gray-gui gray-gtk gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags
+BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags
 clean:
 ifdef BUILD_GIVEN
 	test ! -f $(FLAGS_STAMP) || rm -rf $(addprefix $(BUILD)/,$(BUILT))

@@ -5,13 +5,15 @@
 #            mirror and a ball of glass
 #   error    relMSE, the mean of (x - r)^2 / (r^2 + .01), after SECONDS_EACH (default 10) of rendering at 128 x 128 against
 #            REFERENCE samples (default 16384) of the same program, which are kept in OUT
+#   media    error of three scenes with media, at larger depths: fog with a lamp and a spot, a tumbler of milk, smoke from a
+#            grid (its file for Cycles needs python3-openvdb)
 #   embree   samples a second against `pathtracer --max-path-length 8` on its Cornell box
 #   denoise  the error of 64 denoised samples against that of 512 raw ones (bench/denoise.sh); seconds for 1280 x 960
 #   threads  the speed of two threads relative to one; and 2 reduced by additional processor time and idle threads
 #   memory   bytes a pixel beyond Whitted's, at 1280 x 960
 # Both programs: box filter, all caustics, no clamps, no adaptive sampling; Cycles as bench/path/cycles.py sets it.
 # Errors are scaled to exactly that time, because they are inversely proportional to the number of samples.
-# Arguments: rows (default: all). SCENES: of the row error; GRAY: the program; OUT: pictures and times, not for two runs
+# Arguments: rows (default: all). SCENES: of the rows error and media; GRAY: the program; OUT: pictures and times, not for two runs
 # at once (default build/bench/path); SHORT=1: one run of 2 seconds against 1024 samples.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
@@ -24,7 +26,7 @@ depth=8
 models=/usr/share/doc/embree3/models
 [ -x "$gray" ] || { echo "no program $gray: make first"; exit 1; }
 mkdir -p "$out" || exit 1
-[ $# -gt 0 ] || set -- speed error embree denoise threads memory
+[ $# -gt 0 ] || set -- speed error media embree denoise threads memory
 [ -x /usr/bin/time ] && timer=/usr/bin/time || timer=
 
 median() { sort -g | awk '{ v[NR] = $1 } END { print NR ? v[int((NR + 1) / 2)] : "-" }'; }
@@ -33,7 +35,7 @@ installed() { command -v "$1" >/dev/null 2>&1 || { echo "$1 is not installed: $2
 script_of() {
     case $1 in
     cornell) echo data/path/cornell.lua ;;
-    spheres) echo bench/path/spheres.lua ;;
+    spheres | fog | milk | smoke) echo "bench/path/$1.lua" ;;
     *) echo "bench/denoise/$1.lua" ;;
     esac
 }
@@ -42,7 +44,7 @@ script_of() {
 gray_run() {
     script=$1 picture=$2 spp=$3 seed=$4
     shift 4
-    "$gray" -q --no-fork -j 1 --stats=json --integrator path --size 128x128 --allow-read textures --max-depth "$depth" \
+    "$gray" -q --no-fork -j 1 --stats=json --integrator path --size 128x128 --allow-read textures --allow-read build/bench --max-depth "$depth" \
         --spp "$spp" --seed "$seed" -o "$out/$picture.pfm" "$@" "$script" |
         awk 'function figure(key) { return substr($0, index($0, "\"" key "\":") + length(key) + 3) + 0 }
              { printf "%.3f %.3f\n", figure("render_processor_seconds"),
@@ -119,6 +121,11 @@ error() {
     : >"$out/error.ratios"
     for scene in ${SCENES:-cornell spheres mesh_sky lamps glossy}; do
         script=$(script_of $scene)
+        case $scene in
+        milk) depth=256 ;;
+        smoke) depth=64 ;;
+        *) depth=8 ;;
+        esac
         cref=cycles-$scene-$reference gref=gray-$scene-$reference
         [ -s "$out/$gref.pfm" ] || gray_run "$script" "$gref" "$reference" 1000 >/dev/null
         [ -s "$out/$cref.exr" ] || cycles_run $scene "$cref:$reference:1000:1" >/dev/null
@@ -142,6 +149,15 @@ error() {
             }'
     done
     awk '{ s += log($1); n += $1 <= 1 } END { printf "geometric mean %.2f; %d of %d at most 1\n", exp(s / NR), n, NR }' "$out/error.ratios"
+    depth=8
+}
+
+media() {
+    installed blender 'error at equal time against Cycles' || return
+    grid=build/bench/path # where bench/path/smoke.lua reads it
+    mkdir -p $grid && { [ -s $grid/smoke.vdb ] || /usr/bin/python3 bench/path/smoke_grid.py $grid; }
+    if [ -s $grid/smoke.vdb ]; then cp $grid/smoke.vdb "$out" 2>/dev/null; fi
+    if [ -s "$out/smoke.vdb" ]; then SCENES=${SCENES:-fog milk smoke} error; else SCENES=${SCENES:-fog milk} error; fi
 }
 
 embree() {
@@ -206,7 +222,7 @@ memory() {
 
 for row in "$@"; do
     case $row in
-    speed | error | embree | denoise | threads | memory) $row ;;
-    *) echo "no row '$row': speed, error, embree, denoise, threads, memory" && exit 1 ;;
+    speed | error | media | embree | denoise | threads | memory) $row ;;
+    *) echo "no row '$row': speed, error, media, embree, denoise, threads, memory" && exit 1 ;;
     esac
 done

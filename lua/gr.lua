@@ -94,7 +94,7 @@ function gr.joint(name, x, y) end
 ---@field name? string name (a string; default 'sphere'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
 
@@ -109,7 +109,7 @@ function gr.sphere(material) end
 ---@field name? string name (a string; default 'cube'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {0, 0, 0}): The corner with the smallest coordinates.
 ---@field size? number|gr.triple size (a number or a table of 3 numbers, not 0; default 1): Length of the edges, one number or three; a negative length extends in the negative direction.
 
@@ -124,7 +124,7 @@ function gr.cube(material) end
 ---@field name? string name (a string; default 'sphere'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
 
@@ -141,7 +141,7 @@ function gr.nh_sphere(name, centre, radius) end
 ---@field name? string name (a string; default 'cube'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {0, 0, 0}): The corner with the smallest coordinates.
 ---@field size? number|gr.triple size (a number or a table of 3 numbers, not 0; default 1): Length of the edges, one number or three; a negative length extends in the negative direction.
 
@@ -163,7 +163,7 @@ function gr.nh_box(name, corner, size) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -197,7 +197,7 @@ function gr.mesh(material, verts, faces) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -218,7 +218,7 @@ function gr.model(file) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -249,7 +249,7 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -282,7 +282,7 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field materials? table<string|integer, gr.material> materials (a table of materials; default the file's): Materials by the names of the parts in the file; with face_materials, a list.
 ---@field time? number time (a number, in seconds; default at rest): The moment of the file's animation (glTF).
 ---@field animation? string animation (a string; default the first one): The name of an animation in the file, or its number from 1.
@@ -502,7 +502,7 @@ function gr.bounded_by(name, object, by) end
 ---@field name? string name (a string; default 'cylinder'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field from? gr.triple from (a point {x, y, z}; default {0, -1, 0}): Centre of one end.
 ---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): Centre of the other end.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
@@ -519,7 +519,7 @@ function gr.cylinder(material) end
 ---@field name? string name (a string; default 'cone'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field from? gr.triple from (a point {x, y, z}; default {0, 0, 0}): The apex, or the centre of the end with from_radius.
 ---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): Centre of the end with radius.
 ---@field from_radius? number from_radius (a number, >= 0; default 0): Radius at from; above 0 it is a frustum.
@@ -537,7 +537,7 @@ function gr.cone(material) end
 ---@field name? string name (a string; default 'torus'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field major? number major (a number, >= 0; default 1): Radius of the centre circle in the plane y = 0.
 ---@field minor? number minor (a number, > 0; default 0.25): Radius of the tube.
 
@@ -554,7 +554,7 @@ function gr.torus(name, major, minor) end
 ---@field name? string name (a string; default 'plane'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field normal? gr.triple normal (a direction {x, y, z}; default none: the square): Normal of an infinite plane; in CSG the plane is a half-space.
 ---@field distance? number distance (a number; default 0): Distance of the plane from the origin along the normal.
 
@@ -569,7 +569,7 @@ function gr.plane(material) end
 ---@field name? string name (a string; default 'square'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 
 ---The square from -0.5 to 0.5 in x and z at y = 0.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -582,7 +582,7 @@ function gr.square(material) end
 ---@field name? string name (a string; default 'box'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field min gr.triple min (a point {x, y, z}): A corner.
 ---@field max gr.triple max (a point {x, y, z}): The opposite corner.
 
@@ -599,7 +599,7 @@ function gr.box(material, min, max) end
 ---@field name? string name (a string; default 'ellipsoid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field radii? number|gr.triple radii (a number or a table of 3 numbers; default 1): Radii along x, y and z: one number or three.
 
@@ -615,7 +615,7 @@ function gr.ellipsoid(material, radii) end
 ---@field name? string name (a string; default 'paraboloid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field radius? number radius (a number, > 0; default 1): Radius of the rim.
 ---@field height? number height (a number, > 0; default 1): y of the rim; the apex is at the origin.
 ---@field open? boolean open (true or false; default false): Whether it has no caps; without caps it is not a solid for CSG.
@@ -631,7 +631,7 @@ function gr.paraboloid(material) end
 ---@field name? string name (a string; default 'hyperboloid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field sheets? integer sheets (a whole number, 1 to 2; default 1, with gap 2): 1: one sheet with a waist; 2: two bowls.
 ---@field radius? number radius (a number, > 0; default twice waist, or 1): Radius of both rims.
 ---@field height? number height (a number, > 0; default twice gap, or 1): y of one rim; the other is at -y.
@@ -650,7 +650,7 @@ function gr.hyperboloid(material) end
 ---@field name? string name (a string; default 'quadric'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field xx? number xx (a number; default 0): Coefficient.
 ---@field yy? number yy (a number; default 0): Coefficient.
 ---@field zz? number zz (a number; default 0): Coefficient.
@@ -680,7 +680,7 @@ function gr.quadric(material, xx, yy, zz, constant) end
 ---@field name? string name (a string; default 'superellipsoid'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field e? number e (a number, 0.02 to 20; default 1): Exponent of the cross-section: near 0 a square, 1 a circle, 2 a diamond.
 ---@field n? number n (a number, 0.02 to 20; default 1): Exponent of the profile, likewise.
 
@@ -697,7 +697,7 @@ function gr.superellipsoid(material, e, n) end
 ---@field name? string name (a string; default 'rectangle'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field corner? gr.triple corner (a point {x, y, z}; default {-0.5, 0, 0.5}): Corner where an image has its lower left.
 ---@field along? gr.triple along (a direction {x, y, z}; default {1, 0, 0}): Edge along u of an image.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 0, -1}): Edge along v of an image; not parallel to along.
@@ -716,7 +716,7 @@ function gr.rectangle(material, corner, along, up) end
 ---@field name? string name (a string; default 'disc'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre.
 ---@field normal? gr.triple normal (a direction {x, y, z}; default {0, 1, 0}): Normal of the front.
 ---@field radius? number radius (a number, > 0; default 1, or twice inner): Radius.
@@ -733,7 +733,7 @@ function gr.disc(material) end
 ---@field name? string name (a string; default 'triangle'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field a gr.triple a (a point {x, y, z}): A corner; from the front, a, b, c run counterclockwise.
 ---@field b gr.triple b (a point {x, y, z}): The next corner.
 ---@field c gr.triple c (a point {x, y, z}): The last corner.
@@ -752,7 +752,7 @@ function gr.triangle(material, a, b, c) end
 ---@field name? string name (a string; default 'polygon'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Corners in one plane; from the front, the first outline runs counterclockwise.
 ---@field outlines? integer[][] outlines (a table of tuples of indices; default all points in order): Tuples of indices into points, from 0; the polygon is filled by the even-odd rule.
 
@@ -769,7 +769,7 @@ function gr.polygon(material, points, outlines) end
 ---@field name? string name (a string; default 'lathe'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field points number[][] points (a table of pairs {u, v}): The profile: pairs of radius and y.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): Kind of spline through the points; bezier needs 3 n + 1 points.
 ---@field loop? boolean loop (true or false; default false): Whether the profile is closed.
@@ -788,7 +788,7 @@ function gr.lathe(material, points, spline) end
 ---@field name? string name (a string; default 'prism'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field outline number[][] outline (a table of pairs {u, v}): A closed curve: pairs of x and z.
 ---@field holes? number[][][] holes (a table of tables of pairs {x, z}; default none): More closed curves; the solid follows the even-odd rule.
 ---@field from? number from (a number; default 0): Height of the bottom.
@@ -807,7 +807,7 @@ function gr.prism(material, outline) end
 ---@field name? string name (a string; default 'sweep'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Path of the centre of the ball.
 ---@field radii number|number[] radii (a number or a table of numbers, >= 0): Radius at each point, or one for all.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): Kind of spline through the points; bezier needs 3 n + 1 points.
@@ -827,7 +827,7 @@ function gr.sweep(material, points, radii, spline) end
 ---@field name? string name (a string; default 'height field'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field heights? number[][] heights (a table of tables of numbers; optional): Rows of heights, all of one length; x varies within a row, z from row to row.
 ---@field image? string|gr.texture image (the name of a picture file or a texture; optional): A picture instead of heights: black is 0, white is 1, the upper edge is z = 0.
 ---@field f? function|gr.texture f (a function; optional): A function of the point {x, 0, z}: its height, or an offset that is added to heights or image.
@@ -849,7 +849,7 @@ function gr.height_field(material, heights) end
 ---@field name? string name (a string; default 'blob'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field spheres? number[][] spheres (a table of tables of numbers; default {}): Balls {x, y, z, radius, strength}; the default strength is 1.
 ---@field cylinders? number[][] cylinders (a table of tables of numbers; default {}): Rods {x1, y1, z1, x2, y2, z2, radius, strength}; the default strength is 1.
 ---@field threshold? number threshold (a number, > 0; default 0.5): The surface is where the sum of the fields strength (1 - (distance/radius)^2)^2 has this value.
@@ -868,7 +868,7 @@ function gr.blob(material, spheres, cylinders, threshold) end
 ---@field name? string name (a string; default 'implicit'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field f function|gr.texture f (a function): A function of a point that is negative inside.
 ---@field bounds? gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
 ---@field radius? number radius (a number, > 0; optional): Radius of a ball that bounds it, instead of bounds.
@@ -890,7 +890,7 @@ function gr.implicit(material, f, bounds) end
 ---@field name? string name (a string; default 'curve'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Path of the curve.
 ---@field widths number|number[] widths (a number or a table of numbers, >= 0): Width at each point, or one for all.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'catmull-rom'): Kind of spline through the points; bezier needs 3 n + 1 points.
@@ -910,7 +910,7 @@ function gr.curve(material, points, widths, spline) end
 ---@field name? string name (a string; default 'patch'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field thin_walled? boolean thin_walled (true or false; default whether it is open): Whether a transparent surface is a thin wall, which light passes straight on, for paths and photons.
----@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material.
+---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field points gr.triple[] points (a table of points {x, y, z}): Control points, 16 for each patch, in 4 rows of 4.
 ---@field patches? integer[][] patches (a table of tuples of indices; default 16 points each, in order): Tuples of 16 indices into points, from 0.
 ---@field tolerance? number tolerance (a number, > 0; default a thousandth of the size): Largest distance of the triangles from the exact surface.
@@ -1018,6 +1018,7 @@ function gr.multiply_texture(a, b) end
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---A Phong material.
 ---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
@@ -1044,6 +1045,7 @@ function gr.material(kd, ks, shininess) end
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---A Phong material that reflects and refracts.
 ---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
@@ -1238,15 +1240,15 @@ function gr.glyphs(font, text) end
 ---@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that transmits light.
 ---@field transmission_color? gr.triple|string|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of transmitted light, after the distance transmission_depth.
 ---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Distance inside the solid after which white light has transmission_color; 0: at the surface.
----@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid. Not implemented: must be black.
----@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): No effect, because transmission_scatter is black.
----@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not implemented.
----@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not implemented.
----@field subsurface_weight? number subsurface_weight (a number, >= 0; default 0): Not implemented.
----@field subsurface_color? gr.triple|string subsurface_color (a colour {r, g, b}, >= 0; default {0.8, 0.8, 0.8}): Not implemented.
----@field subsurface_radius? number subsurface_radius (a number, >= 0; default 1): Not implemented.
----@field subsurface_radius_scale? gr.triple|string subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not implemented.
----@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Not implemented.
+---@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid along the distance transmission_depth.
+---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, > -1 and < 1; default 0): Mean cosine of that scattering.
+---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0; 1 with glass): Factor of the dispersion; 0: none.
+---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, > 0; default 20): Abbe's number of the dispersion by Cauchy's law.
+---@field subsurface_weight? number|gr.texture|function subsurface_weight (a number or a texture, 0 to 1; default 0): Share of the diffuse base whose light is scattered under the surface.
+---@field subsurface_color? gr.triple|string|gr.texture|function subsurface_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): The colour that a large solid shows by it.
+---@field subsurface_radius? number|gr.texture|function subsurface_radius (a number or a texture, >= 0; default 1): Mean free path under the surface; 0 is Lambert's diffuse light.
+---@field subsurface_radius_scale? gr.triple|string subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Factors of subsurface_radius by channel.
+---@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, > -1 and < 1; default 0): Mean cosine of that scattering.
 ---@field coat_weight? number|gr.texture|function coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
 ---@field coat_color? gr.triple|string|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
 ---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
@@ -1258,15 +1260,16 @@ function gr.glyphs(font, text) end
 ---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz; a rough fuzz is visible farther from the rim.
 ---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 means radiance 1.
 ---@field emission_color? gr.triple|string|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
----@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not implemented.
----@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not implemented.
----@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not implemented.
+---@field thin_film_weight? number|gr.texture|function thin_film_weight (a number or a texture, 0 to 1; default 0): Share of the base with a film that shows colours of interference.
+---@field thin_film_thickness? number|gr.texture|function thin_film_thickness (a number or a texture, >= 0; default 0.5): Its thickness in micrometres; 0: no film.
+---@field thin_film_ior? number thin_film_ior (a number, > 0; default 1.4): Its index of refraction.
 ---@field geometry_opacity? number|gr.texture|function geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
 ---@field geometry_normal? string|gr.texture|function geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
 ---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
----@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not implemented.
+---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default that of the base): The same for the coat.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): At most N x N rays from a rough surface under Whitted, as many as its share of reflected light justifies.
 ---@field classic? boolean classic (true or false; default false): Whether Whitted's integrator shades it as a similar gr.material, which is faster.
 
@@ -1309,6 +1312,7 @@ function gr.mirror(colour, roughness) end
 ---@field ior? number ior (a number, 1 to 4; default 1.5): Index of refraction.
 ---@field depth? number depth (a number, > 0; default 1): Distance inside after which light has colour.
 ---@field thin? boolean thin (true or false; default false): Whether the surface is a pane: nothing is inside.
+---@field glass? 'N-BK7'|'N-BK10'|'N-K5'|'N-FK5'|'N-FK51A'|'N-BAK4'|'N-SK16'|'N-BAF10'|'N-LASF9'|'F2'|'N-F2'|'N-SF5'|'N-SF10'|'N-SF11'|'SF11'|'SF10'|'N-SF6'|'N-SF66'|'silica'|'fluorite'|'sapphire'|'diamond'|'water' glass ('N-BK7', 'N-BK10', 'N-K5', 'N-FK5', 'N-FK51A', 'N-BAK4', 'N-SK16', 'N-BAF10', 'N-LASF9', 'F2', 'N-F2', 'N-SF5', 'N-SF10', 'N-SF11', 'SF11', 'SF10', 'N-SF6', 'N-SF66', 'silica', 'fluorite', 'sapphire', 'diamond', 'water'; default none): A glass by its name: its index and its dispersion.
 
 ---Clear, tinted or frosted glass.
 ---@param colour? gr.triple|string colour (a colour {r, g, b}, >= 0; default {1, 1, 1}): Colour of white light after depth.
@@ -1797,22 +1801,6 @@ function gr.sky_function(f) end
 ---@overload fun(fields: gr.clear_sky.fields): gr.sky
 function gr.clear_sky(sun, turbidity) end
 
----@class gr.medium.fields
----@field absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
----@field scattering? gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
----@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
----@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
----@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
----@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
----@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
-
----A medium that absorbs, scatters and emits light, the same everywhere.
----@param scattering gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
----@param absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
----@return gr.medium
----@overload fun(fields: gr.medium.fields): gr.medium
-function gr.medium(scattering, absorption) end
-
 ---@class gr.uniform_fog.fields
 ---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
@@ -1902,6 +1890,29 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@overload fun(fields: gr.fog_field.fields): gr.fog
 function gr.fog_field(corner, size, density, colour) end
 
+---@class gr.medium.fields
+---@field absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
+---@field scattering? gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
+---@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
+---@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
+---@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
+---@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
+---@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
+---@field density? number|number[]|string|gr.texture|function density (a number or a table of numbers, a function or the name of a file, >= 0; default 1): The factor of absorption, scattering and emission: a number, a function f(p, s) of the point and s.time, or a grid: numbers, or the name of an NRRD file or of a file of plain values.
+---@field bound? number bound (a number, > 0; default found by gray): A bound of a density function; where the function is larger, it counts as the bound.
+---@field corner? gr.triple corner (a point {x, y, z}; optional): With size, the box of the medium or of its grid: the corner with the smallest coordinates.
+---@field size? number|gr.triple size (a number or a table of 3 numbers, > 0; optional): Length of the edges of that box, one number or three.
+---@field top? number top (a number; default none): The medium ends at this height y.
+---@field cells? gr.triple cells (a table of 3 numbers, 1 to 4096; optional): Of a grid of numbers or plain values: how many there are along x, y and z; x varies fastest.
+---@field type? ''|'float'|'double'|'uint8'|'int16'|'uint16' type (''|'float'|'double'|'uint8'|'int16'|'uint16'; default 'float'): Type of the values of a plain file, little-endian.
+
+---A medium that absorbs, scatters and emits light.
+---@param scattering gr.triple|string scattering (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light scattered, per unit of length.
+---@param absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light absorbed, per unit of length.
+---@return gr.medium
+---@overload fun(fields: gr.medium.fields): gr.medium
+function gr.medium(scattering, absorption) end
+
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
 ---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
@@ -1926,6 +1937,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2012,6 +2024,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
@@ -2210,6 +2223,7 @@ function node:translate(x, y, z) end
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.

@@ -194,7 +194,7 @@ function M.glass(fields)
     if type(colour) == 'string' or colour and colour.encoding then colour = gr.linear(colour) end
     return gr.openpbr_material {
         transmission_weight = 1, transmission_color = colour, transmission_depth = colour and not fields.thin and (fields.depth or 1) or nil,
-        specular_ior = fields.ior or 1.5, specular_roughness = fields.roughness or 0, geometry_thin_walled = fields.thin, classic = true }
+        specular_ior = fields.ior or not fields.glass and 1.5 or nil, glass = fields.glass, specular_roughness = fields.roughness or 0, geometry_thin_walled = fields.thin, classic = true }
 end
 
 function M.metal(fields)

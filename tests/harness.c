@@ -173,21 +173,10 @@ void test_need_mpi(void) {
     test_need_tools("mpirun");
 }
 
-void test_need_window(void) {
-    const char *options = getenv("ASAN_OPTIONS");
-    char text[4096];
-    need_program_beside("-gui", "SDL2");
-    test_need_tools("Xvfb xvfb-run xdotool");
-    (void)snprintf(text, sizeof text, "%s%sdetect_leaks=0", options ? options : "", options ? ":" : "");
-    (void)setenv("ASAN_OPTIONS", text, 1);
-    (void)setenv("SDL_RENDER_DRIVER", "software", 1);
-    (void)setenv("SDL_FRAMEBUFFER_ACCELERATION", "0", 1);
-}
-
 /* The temporary folder of the test is its home; the address of a bus and other environment of a desktop are gone. */
-void test_need_gtk_window(void) {
+void test_need_window(void) {
     char home[4200];
-    need_program_beside("-gtk", "GTK 4");
+    need_program_beside("-gui", "GTK 4");
     test_need_tools("Xvfb xvfb-run xdotool openbox");
     (void)snprintf(home, sizeof home, "%s", test_folder());
     static const char *const names[] = {"HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME",
@@ -195,7 +184,6 @@ void test_need_gtk_window(void) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         (void)setenv(names[i], home, 1);
     (void)unsetenv("DBUS_SESSION_BUS_ADDRESS");
-    (void)setenv("GRAY_WINDOW", "gtk", 1);
     (void)setenv("GDK_DEBUG", "gl-disable", 1);
     (void)setenv("GSK_RENDERER", "cairo", 1);
     (void)setenv("ASAN_OPTIONS", "detect_leaks=0", 1);

@@ -90,11 +90,9 @@ void test_need_mpi(void);
 /* The name of the test that runs. */
 const char *test_name(void);
 
-/* For tests with the program in a real window, which need gray-gui, Xvfb, xvfb-run and xdotool. From then on windows
- * are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the desktop may
- * leak. Leaks of the supervisor itself are found by the tests with a simulated window. */
+/* For tests with the program in a real window, which need gray-gui, Xvfb, xvfb-run, xdotool and a window manager
+ * (openbox). From then on the environment is that of a machine without a desktop. */
 void test_need_window(void);
-void test_need_gtk_window(void); /* the same for gray-gtk, with a window manager (openbox) */
 
 /* A new empty folder for this test; the working directory stays the repository root. The folder is removed when the
  * test ends, except that of a failed test under run --keep. TMPDIR names its parent folder, which also belongs to this

@@ -13,7 +13,7 @@ GRAY_TEST_BINARY=$to/gray $to/tests/run -j "$jobs" "$@" >$to/test.log 2>&1
 grep -vE '^ok ' $to/test.log | grep -A3 -E '^FAILED|passed,'
 llvm-profdata merge -o $to/all.profdata $to/raw/*.profraw || exit 1
 objects="$to/gray -object $to/tests/run"
-for program in gray-gui gray-gtk gray-mpi; do
+for program in gray-gui gray-mpi; do
     [ -x $to/$program ] && objects="$objects -object $to/$program"
 done
 llvm-cov export $objects -instr-profile $to/all.profdata >$to/export.json 2>$to/llvm.log &&

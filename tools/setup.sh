@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs missing packages from the Debian archive of the machine, after a line for each group of them: those that the
-# build needs, the windows (SDL2, GTK 4), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
+# build needs, the window (GTK 4), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
 # does not need cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
 # install packages, it prints one line with the command. On systems not derived from Debian it lists the packages to
 # install by hand.
@@ -8,7 +8,8 @@
 # Usage: tools/setup.sh [--minimal | --check | --tests] [--window | --no-window]
 #   --minimal   only the packages that the build needs
 #   --check     only prints the missing packages; exit status 1 if the build needs one of them
-#   --tests     everything that make test can use: also clang, a screen without a monitor, MPI, readers of animations
+#   --tests     everything that make test can use: also clang, MPI, readers of animations, and, where GTK is installed
+#               or wanted, screens without a monitor
 set -u
 mode="" window=""
 for word in "$@"; do
@@ -46,7 +47,7 @@ have_mpi() {
     pkg-config --exists ompi-c || pkg-config --exists mpich
 }
 
-# Whether the window by GTK 4 is wanted here; prints what it costs where nobody has asked for it.
+# Whether the window is wanted here; prints what it costs where nobody has asked for it.
 want_gtk() {
     pkg-config --exists gtk4 && return 0
     [ "$window" != --window ] || return 0
@@ -70,7 +71,6 @@ need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
 if [ "$mode" != --minimal ]; then
-    want window libsdl2-dev pkg-config --exists sdl2
     gtk=""
     want_gtk && gtk=yes && want window libgtk-4-dev pkg-config --exists gtk4
     want libraries libjpeg-dev pkg-config --exists libjpeg
@@ -81,12 +81,15 @@ if [ "$mode" != --minimal ]; then
 fi
 if [ "$mode" = --tests ]; then
     want compiler clang command -v clang
-    want window xvfb command -v xvfb-run
-    want window xauth command -v xauth
-    want window xdotool command -v xdotool
     if [ -n "$gtk" ]; then
+        want window xvfb command -v xvfb-run
+        want window xauth command -v xauth
+        want window xdotool command -v xdotool
         want window openbox command -v openbox
         want window weston command -v weston
+        want window dbus command -v dbus-run-session
+        want window at-spi2-core test -e /usr/libexec/at-spi-bus-launcher
+        want window python3-pyatspi /usr/bin/python3 -c 'import pyatspi'
     fi
     want machines libopenmpi-dev have_mpi
     want machines openmpi-bin command -v mpirun

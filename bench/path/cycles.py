@@ -1,7 +1,7 @@
 # Renders a scene of bench/path.sh with Cycles: blender -b --factory-startup -P cycles.py -- SCENE FOLDER DEPTH RUN...
 # A run is NAME:SPP:SEED:ROULETTE; its picture goes to FOLDER/NAME.exr, and "NAME SPP processor seconds, wall seconds"
-# to standard output after the word "cycles". FOLDER holds meshes.obj and sky.hdr (bench/path.sh makes them).
-# One thread, box filter, all caustics; no clamps, no adaptive sampling, no denoiser, no threshold for lights. Depth counts
+# to standard output after the word "cycles". FOLDER holds meshes.obj, sky.hdr and smoke.vdb (bench/path.sh makes
+# them). One thread, box filter, all caustics; no clamps, no adaptive sampling, no denoiser, no threshold for lights. Depth counts
 # scattering events as gray does. ROULETTE 0: paths end only where their weight is 0.
 import math
 import os
@@ -83,12 +83,36 @@ def glossy(colour, roughness, under=None):
     return material('glossy', build)
 
 
-def glass():
+def glass(index=1.5):
     def build(nodes, links):
-        node = with_values(nodes.new('ShaderNodeBsdfGlass'), Color=(1, 1, 1, 1), Roughness=0, IOR=1.5)
+        node = with_values(nodes.new('ShaderNodeBsdfGlass'), Color=(1, 1, 1, 1), Roughness=0, IOR=index)
         node.distribution = 'SHARP'
         return node
     return material('glass', build)
+
+
+# Adds a medium: nodes of a material or of the world, coefficients per unit of length, mean cosine.
+def fill(nodes, links, scattering, absorption, g, density=None):
+    def part(kind, coefficient, **values):
+        node = with_values(nodes.new(kind), Color=(*coefficient, 1), Density=1, **values)
+        # Colours above 1 are clamped, densities are not.
+        scale = max(coefficient)
+        if scale > 0:
+            with_values(node, Color=(*(c / scale for c in coefficient), 1), Density=scale)
+        if density:
+            times = nodes.new('ShaderNodeMath')
+            times.operation = 'MULTIPLY'
+            links.new(density.outputs['Fac'], times.inputs[0])
+            times.inputs[1].default_value = scale
+            links.new(times.outputs[0], node.inputs['Density'])
+        return node
+    scatter = part('ShaderNodeVolumeScatter', scattering, Anisotropy=g)
+    # The node of absorption takes 1 - colour.
+    scale = max(absorption)
+    absorb = part('ShaderNodeVolumeAbsorption', absorption)
+    with_values(absorb, Color=(*(1 - c / scale for c in absorption), 1))
+    out = next(node for node in nodes if node.type in ('OUTPUT_MATERIAL', 'OUTPUT_WORLD'))
+    links.new(added(nodes, links, scatter, absorb).outputs[0], out.inputs['Volume'])
 
 
 # --- shapes ---
@@ -265,7 +289,66 @@ def mesh_sky():
     camera((0, 2.4, 5.2), (.05, .45, 0), 38)
 
 
-{'cornell': blocks, 'spheres': spheres, 'lamps': many_lights, 'glossy': glossy_room, 'mesh_sky': mesh_sky}[scene_name]()
+def fog_hall():
+    white = diffuse(.6, .58, .55)
+    rectangle(diffuse(.35, .3, .25), (-4, 0, 4), (8, 0, 0), (0, 0, -12))
+    rectangle(white, (-4, 5, 4), (8, 0, 0), (0, 0, -12))
+    rectangle(white, (-4, 0, -8), (8, 0, 0), (0, 5, 0))
+    rectangle(diffuse(.5, .2, .15), (-4, 0, 4), (0, 0, -12), (0, 5, 0))
+    rectangle(diffuse(.15, .3, .5), (4, 0, 4), (0, 0, -12), (0, 5, 0))
+    rectangle(white, (-4, 0, 4), (8, 0, 0), (0, 5, 0))
+    for i in range(6):
+        x, z = i % 2 * 4 - 2, -1 - 2.5 * (i // 2)
+        box(white, (x - .3, 0, z - .3), (x + .3, 3.5, z + .3))
+    spherical_light((-1, 2.6, -3), .1, (120, 96, 64))
+    spot = bpy.data.lights.new('spot', 'SPOT')
+    spot.shadow_soft_size, spot.spot_size, spot.spot_blend = 0, math.radians(24), 0
+    # Gray's intensity is pi times less than that of watts per steradian; a point light of Blender has its energy / 4 pi.
+    spot.energy = 4 * math.pi * math.pi * 160
+    thing = bpy.data.objects.new('spot', spot)
+    thing.location = point((3, 4.8, -5))
+    thing.rotation_euler = (point((-1.2, 0, -1)) - point((3, 4.8, -5))).to_track_quat('-Z', 'Y').to_euler()
+    scene.collection.objects.link(thing)
+    world = bpy.data.worlds.new('world')
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    with_values(nodes['Background'], Color=(0, 0, 0, 1))
+    fill(nodes, links, (.1, .1, .1), (.01, .01, .01), .5)
+    scene.world = world
+    camera((0, 2, 3.8), (0, 2.1, -4), 60)
+
+
+def milk():
+    rectangle(diffuse(.4, .25, .15), (-10, 0, 10), (20, 0, 0), (0, 0, -20))
+    rectangle(glowing((0, 0, 0), (6, 6, 6)), (-2.5, 4, 1.5), (3, 0, 0), (0, 1.5, -3))
+    rectangle(glowing((0, 0, 0), (.6, .7, .8)), (-10, 0, -4), (20, 0, 0), (0, 8, 0))
+    box(glass(1.5), (-.6, .01, -.6), (.6, 2, .6))
+    inside = glass(1.33 / 1.5)
+    fill(inside.node_tree.nodes, inside.node_tree.links, (19.98, 19.9, 19.6), (.02, .1, .4), .6)
+    box(inside, (-.5, .2, -.5), (.5, 1.9, .5))
+    camera((2.4, 2.2, 4.2), (0, .95, 0), 34)
+
+
+def smoke():
+    rectangle(diffuse(.4, .4, .38), (-10, -1, 10), (20, 0, 0), (0, 0, -20))
+    rectangle(glowing((0, 0, 0), (12, 11, 10)), (1.5, 3, 1), (1.5, -1.5, 0), (0, 0, -2))
+    rectangle(glowing((0, 0, 0), (.2, .3, .5)), (-10, -1, -5), (20, 0, 0), (0, 10, 0))
+    bpy.ops.object.volume_import(filepath=os.path.join(folder, 'smoke.vdb'))
+    volume = bpy.data.materials.new('smoke')
+    volume.use_nodes = True
+    nodes, links = volume.node_tree.nodes, volume.node_tree.links
+    nodes.clear()
+    nodes.new('ShaderNodeOutputMaterial')
+    density = nodes.new('ShaderNodeAttribute')
+    density.attribute_name = 'density'
+    fill(nodes, links, (11.4, 11.4, 11.4), (.6, .6, .6), 0, density)
+    thing = bpy.context.object
+    thing.location = thing.rotation_euler = (0, 0, 0)
+    thing.data.materials.append(volume)
+    camera((0, .4, 4.6), (0, .05, 0), 34)
+
+
+{'fog': fog_hall, 'milk': milk, 'smoke': smoke, 'cornell': blocks, 'spheres': spheres, 'lamps': many_lights, 'glossy': glossy_room, 'mesh_sky': mesh_sky}[scene_name]()
 
 # --- rendering ---
 
@@ -283,7 +366,7 @@ cycles.device = 'CPU'
 cycles.use_adaptive_sampling = cycles.use_denoising = False
 cycles.pixel_filter_type, cycles.filter_width = 'BOX', 1
 cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = depth - 1
-cycles.transmission_bounces = cycles.transparent_max_bounces = depth - 1
+cycles.transmission_bounces = cycles.transparent_max_bounces = cycles.volume_bounces = depth - 1
 cycles.caustics_reflective = cycles.caustics_refractive = True
 cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.light_sampling_threshold = 0

@@ -751,6 +751,12 @@ static bool read_value(struct script_context *c, int index, const struct script_
         read_faces(c, index, argument_path, value);
         return true;
     case KIND_NUMBERS: {
+        if ((p->flags & OR_FUNCTION) && read_function(c, index, p, value))
+            return true;
+        if ((p->flags & OR_FILE) && lua_type(L, index) == LUA_TSTRING) {
+            value->text = read_file_name(c, index, &argument_path);
+            return true;
+        }
         value->single = !lua_istable(L, index);
         value->count = value->single ? 1 : list_length(c, index, &argument_path);
         double *numbers = context_array(c, value->count, sizeof *numbers);
@@ -828,7 +834,7 @@ bool argument_resembles(lua_State *L, int index, enum argument_kind kind, unsign
     static const int wanted[] = {KIND_LIST(KIND_LIKE)};
     int accepted = wanted[kind] |
                    (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
-                   (flags & OR_CURVE ? LIKE_FUNCTION : 0) | (flags & OR_PAIR ? LIKE_TABLE : 0) |
-                   (flags & OR_SKY ? 1 << HANDLE_SKY : 0);
+                   (flags & OR_FILE ? LIKE_TEXT : 0) | (flags & OR_CURVE ? LIKE_FUNCTION : 0) |
+                   (flags & OR_PAIR ? LIKE_TABLE : 0) | (flags & OR_SKY ? 1 << HANDLE_SKY : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }

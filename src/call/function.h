@@ -130,14 +130,16 @@ enum {
     /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and colour is 1. Of
      * KIND_FUNCTION: it is a function of the direction. */
     OR_PROFILE = 512,
-    OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
-    OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
-    OR_COMPASS = 4096,  /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
-    OR_PAIR = 8192,     /* of KIND_TEXT: also accepts two numbers */
-    OR_SKY = 16384,     /* of KIND_IMAGE: also accepts a sky */
-    REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
-    RARE = 32768,       /* hints of the usual fields leave it out */
-    GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
+    /* Of KIND_COLOUR: also accepts a function of the point, in the same way; of KIND_NUMBERS: sets `program`. */
+    OR_FUNCTION = 1024,
+    OR_FILE = 65536,   /* of KIND_NUMBERS: also accepts the name of a file */
+    OR_DISPLAY = 128,  /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
+    OR_COMPASS = 4096, /* of KIND_DIRECTION: also accepts {azimuth = ..., elevation = ...} in degrees */
+    OR_PAIR = 8192,    /* of KIND_TEXT: also accepts two numbers */
+    OR_SKY = 16384,    /* of KIND_IMAGE: also accepts a sky */
+    REST = 32,         /* takes the arguments after a positional form, and entries without names of the table form */
+    RARE = 32768,      /* hints of the usual fields leave it out */
+    GHOST_IS_NONE = 16 /* with --lenient: a ghost is treated as missing, and the call continues */
 };
 
 struct script_parameter {

@@ -8,7 +8,8 @@
  * on every second row and column are enough. This is done for several windows and weights, and each pixel prefers
  * those with the smallest error. A large window in which similar colours count more is for surfaces. Smaller windows
  * and weights by the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels
- * are alike; the noisy colour itself is the last candidate.
+ * are alike; the noisy colour itself is the last candidate. Regressions for details are made only where features
+ * change, and there every second centre is enough.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
@@ -38,6 +39,7 @@ enum {
     CANDIDATES = DENOISE_CANDIDATES,
     ALIGNMENT = 4, /* of blocks in the whole picture: steps between centres divide it */
     LEVELS = 2,
+    ROWS = 16,           /* that are finished together */
     STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
     RESIDUAL_WINDOW = 3, /* radius of the mean of residuals */
@@ -54,7 +56,10 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
 
 /* Found by measurement (bench/denoise.sh). */
 static const struct denoise_regression regressions[REGRESSIONS] = {
-    {DENOISE_WINDOW, 2, 2.4F, 0}, {4, 2, 5, 0.5F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
+    {DENOISE_WINDOW, 2, 2.4F, 0, .details = false, .sparse = true},
+    {4, 2, 5, 0.5F, .details = true, .sparse = true},
+    {DENOISE_WINDOW, 4, 0, 0.3F, false, false},
+    {2, 2, 0, 0, .details = true, .sparse = true}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float edge_errors = 1;         /* the same at silhouettes */
@@ -91,9 +96,9 @@ struct denoise_run {
     float *evidence;             /* of silhouettes: squared mean residual, in units of its variance; others: -1 */
     float *agreement;            /* the same with the product of the mean residuals of the halves */
     int pass;                    /* of residuals */
-    float *mean[3], *noise[3];   /* of a group of features: measured values and their variance */
-    int first_feature, group;    /* which, and how many */
-    struct denoise_pixel *rows;  /* three of each worker */
+    float *mean[DENOISE_FEATURES], *noise[DENOISE_FEATURES]; /* of features: measured values and their variance */
+    int first_feature, group;                                /* those that are filtered, and how many */
+    struct denoise_pixel *rows;                              /* three of each worker */
     struct denoise_scratch *scratch;
     const struct denoise_kernels *kernels;
 };
@@ -140,16 +145,23 @@ static const struct denoise_pixel *get_row(struct denoise_run *d, uint32_t y, in
 
 /* --- colours: outliers and variance --- */
 
-static void load_colours(void *context, uint32_t y, int worker) {
+/* Reads a row of the source: the colours, their variance, and the features. */
+static void load_row(void *context, uint32_t y, int worker) {
     struct denoise_run *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker, 0);
-    for (int x = 0; x < d->level->width; x++)
-        for (int h = 0; h < 2; h++)
-            for (int c = 0; c < 3; c++)
-                d->loaded[h][c][pixel_at(d->level, x, (int)y)] = bounded(row[x].colour[h][c] - row[x].glow[h][c]);
-    for (int x = 0; x < d->level->width; x++)
-        for (int c = 0; c < 3; c++)
-            d->sampled[c][pixel_at(d->level, x, (int)y)] = 2 * fabsf(bounded(row[x].variance[c]));
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        for (int c = 0; c < 3; c++) {
+            for (int h = 0; h < 2; h++)
+                d->loaded[h][c][at] = bounded(row[x].colour[h][c] - row[x].glow[h][c]);
+            d->sampled[c][at] = 2 * fabsf(bounded(row[x].variance[c]));
+        }
+        for (int f = 0; f < DENOISE_FEATURES; f++) {
+            float a = bounded(row[x].features[0][f]), b = bounded(row[x].features[1][f]);
+            d->mean[f][at] = 0.5F * (a + b);
+            d->noise[f][at] = 0.25F * (a - b) * (a - b);
+        }
+    }
 }
 
 static float brightness(float *const colour[3], size_t at) {
@@ -236,20 +248,6 @@ static void estimate_variance(void *context, uint32_t y, int worker) {
 
 /* --- features: non-local means by their own variance --- */
 
-static void load_features(void *context, uint32_t y, int worker) {
-    struct denoise_run *d = context;
-    const struct denoise_pixel *row = get_row(d, y, worker, 0);
-    for (int x = 0; x < d->level->width; x++) {
-        size_t at = pixel_at(d->level, x, (int)y);
-        for (int i = 0; i < d->group; i++) {
-            float a = bounded(row[x].features[0][d->first_feature + i]);
-            float b = bounded(row[x].features[1][d->first_feature + i]);
-            d->mean[i][at] = 0.5F * (a + b);
-            d->noise[i][at] = 0.25F * (a - b) * (a - b);
-        }
-    }
-}
-
 static void filter_features(void *context, uint32_t item, int worker) {
     enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL };
     struct denoise_run *d = context;
@@ -257,8 +255,9 @@ static void filter_features(void *context, uint32_t item, int worker) {
     int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
         by = (int)item / across * BLOCK;
     for (int i = 0; i < d->group; i++) {
-        copy_plane(d->level, d->mean[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_mean[i]);
-        copy_plane(d->level, d->noise[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_noise[i]);
+        copy_plane(d->level, d->mean[d->first_feature + i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_mean[i]);
+        copy_plane(d->level, d->noise[d->first_feature + i], bx - WINDOW - 1, by - WINDOW - 1, SIDE,
+                   s->feature_noise[i]);
     }
     d->kernels->filter_features(s, d->group, d->first_feature == DENOISE_DEPTH,
                                 bounds_of(d->level, bx - WINDOW - 1, by - WINDOW - 1, SIDE));
@@ -364,6 +363,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
     }
     for (int f = 0; f < DENOISE_FEATURES; f++)
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
+    d->kernels->find_changes(s);
     /* Estimates of all candidates, then the best mixture for each pixel. */
     for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
         regress_half(d, s, half, bounds);
@@ -681,20 +681,29 @@ static bool is_empty(const struct denoise_pixel *pixel) {
     return true;
 }
 
-/* The mean of the halves, plus glow. */
-static void finish_row(void *context, uint32_t y, int worker) {
-    struct denoise_run *d = context;
-    const struct denoise_pixel *rows[3];
-    for (int j = 0; j < 3; j++)
-        rows[j] = get_row(d, (uint32_t)clamp_int((int)y + j - 1, 0, d->level->height - 1), worker, j);
+/* The mean of the halves, plus glow, of a row; rows: those around it. */
+static void finish_row(const struct denoise_run *d, const struct denoise_pixel *const rows[3], int y) {
     for (int x = 0; x < d->level->width; x++) {
         const struct denoise_pixel *pixel = &rows[1][x];
         bool empty = is_empty(pixel);
         for (int c = 0; c < 3; c++) {
-            float value = empty ? 0 : supported_mean(d, rows, c, x, (int)y);
-            d->out[pixel_at(d->level, x, (int)y)][c] =
+            float value = empty ? 0 : supported_mean(d, rows, c, x, y);
+            d->out[pixel_at(d->level, x, y)][c] =
                 value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
         }
+    }
+}
+
+static void finish_rows(void *context, uint32_t item, int worker) {
+    struct denoise_run *d = context;
+    int from = (int)item * ROWS, last = d->level->height - 1;
+    const struct denoise_pixel *rows[3] = {get_row(d, (uint32_t)clamp_int(from - 1, 0, last), worker, 0),
+                                           get_row(d, (uint32_t)from, worker, 1), NULL};
+    for (int y = from; y < from + ROWS && y <= last; y++) {
+        rows[2] = get_row(d, (uint32_t)clamp_int(y + 1, 0, last), worker, (y - from + 2) % 3);
+        finish_row(d, rows, y);
+        rows[0] = rows[1];
+        rows[1] = rows[2];
     }
 }
 
@@ -730,15 +739,23 @@ static bool no_memory(struct error *error) {
     return error_no_memory(error, "a picture that is denoised");
 }
 
-static bool denoise_colours(struct denoise_run *d, struct error *error) {
+static bool load_source(struct denoise_run *d, struct error *error) {
     for (int c = 0; c < 3; c++)
         if (!make_plane(d->level, &d->loaded[0][c]) || !make_plane(d->level, &d->loaded[1][c]) ||
-            !make_plane(d->level, &d->level->colour[0][c]) || !make_plane(d->level, &d->level->colour[1][c]) ||
-            !make_plane(d->level, &d->sampled[c]) || !make_plane(d->level, &d->level->variance[c]))
+            !make_plane(d->level, &d->sampled[c]))
             return no_memory(error);
-    uint32_t rows = d->source->height;
-    if (!run(d, rows, load_colours, error) || !run(d, rows, remove_outliers, error) ||
-        !run(d, rows, estimate_variance, error))
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        if (!make_plane(d->level, &d->mean[f]) || !make_plane(d->level, &d->noise[f]))
+            return no_memory(error);
+    return run(d, d->source->height, load_row, error);
+}
+
+static bool denoise_colours(struct denoise_run *d, struct error *error) {
+    for (int c = 0; c < 3; c++)
+        if (!make_plane(d->level, &d->level->colour[0][c]) || !make_plane(d->level, &d->level->colour[1][c]) ||
+            !make_plane(d->level, &d->level->variance[c]))
+            return no_memory(error);
+    if (!run(d, d->source->height, remove_outliers, error) || !run(d, d->source->height, estimate_variance, error))
         return false;
     for (int c = 0; c < 3; c++) {
         free_plane(&d->loaded[0][c]);
@@ -750,22 +767,19 @@ static bool denoise_colours(struct denoise_run *d, struct error *error) {
 
 static bool denoise_features(struct denoise_run *d, struct error *error) {
     static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
-    for (int i = 0; i < 3; i++)
-        if (!make_plane(d->level, &d->mean[i]) || !make_plane(d->level, &d->noise[i]))
-            return no_memory(error);
     uint32_t blocks = (d->source->width + BLOCK - 1) / BLOCK * ((d->source->height + BLOCK - 1) / BLOCK);
     for (int g = 0; g < 3; g++) {
         d->first_feature = groups[g][0];
         d->group = groups[g][1];
-        for (int i = 0; i < d->group; i++)
-            if (!make_plane(d->level, &d->level->feature[d->first_feature + i]))
+        for (int f = d->first_feature; f < d->first_feature + d->group; f++)
+            if (!make_plane(d->level, &d->level->feature[f]))
                 return no_memory(error);
-        if (!run(d, d->source->height, load_features, error) || !run(d, blocks, filter_features, error))
+        if (!run(d, blocks, filter_features, error))
             return false;
-    }
-    for (int i = 0; i < 3; i++) {
-        free_plane(&d->mean[i]);
-        free_plane(&d->noise[i]);
+        for (int f = d->first_feature; f < d->first_feature + d->group; f++) {
+            free_plane(&d->mean[f]);
+            free_plane(&d->noise[f]);
+        }
     }
     return true;
 }
@@ -815,7 +829,8 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
     d->scratch = mem_alloc_zero(workers, sizeof *d->scratch);
     if (!d->rows || !d->scratch)
         return no_memory(error);
-    if (!denoise_colours(d, error) || !denoise_features(d, error) || !make_estimates(d, error))
+    if (!load_source(d, error) || !denoise_colours(d, error) || !denoise_features(d, error) ||
+        !make_estimates(d, error))
         return false;
     /* From fine to coarse, and the corrections back. */
     while (d->level < d->levels + LEVELS - 1) {
@@ -835,7 +850,7 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
     for (; d->pass < RESIDUAL_PASSES; d->pass++)
         if (!run(d, source->height, find_residuals, error) || !run(d, source->height, add_residuals, error))
             return false;
-    return run(d, source->height, finish_row, error);
+    return run(d, (source->height + ROWS - 1) / ROWS, finish_rows, error);
 }
 
 /* The size and the position of the next level. */
@@ -863,8 +878,10 @@ bool denoise(const struct denoise_source *source, struct pool *pool, float (*out
         mem_free(d.loaded[0][c]);
         mem_free(d.loaded[1][c]);
         mem_free(d.sampled[c]);
-        mem_free(d.mean[c]);
-        mem_free(d.noise[c]);
+    }
+    for (int f = 0; f < DENOISE_FEATURES; f++) {
+        mem_free(d.mean[f]);
+        mem_free(d.noise[f]);
     }
     mem_free(d.evidence);
     mem_free(d.agreement);

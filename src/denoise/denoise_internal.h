@@ -8,8 +8,8 @@
 #include "film/film.h"
 
 enum {
-    DENOISE_BLOCK = 96, /* side of the squares that a worker takes */
-    DENOISE_WINDOW = 7, /* radius of a regression */
+    DENOISE_BLOCK = 192, /* side of the squares that a worker takes */
+    DENOISE_WINDOW = 6,  /* radius of a regression */
     DENOISE_SIDE = 2 * DENOISE_WINDOW + 1,
     DENOISE_LANES = 16,                                 /* of a row of a window, of which the last does not count */
     DENOISE_PATCH = 3,                                  /* radius of the patches that are compared */
@@ -25,7 +25,7 @@ enum {
     DENOISE_COMPARED = (DENOISE_CENTRES - 1) * DENOISE_STEP + 1 + 2 * DENOISE_PATCH,
     DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, position, features */
     DENOISE_COLUMNS = DENOISE_TERMS + 3,          /* and the colour that it explains */
-    DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
+    DENOISE_FEATURE_WINDOW = 3,                   /* radius of the filter of features */
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
     DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
     DENOISE_REGRESSIONS = 4,
@@ -42,6 +42,8 @@ struct denoise_regression {
     int step;       /* between centres, a multiple of DENOISE_STEP that divides DENOISE_BLOCK */
     float colours;  /* scale of the distances between patches; 0: they do not count */
     float features; /* the same of the distances between features */
+    bool details;   /* of details: only at centres with changing features in their windows ... */
+    bool sparse;    /* ... where every second centre is enough */
 };
 
 typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
@@ -61,6 +63,8 @@ struct denoise_scratch {
     /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
     float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
     float doubts[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    uint8_t change[DENOISE_LOCAL * DENOISE_LOCAL];   /* columns to the next pixel where features change */
+    uint8_t near[DENOISE_CENTRES * DENOISE_CENTRES]; /* of centres: the radius of the window that reaches one */
     denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
     float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
     float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
@@ -76,6 +80,8 @@ struct denoise_kernels {
     void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds);
     /* The distances of all centres from their windows, in the colours of a half. */
     void (*compare)(struct denoise_scratch *s, int half);
+    /* Fills `near` from the features. */
+    void (*find_changes)(struct denoise_scratch *s);
     /* Adds up what the regressions of all centres say about the colours of a half. */
     void (*regress)(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct film_rectangle bounds);

@@ -37,6 +37,7 @@ static const float feature_change = 1e-4F; /* the ridge suppresses albedo and no
 static const float similar_limit = 10;
 /* Half of `detail_margin` remains where the largest distance between the features around a pixel is this. */
 static const float change_limit = 0.22F;
+static const float change_seen = 0.05F; /* neighbours whose features have this distance differ */
 static const float detail_margin = 1;   /* added to the error of candidates that use few pixels */
 static const float colour_margin = 1;   /* added to that of the noisy colour */
 static const float doubt_errors = 1.4F; /* standard errors that are added to the error of a candidate */
@@ -286,29 +287,27 @@ static void weigh_features(struct denoise_scratch *s, const struct window *w, fl
     }
 }
 
-/* Differences of a feature to the centre; returns the largest one among the pixels with a weight. */
-static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature, int column) {
+/* Differences of a feature to the centre; returns whether they are more than `feature_change` where there is a weight.
+ */
+static bool fill_feature(struct denoise_scratch *s, const struct window *w, int feature, int column) {
     const float *plane = s->feature[feature];
-    float middle = plane[w->y * LOCAL + w->x], result = 0, lanes[LANES];
-    vector found[LANES / WIDTH];
-    for (int at = 0; at < LANES; at += WIDTH) {
-        vector largest = {0};
-        for (int r = w->row0; r < w->row1; r++) {
+    vector middle = all(plane[w->y * LOCAL + w->x]);
+    mask found = {0};
+    for (int r = w->row0; r < w->row1; r++) {
+        for (int at = 0; at < LANES; at += WIDTH) {
             vector difference = load(plane + row_at(w, r) + at) - middle;
-            vector size = larger(difference, -difference);
             store(s->columns[column][r] + at, difference);
-            largest = larger(choose(load(s->weights[r] + at) > 0, size, largest), largest);
+            found |= ((difference > feature_change) | (difference < -feature_change)) & (load(s->weights[r] + at) > 0);
         }
-        found[at / WIDTH] = largest;
     }
-    memcpy(lanes, found, sizeof lanes);
-    for (int l = 0; l < LANES; l++)
-        result = lanes[l] > result ? lanes[l] : result;
-    return result;
+    int32_t any = 0;
+    for (int l = 0; l < WIDTH; l++)
+        any |= found[l];
+    return any != 0;
 }
 
-/* The colours, and their range among the pixels with a weight. */
-static void fill_colour(struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
+/* The range of the colours among the pixels with a weight. */
+static void find_range(const struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
     const float *plane = s->colour[half][channel];
     float middle = plane[w->y * LOCAL + w->x], lowest[LANES], highest[LANES];
     vector lows[LANES / WIDTH], highs[LANES / WIDTH];
@@ -317,7 +316,6 @@ static void fill_colour(struct denoise_scratch *s, const struct window *w, int h
         for (int r = w->row0; r < w->row1; r++) {
             vector value = load(plane + row_at(w, r) + at);
             vector counting = choose(load(s->weights[r] + at) > 0, value, low);
-            store(s->columns[TERMS + channel][r] + at, value);
             low = smaller(counting, low);
             high = larger(counting, high);
         }
@@ -335,18 +333,19 @@ static void fill_colour(struct denoise_scratch *s, const struct window *w, int h
 
 /* The sums over the window of weight * column i * column j, by lane, for terms j from i to below `terms` and for the
  * colours. */
-static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, int row0, int row1, int i,
-                                                           int terms, float sums[COLUMNS][LANES]) {
+static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, const struct window *w,
+                                                           int half, int i, int terms, float sums[COLUMNS][LANES]) {
     for (int at = 0; at < LANES; at += WIDTH) {
         vector sum[COLUMNS];
         for (int j = i; j < COLUMNS; j++)
             sum[j] = (vector){0};
-        for (int r = row0; r < row1; r++) {
+        for (int r = w->row0; r < w->row1; r++) {
+            int from = row_at(w, r) + at;
             vector weighted = load(s->weights[r] + at) * load(s->columns[i][r] + at);
             for (int j = i; j < terms; j++)
                 sum[j] += weighted * load(s->columns[j][r] + at);
-            for (int j = TERMS; j < COLUMNS; j++)
-                sum[j] += weighted * load(s->columns[j][r] + at);
+            for (int c = 0; c < 3; c++)
+                sum[TERMS + c] += weighted * load(s->colour[half][c] + from);
         }
         for (int j = i; j < COLUMNS; j++)
             store(sums[j] + at, sum[j]);
@@ -362,15 +361,16 @@ static inline float sum_lanes(const float lanes[LANES]) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* The normal equations, with terms in units of `scale`: the lower triangle of the matrix, and three right sides. */
+/* The normal equations: the lower triangle of the matrix, and three right sides. The terms of features are in units of
+ * `scale`: twice their mean difference to the centre, but at least what `scale` is before. */
 static inline __attribute__((always_inline)) void build_equations(const struct denoise_scratch *s,
-                                                                  const struct window *w, int terms,
-                                                                  const double scale[TERMS],
-                                                                  double matrix[TERMS][TERMS], double right[TERMS][3]) {
+                                                                  const struct window *w, int half, int terms,
+                                                                  double scale[TERMS], double matrix[TERMS][TERMS],
+                                                                  double right[TERMS][3]) {
     float sums[TERMS][COLUMNS][LANES];
 #define MULTIPLY(i)                                                                                                    \
     if (i < terms)                                                                                                     \
-    multiply(s, w->row0, w->row1, i, terms, sums[i])
+    multiply(s, w, half, i, terms, sums[i])
     MULTIPLY(0);
     MULTIPLY(1);
     MULTIPLY(2);
@@ -383,6 +383,10 @@ static inline __attribute__((always_inline)) void build_equations(const struct d
     MULTIPLY(9);
 #undef MULTIPLY
     _Static_assert((int)TERMS == 10, "a line for each term");
+    for (int i = FIRST_FEATURE; i < terms; i++) {
+        double mean = 2 * sqrt((double)sum_lanes(sums[i][i]) / (double)sum_lanes(sums[0][0]));
+        scale[i] = 1 / (mean > scale[i] ? mean : scale[i]);
+    }
     for (int i = 0; i < terms; i++) {
         for (int j = i; j < terms; j++)
             matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
@@ -444,35 +448,32 @@ static inline __attribute__((always_inline)) void predict(struct denoise_scratch
     }
 }
 
-/* Fills the columns of features that change in the window: albedo, normal, depth. Returns the number of terms. */
+/* Fills the columns of the depth, and of albedo and normals that change in the window. Returns the number of terms, and
+ * their smallest units: 0.02 for albedo and normals, 1/200 of a depth. */
 static int fill_features(struct denoise_scratch *s, const struct window *w, double scale[TERMS]) {
     static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
     int terms = FIRST_FEATURE;
     for (int g = 0; g < 3; g++) {
-        float change = 0;
+        bool changes = g == 2;
         for (int i = 0; i < groups[g][1]; i++) {
-            /* In units of the largest difference, or of a minimum if that is larger: 0.02 for albedo and normals, 1/200
-             * of a depth. */
             int f = groups[g][0] + i;
-            float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f, terms + i);
-            float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
-            scale[terms + i] = 1 / (double)(largest > smallest ? largest : smallest);
-            change = largest > change ? largest : change;
+            float middle = s->feature[f][w->y * LOCAL + w->x];
+            changes = fill_feature(s, w, f, terms + i) || changes;
+            scale[terms + i] = (double)(f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F);
         }
-        if (g == 2 || change > feature_change)
-            terms += groups[g][1];
+        terms += changes ? groups[g][1] : 0;
     }
     return terms;
 }
 
 /* The regression with a number of terms that the compiler knows. */
 static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, int half, const struct window *w,
-                                                      int terms, const double scale[TERMS]) {
+                                                      int terms, double scale[TERMS]) {
     double matrix[TERMS][TERMS], right[TERMS][3];
     float range[3][2];
     for (int c = 0; c < 3; c++)
-        fill_colour(s, w, half, c, range[c]);
-    build_equations(s, w, terms, scale, matrix, right);
+        find_range(s, w, half, c, range[c]);
+    build_equations(s, w, half, terms, scale, matrix, right);
     for (int i = 1; i < terms; i++)
         matrix[i][i] += ridge * matrix[0][0]; /* keeps terms small that the window does not determine */
     if (!solve(terms, matrix, right))
@@ -501,6 +502,70 @@ static void regress_centre(struct denoise_scratch *s, int half, const struct win
         fit(s, half, w, TERMS - 6, scale);
 }
 
+/* Marks pixels whose features differ from those to the right or below. */
+static void mark_changes(struct denoise_scratch *s) {
+    memset(s->change, 0, sizeof s->change);
+    for (int y = 0; y < LOCAL - 1; y++) {
+        for (int step = 1; step <= LOCAL; step += LOCAL - 1) {
+            float sums[LOCAL];
+            int p = y * LOCAL, q = p + step;
+            for (int x = 0; x < LOCAL - 1; x++) {
+                float z = s->feature[DENOISE_DEPTH][p + x], difference = s->feature[DENOISE_DEPTH][q + x] - z;
+                sums[x] = difference * difference / (z * z / depth_unit + FLT_MIN);
+            }
+            for (int f = 0; f < DENOISE_DEPTH; f++) {
+                float unit = f < DENOISE_NORMAL ? albedo_unit : normal_unit;
+                for (int x = 0; x < LOCAL - 1; x++) {
+                    float difference = s->feature[f][q + x] - s->feature[f][p + x];
+                    sums[x] += difference * difference * unit;
+                }
+            }
+            for (int x = 0; x < LOCAL - 1; x++)
+                s->change[p + x] |= sums[x] >= change_seen;
+        }
+    }
+}
+
+/* From the marks of a row, the columns to the nearest mark, up to a limit. */
+static void spread_marks(uint8_t row[LOCAL], int limit) {
+    int last = limit;
+    for (int x = 0; x < LOCAL; x++) {
+        last = row[x] ? 0 : last < limit ? last + 1 : limit;
+        row[x] = (uint8_t)last;
+    }
+    for (int x = LOCAL - 1; x >= 0; x--) {
+        last = row[x] < last ? row[x] : last < limit ? last + 1 : limit;
+        row[x] = (uint8_t)last;
+    }
+}
+
+static void find_changes(struct denoise_scratch *s) {
+    const int limit = DENOISE_WINDOW + 1;
+    mark_changes(s);
+    for (int y = 0; y < LOCAL; y++)
+        spread_marks(s->change + y * LOCAL, limit);
+    for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
+        int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
+        int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP, nearest = limit;
+        for (int dy = -DENOISE_WINDOW; dy <= DENOISE_WINDOW; dy++) {
+            int across = s->change[(cy + dy) * LOCAL + cx], down = dy < 0 ? -dy : dy;
+            int radius = across > down ? across : down;
+            nearest = radius < nearest ? radius : nearest;
+        }
+        s->near[i] = (uint8_t)nearest;
+    }
+}
+
+/* Whether the regression is made at a centre. */
+static bool is_made_at(const struct denoise_scratch *s, struct denoise_regression regression, int centre) {
+    int i = (DENOISE_FIRST - DENOISE_MARGIN) / DENOISE_STEP + centre % DENOISE_CENTRES;
+    int j = (DENOISE_FIRST - DENOISE_MARGIN) / DENOISE_STEP + centre / DENOISE_CENTRES;
+    bool changes = s->near[centre] <= regression.radius;
+    if (i * DENOISE_STEP % regression.step != 0 || j * DENOISE_STEP % regression.step != 0)
+        return false;
+    return changes ? !regression.sparse || (i + j) % 2 == 0 : !regression.details;
+}
+
 static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct film_rectangle bounds) {
     memset(s->sums, 0, sizeof s->sums);
@@ -514,9 +579,8 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_regressi
     for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
         int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
         int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
-        if ((cx - DENOISE_MARGIN) % regression.step != 0 || (cy - DENOISE_MARGIN) % regression.step != 0)
-            continue;
-        if (cx < (int)bounds.x0 || cy < (int)bounds.y0 || cx >= (int)bounds.x1 || cy >= (int)bounds.y1)
+        if (!is_made_at(s, regression, i) || cx < (int)bounds.x0 || cy < (int)bounds.y0 || cx >= (int)bounds.x1 ||
+            cy >= (int)bounds.y1)
             continue;
         struct window w = find_window(cx, cy, regression.radius, bounds);
         weigh(s, &w, &s->distances[i], regression.colours);
@@ -626,4 +690,5 @@ static void score_candidates(const struct denoise_scratch *s, int y, float score
 }
 _Static_assert((int)DENOISE_CHOICE == 2, "the kernel of score_candidates has five numbers");
 
-const struct denoise_kernels KERNELS = {filter_features, compare, regress, compare_candidates, score_candidates};
+const struct denoise_kernels KERNELS = {filter_features,    compare,         find_changes, regress,
+                                        compare_candidates, score_candidates};

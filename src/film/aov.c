@@ -112,6 +112,8 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
     case AOV_SPECULAR_INDIRECT:
     case AOV_TRANSMISSION_DIRECT:
     case AOV_TRANSMISSION_INDIRECT:
+    case AOV_VOLUME_DIRECT:
+    case AOV_VOLUME_INDIRECT:
         break;
     }
 }

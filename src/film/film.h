@@ -29,7 +29,7 @@ struct film_record {
     uint32_t floats; /* at most FILM_RECORD_FLOATS, all finite; the integrator defines their meaning */
     uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the first three floats */
 };
-enum { FILM_RECORD_FLOATS = 87 };
+enum { FILM_RECORD_FLOATS = 99 };
 
 struct film {
     uint32_t width, height;

@@ -37,6 +37,8 @@ enum path_light_group {
     PATH_LIGHT_SPECULAR_INDIRECT,
     PATH_LIGHT_TRANSMISSION_DIRECT,
     PATH_LIGHT_TRANSMISSION_INDIRECT,
+    PATH_LIGHT_VOLUME_DIRECT, /* media */
+    PATH_LIGHT_VOLUME_INDIRECT,
     PATH_LIGHT_GROUPS
 };
 enum { PATH_SCATTERINGS = (PATH_LIGHT_GROUPS - 1) / 2 };
@@ -49,7 +51,7 @@ struct path_parts {
     struct colour seen; /* this share of the path's weight at the glass, which may be seen in a mirror */
     float features[PATH_FEATURES];
     struct colour light[PATH_LIGHT_GROUPS];
-    /* For each kind of scattering (diffuse, specular, transmission) and each channel: its fraction of the light
+    /* For each kind of scattering (diffuse, specular, transmission, volume) and each channel: its fraction of the light
      * after the first scattering event. The fractions add up to 1. */
     struct colour shares[PATH_SCATTERINGS];
 };

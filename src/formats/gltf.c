@@ -159,13 +159,14 @@ bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, d
 /* Extensions that gray reads; then those whose loss only changes how a surface looks, so that a file may require them.
  */
 static const char *const read_extensions[] = {
-    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_materials_specular",
-    "KHR_materials_volume",    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
-    "KHR_materials_clearcoat", "KHR_materials_sheen",        "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_variants",  "KHR_texture_transform",      "KHR_mesh_quantization",
-    "KHR_lights_punctual",     "EXT_mesh_gpu_instancing",    "EXT_texture_webp"};
-static const char *const without_effect[] = {"KHR_materials_iridescence", "KHR_materials_anisotropy",
-                                             "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"};
+    "KHR_materials_ior",           "KHR_materials_transmission", "KHR_materials_specular",
+    "KHR_materials_volume",        "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_materials_clearcoat",     "KHR_materials_sheen",        "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_iridescence",   "KHR_materials_dispersion",   "KHR_materials_variants",
+    "KHR_texture_transform",       "KHR_mesh_quantization",      "KHR_lights_punctual",
+    "EXT_mesh_gpu_instancing",     "EXT_texture_webp",           "KHR_materials_diffuse_transmission",
+    "KHR_materials_volume_scatter"};
+static const char *const without_effect[] = {"KHR_materials_anisotropy"};
 
 static bool is_one_of(const char *name, const char *const *list, size_t count) {
     for (size_t i = 0; i < count; i++)

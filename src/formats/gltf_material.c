@@ -1,6 +1,6 @@
 /* Materials of glTF, converted to layers of OpenPBR while they are read. Source: glTF 2.0, section 3.9 and appendix
  * B; extensions KHR_materials_ior, _specular, _transmission, _volume, _clearcoat, _sheen, _emissive_strength,
- * _unlit, _pbrSpecularGlossiness, KHR_texture_transform.
+ * _iridescence, _dispersion, _unlit, _pbrSpecularGlossiness, KHR_texture_transform.
  *
  * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of
  * glTF has the index 1.5 and does not darken the layers below it. A transmitting surface without a volume is a thin
@@ -160,7 +160,6 @@ static struct colour unit_colour(const double colour[3]) {
 
 static void warn_of_pictures(struct gltf *g, const json_t *extensions, const char *where) {
     static const char *const keys[][2] = {{"KHR_materials_volume", "thicknessTexture"},
-                                          {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
                                           {"KHR_materials_sheen", "sheenColorTexture"}};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         if (json_object_get(json_object_get(extensions, keys[i][0]), keys[i][1]))
@@ -181,6 +180,43 @@ static bool read_volume(struct gltf *g, const json_t *volume, struct model_mater
         absorption[i] = colour[i] < 1 ? -el_log(fmax(colour[i], 1e-6)) / distance : 0;
     m->absorption = colour_make(absorption[0], absorption[1], absorption[2]);
     return true;
+}
+
+/* KHR_materials_diffuse_transmission: all of the diffuse light that it takes comes through a thin wall; in a solid it
+ * is light under the surface, where KHR_materials_volume_scatter has its colour. Under a transmitting surface that
+ * extension makes a part of the extinction scattering. */
+static bool read_scattering(struct gltf *g, const json_t *extensions, struct model_material *m, const char *where) {
+    const json_t *diffuse = json_object_get(extensions, "KHR_materials_diffuse_transmission");
+    const json_t *scatter = json_object_get(extensions, "KHR_materials_volume_scatter");
+    double tint[3] = {1, 1, 1}, colour[3] = {0, 0, 0}, g_scatter = number_or(scatter, "scatterAnisotropy", 0);
+    struct openpbr *v = &m->layers;
+    struct colour extinction = m->absorption;
+    if (!gltf_numbers(g, diffuse, "diffuseTransmissionColorFactor", tint, 3, where) ||
+        !gltf_numbers(g, scatter, "multiscatterColor", colour, 3, where))
+        return false;
+    g_scatter = fmin(fmax(g_scatter, -0.99), 0.99);
+    v->subsurface_weight = share(diffuse, "diffuseTransmissionFactor", 0);
+    v->subsurface_colour = unit_colour(tint);
+    v->subsurface_anisotropy = v->thin_walled ? 1 : g_scatter;
+    /* Channels without extinction are all but clear. */
+    struct colour least = colour_all(colour_max_abs(extinction) / 1024);
+    v->subsurface_radius_scale = colour_share(colour_all(1), colour_max(extinction, least));
+    if (v->thin_walled || !scatter)
+        return true;
+    v->subsurface_colour = unit_colour(colour);
+    v->transmission_anisotropy = g_scatter;
+    v->transmission_scattering = colour_mul(extinction, colour_make(subsurface_albedo(unit(colour[0]), g_scatter),
+                                                                    subsurface_albedo(unit(colour[1]), g_scatter),
+                                                                    subsurface_albedo(unit(colour[2]), g_scatter)));
+    m->absorption = colour_sub(extinction, v->transmission_scattering);
+    return true;
+}
+
+/* Thicknesses are in nanometres. */
+static void read_film(const json_t *film, struct openpbr *layers) {
+    layers->film_weight = share(film, "iridescenceFactor", 0);
+    layers->film_ior = fmax(number_or(film, "iridescenceIor", 1.3), 1);
+    layers->film_thickness = fmax(number_or(film, "iridescenceThicknessMaximum", 400), 0) / 1000;
 }
 
 static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_material *m, const char *where) {
@@ -214,7 +250,9 @@ static bool read_gloss(struct gltf *g, const json_t *gloss, struct model_materia
 /* The pictures of extensions whose factors are not 0. */
 static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct model_material *m, const char *where) {
     const struct openpbr *layers = &m->layers;
-    const double transmission = m->transmission > 0;
+    const double transmission = m->transmission > 0, thickness = layers->film_weight > 0 ? layers->film_thickness : 0;
+    const json_t *film = json_object_get(extensions, "KHR_materials_iridescence");
+    const double thinnest = fmax(number_or(film, "iridescenceThicknessMinimum", 100), 0) / 1000;
     const struct {
         const char *extension, *key;
         enum material_input input;
@@ -226,7 +264,13 @@ static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct mod
         {"KHR_materials_transmission", "transmissionTexture", INPUT_REFRACT, 'r', transmission},
         {"KHR_materials_clearcoat", "clearcoatTexture", INPUT_COAT_WEIGHT, 'r', layers->coat_weight},
         {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", INPUT_COAT_ROUGHNESS, 'g', layers->coat_roughness},
-        {"KHR_materials_sheen", "sheenRoughnessTexture", INPUT_FUZZ_ROUGHNESS, 'a', layers->fuzz_roughness}};
+        {"KHR_materials_sheen", "sheenRoughnessTexture", INPUT_FUZZ_ROUGHNESS, 'a', layers->fuzz_roughness},
+        {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", INPUT_SUBSURFACE_WEIGHT, 'a',
+         layers->subsurface_weight},
+        {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture", INPUT_SUBSURFACE_COLOUR, 'c',
+         layers->subsurface_weight > 0},
+        {"KHR_materials_iridescence", "iridescenceTexture", INPUT_FILM_WEIGHT, 'r', layers->film_weight},
+        {"KHR_materials_iridescence", "iridescenceThicknessTexture", INPUT_FILM_THICKNESS, 'g', thickness}};
     for (size_t i = 0; i < MODEL_LAYER_MAPS; i++) {
         const json_t *extension = json_object_get(extensions, rows[i].extension);
         if (rows[i].factor == 0 || !json_object_get(extension, rows[i].key))
@@ -235,6 +279,7 @@ static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct mod
         map->input = rows[i].input;
         map->channel = rows[i].channel;
         map->factor = rows[i].factor;
+        map->low = rows[i].input == INPUT_FILM_THICKNESS ? thinnest : 0;
         if (!read_map(g, extension, rows[i].key, &map->map, where))
             return false;
     }
@@ -266,11 +311,16 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     m->layers.thin_walled = !(number_or(volume, "thicknessFactor", 0) > 0);
     m->ks = unit_colour(colour);
     m->roughness = share(rough, "roughnessFactor", 1);
+    read_film(json_object_get(extensions, "KHR_materials_iridescence"), &m->layers);
+    /* 20 / Abbe's number. */
+    m->dispersion = fmax(number_or(json_object_get(extensions, "KHR_materials_dispersion"), "dispersion", 0), 0) / 20;
     m->transmission = share(json_object_get(extensions, "KHR_materials_transmission"), "transmissionFactor", 0);
     const json_t *gloss = json_object_get(extensions, "KHR_materials_pbrSpecularGlossiness");
-    return read_volume(g, volume, m, where) && (!gloss || read_gloss(g, gloss, m, where)) &&
+    return read_volume(g, volume, m, where) && read_scattering(g, extensions, m, where) &&
+           (!gloss || read_gloss(g, gloss, m, where)) &&
            read_sheen(g, json_object_get(extensions, "KHR_materials_sheen"), m, where) &&
            read_layer_maps(g, extensions, m, where) &&
+           (m->layers.coat_weight == 0 || read_map(g, coat, "clearcoatNormalTexture", &m->map_coat_normal, where)) &&
            (gloss || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where));
 }
 

@@ -135,7 +135,8 @@ struct model_material *model_add_material(struct model *model, struct error *err
                                         .map_bump = none,
                                         .map_normal = none,
                                         .map_metal = none,
-                                        .map_gloss = none};
+                                        .map_gloss = none,
+                                        .map_coat_normal = none};
     for (int i = 0; i < MODEL_LAYER_MAPS; i++)
         material->layer_maps[i].map = none;
     model->materials.count++;
@@ -143,8 +144,9 @@ struct model_material *model_add_material(struct model *model, struct error *err
 }
 
 struct model_texture *model_map(struct model_material *m, size_t index) {
-    struct model_texture *const maps[] = {&m->map_kd,   &m->map_ks,     &m->map_ke,    &m->map_d,
-                                          &m->map_bump, &m->map_normal, &m->map_metal, &m->map_gloss};
+    struct model_texture *const maps[] = {&m->map_kd,    &m->map_ks,    &m->map_ke,
+                                          &m->map_d,     &m->map_bump,  &m->map_normal,
+                                          &m->map_metal, &m->map_gloss, &m->map_coat_normal};
     const size_t count = sizeof maps / sizeof *maps;
     if (index < count)
         return maps[index];

@@ -36,10 +36,10 @@ struct model_texture {
 struct model_layer_map {
     struct model_texture map;
     enum material_input input;
-    char channel; /* 'r', 'g', 'a', or 'c': the colour */
-    double factor;
+    char channel;       /* 'r', 'g', 'a', or 'c': the colour */
+    double factor, low; /* the input where the channel is 1 and 0 */
 };
-enum { MODEL_LAYER_MAPS = 6 };
+enum { MODEL_LAYER_MAPS = 10 };
 
 /* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {
@@ -51,12 +51,13 @@ struct model_material {
     bool layered;
     struct openpbr layers;
     double roughness, transmission;
+    double dispersion; /* 1 / Abbe's number */
     struct colour absorption;
     bool has_shininess, has_ior, two_sided, unlit;
     bool by_vertex;      /* the colours of the mesh multiply kd */
     bool dissolve_of_tr; /* of Tr, not of d */
     int illum;
-    struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
+    struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal, map_coat_normal;
     /* Of layered materials: the colour is the reflectance head on (times gloss_colour), alpha times 1 - roughness the
      * gloss; both take the place of the numbers. */
     struct model_texture map_gloss;

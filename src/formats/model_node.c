@@ -175,7 +175,7 @@ static bool cut(struct scene *scene, const struct model_texture *map, const stru
     return true;
 }
 
-static bool add_bump_map(struct scene *scene, const struct model_texture *map, enum material_kind kind,
+static bool add_bump_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, bool of_coat,
                          const struct material **top, struct error *error) {
     struct texture_image image;
     bool there;
@@ -187,6 +187,7 @@ static bool add_bump_map(struct scene *scene, const struct model_texture *map, e
         return false;
     struct bump bump = bump_make(kind, texture);
     bump.height *= map->strength;
+    bump.of_coat = of_coat;
     if (!material_add_bump(m, &bump, &scene->arena, error))
         return false;
     *top = m;
@@ -200,8 +201,9 @@ static const struct material *with_maps(struct scene *scene, const struct model_
     bool ok = (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
               cover(scene, &from->map_ke, INPUT_EMISSION, or_white(from->ke), &top, error) &&
               cut(scene, &from->map_d, &top, error) &&
-              add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, &top, error) &&
-              add_bump_map(scene, &from->map_normal, MATERIAL_NORMAL, &top, error);
+              add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, false, &top, error) &&
+              add_bump_map(scene, &from->map_normal, MATERIAL_NORMAL, false, &top, error) &&
+              add_bump_map(scene, &from->map_coat_normal, MATERIAL_NORMAL, true, &top, error);
     return ok ? top : NULL;
 }
 
@@ -295,12 +297,20 @@ static bool multiply_by_map(struct scene *scene, const struct model_layer_map *f
     if (!find_map(scene, &from->map, &image, &there, error) || !there)
         return !there;
     image.alpha = from->channel == 'a' ? ALPHA_ONLY : ALPHA_STRAIGHT;
+    if (from->input == INPUT_SUBSURFACE_COLOUR)
+        image.tint = m->openpbr->subsurface_colour;
     struct arena *arena = &scene->arena;
     const struct texture *white = texture_keep(arena, texture_number(1), error);
     const struct texture *part = white ? texture_keep(arena, texture_image(&image, white), error) : NULL;
     if (part && (from->channel == 'r' || from->channel == 'g'))
         part = texture_keep(arena, texture_map(part, from->channel == 'r' ? FUNCTION_RED : FUNCTION_GREEN, 0), error);
-    return part && material_multiply_constant(m, from->input, texture_number(from->factor), arena, error) &&
+    if (!part || from->low == 0)
+        return part && material_multiply_constant(m, from->input, texture_number(from->factor), arena, error) &&
+               material_multiply(m, from->input, part, arena, error);
+    const struct texture *high = texture_keep(arena, texture_number(from->factor), error);
+    const struct texture *low = high ? texture_keep(arena, texture_number(from->low), error) : NULL;
+    part = low ? texture_keep(arena, texture_mix(high, low, part), error) : NULL;
+    return part && material_multiply_constant(m, from->input, texture_number(1), arena, error) &&
            material_multiply(m, from->input, part, arena, error);
 }
 
@@ -332,6 +342,7 @@ static const struct material *make_layers(struct scene *scene, const struct mode
     m->phong.has_ior = from->transmission > 0 && !layers->thin_walled;
     m->phong.ior = m->phong.has_ior ? openpbr_ior(layers->specular_ior, layers->specular_weight) : 1;
     m->phong.absorption = from->absorption;
+    m->phong.dispersion.amount = from->dispersion;
     m->phong.two_sided = from->two_sided || from->transmission > 0;
     m->phong.emission = from->map_ke.name ? colour_all(0) : from->ke;
     bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_gloss(scene, from, layers, m, error) &&

@@ -51,6 +51,12 @@ bool geom_scratch_init(struct geom_scratch *scratch, uint32_t capacity);
 void geom_scratch_destroy(struct geom_scratch *scratch);
 bool geom_scratch_grow(struct geom_scratch *scratch); /* doubles, clears overflow and used; false: no memory */
 
+/* All steps and tests. */
+static inline uint64_t geom_work(const struct geom_scratch *scratch) {
+    return scratch->cost.hierarchy_steps + scratch->cost.voxels + scratch->cost.triangle_tests + scratch->box_tests +
+           scratch->shape_tests;
+}
+
 static inline bool geom_scratch_push(struct geom_scratch *scratch, struct crossing crossing) {
     if (scratch->used == scratch->capacity) {
         scratch->overflow = true;

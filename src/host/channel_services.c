@@ -2,7 +2,7 @@
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 
-#include "viewer/preview_messages.h"
+#include "preview/preview_messages.h"
 
 #include <errno.h>
 #include <string.h>

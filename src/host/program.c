@@ -57,12 +57,8 @@ static const char *find_library(struct arena *arena) {
 }
 
 static void print_version(void) {
-#if defined HAVE_SDL && defined HAVE_GTK
-    static const char window[] = "SDL 2 (gray-gui) and GTK 4 (gray-gtk)";
-#elif defined HAVE_SDL
-    static const char window[] = "SDL 2 (gray-gui)";
-#elif defined HAVE_GTK
-    static const char window[] = "GTK 4 (gray-gtk)";
+#ifdef HAVE_GTK
+    static const char window[] = "GTK 4 (gray-gui)";
 #else
     static const char window[] = "none";
 #endif
@@ -87,14 +83,12 @@ static void disable_output(struct options *options) {
     options->display = NULL;
 }
 
-/* A window with widgets is there before anything runs: without a scene the user opens one in it. */
+/* The window is there before anything runs: without a scene the user opens one in it. */
 static bool open_first(const struct window_driver *window, const struct options *options) {
-    bool empty = options->script_count == 0, ok = window->status || !empty;
+    bool empty = options->script_count == 0;
     struct error error;
-    if (!ok)
-        (void)error_set(&error, ERROR_USAGE, "no scene script was given");
-    else if (window->status)
-        ok = window->open(window->context, 0, 0, empty ? "" : options->scripts[0], &error);
+    window->state->has_scene = !empty;
+    bool ok = window->open(window->context, &error);
     if (!ok)
         (void)fprintf(stderr, "gray: %s\n", error.text);
     else if (empty)
@@ -106,11 +100,10 @@ static int render(struct options *options, const struct program_parts *parts) {
     if (options->no_fork)
         return in_process_run(options);
     if (options->window && !open_first(parts->window, options))
-        return options->script_count == 0 ? ERROR_USAGE : ERROR_MACHINE;
+        return ERROR_MACHINE;
     if (options->script_count == 0)
         return 0;
-    bool stays = options->window && parts->window->status && !options_output_is_stream(options);
-    options->watch = options->watch || stays;
+    options->watch = options->watch || (options->window && !options_output_is_stream(options));
     struct program_parts wanted = {.transport = options->mpi ? parts->transport : NULL,
                                    .window = options->window ? parts->window : NULL};
     if (wanted.transport && wanted.transport->rank > 0)
@@ -190,9 +183,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
     } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
-        const char *kind = getenv("GRAY_WINDOW"); /* until the window by GTK can do everything */
-        status = kind && strcmp(kind, "gtk") == 0 ? exec_variant("gtk", "gtk4 (Debian: libgtk-4-dev)", argv)
-                                                  : exec_variant("gui", "sdl2 (Debian: libsdl2-dev)", argv);
+        status = exec_variant("gui", "gtk4 (Debian: libgtk-4-dev; tools/setup.sh --window)", argv);
     } else {
         status = perform(&options, parts, &arena);
     }

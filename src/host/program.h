@@ -3,7 +3,7 @@
 #define GRAY_HOST_PROGRAM_H
 
 #include "output/farm.h"
-#include "viewer/window.h"
+#include "window/window.h"
 
 /* Features that only some of the programs have; used with the option that requests them. */
 struct program_parts {

@@ -18,7 +18,7 @@
 #include "render/overlay.h"
 #include "render/scene_check.h"
 #include "session/text.h"
-#include "viewer/preview_session.h"
+#include "preview/preview_session.h"
 #include "world/world_cache.h"
 
 #include <stdio.h>
@@ -250,8 +250,10 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     report->rays.render_seconds = clock_now() - built;
     report->rays.render_processor_seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - built_worked;
     render_process_fill_report(work, job->film, report);
-    if (ok && job->world)
+    if (ok && job->world) {
         render_process_warn_of_nan(process, job->world);
+        render_process_warn_of_density(process, job->world);
+    }
     work->ok = ok;
     if (ok && !is_asked(process->options) && !process->options->check)
         render_process_report_samples(work);
@@ -311,11 +313,14 @@ static struct picture_request picture_request_of(const struct options *options, 
                                                  struct frame frame) {
     static const struct tone_table no_table = {{0}};
     const struct tone_table *table = job->settings.tone.table;
+    struct settings recorded = job->settings;
+    if (options->window) /* it shows no noise while it renders */
+        recorded.denoise = DENOISER_GRAY;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
                                     .settings = job->settings,
                                     .tone_table = table ? *table : no_table,
-                                    .record = render_record(&job->settings),
+                                    .record = render_record(&recorded),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
                                     .camera = job->camera,
@@ -369,7 +374,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (warning[0] != '\0')
         render_process_warn_at(process, work->request->where, warning);
     picture->shown = (struct film_rectangle){area.x0, area.y0, area.x0 + area.width, area.y0 + area.height};
-    uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
+    uint32_t rim = settings_denoise(&job->settings) && path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
     rim += finish_rim(&job->settings.finish, picture->full_height);
     struct film_rectangle all = film_rectangle_grown(&picture->shown, rim, picture->full_width, picture->full_height);
     picture->x0 = all.x0, picture->y0 = all.y0, picture->width = all.x1 - all.x0, picture->height = all.y1 - all.y0;

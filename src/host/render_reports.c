@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "film/aov.h"
 #include "image/image.h"
+#include "material/density.h"
 #include "session/options.h"
 #include "session/options_table.h"
 #include "settings/setting.h"
@@ -126,6 +127,23 @@ void render_process_warn_of_nan(struct render_process *process, const struct wor
                        "the function of %.400s is not a number (NaN) at p = {%.6g, %.6g, %.6g}; it counts as 0 there",
                        source, nan->point[0], nan->point[1], nan->point[2]);
         warn_once(process, source, line);
+    }
+}
+
+void render_process_warn_of_density(struct render_process *process, const struct world *world) {
+    for (uint32_t i = 0; i <= world->media.outside; i++) {
+        for (const struct medium *medium = &world->media.all[i]; medium; medium = medium->inner) {
+            struct vec3 p;
+            double value;
+            char line[512];
+            if (!medium->density || !density_excess(medium->density, &p, &value))
+                continue;
+            (void)snprintf(line, sizeof line,
+                           "the density of a medium is %.6g at p = {%.6g, %.6g, %.6g}, above its bound, which counts "
+                           "there (bound = NUMBER is another one)",
+                           value, p.x, p.y, p.z);
+            warn_once(process, "density", line);
+        }
     }
 }
 

@@ -18,6 +18,8 @@ void render_process_warn_at(struct render_process *process, const char *where, c
 /* Of `text`, once in a script for each key; the line has its mark. */
 void render_process_notice_once(struct render_process *process, const char *key, const char *text);
 void render_process_warn_of_nan(struct render_process *process, const struct world *world);
+/* Likewise of a density above its bound. */
+void render_process_warn_of_density(struct render_process *process, const struct world *world);
 void render_process_fill_report(const struct picture_work *work, const struct film *film,
                                 struct picture_report *report);
 void render_process_report_world(const struct render_process *process, const char *file,

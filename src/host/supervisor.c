@@ -53,7 +53,7 @@ static void leave_abandoned(struct supervisor *supervisor) {
 /* That becomes readable with an event of the window, or -1. */
 static int window_descriptor(const struct supervisor *supervisor) {
     const struct window_driver *window = supervisor->window;
-    return window && window->descriptor ? window->descriptor(window->context) : -1;
+    return window ? window->descriptor(window->context) : -1;
 }
 
 /* Milliseconds between two looks at the window. */
@@ -122,7 +122,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         report_script(supervisor);
         show_notes(supervisor);
         supervisor_step_window(supervisor);
-        if (files_changed(supervisor))
+        if (files_changed(supervisor) && !viewer_delays_change(&supervisor->viewer, clock_now()))
             supervisor_restart(supervisor);
         if (!watched[0].revents)
             continue;
@@ -184,7 +184,7 @@ static bool wait_for_change(struct supervisor *supervisor) {
         if (watched[1].revents)
             supervisor_read_signals(supervisor);
         supervisor_step_window(supervisor);
-        if (files_changed(supervisor))
+        if (files_changed(supervisor) && !viewer_delays_change(&supervisor->viewer, clock_now()))
             break;
     }
     return !supervisor->ended;

@@ -14,8 +14,6 @@
 
 /* Seconds that a child has to end when the window is closed; closing must take less than 50 milliseconds. */
 static const double patience_quit = 0.01;
-/* Seconds that the scripts run before the window opens without a picture. */
-static const double patience_open = 0.4;
 /* Seconds for the scripts to end before they run again; afterwards the process is started again. */
 static const double patience_again = 0.3;
 
@@ -171,6 +169,15 @@ void supervisor_restart(struct supervisor *supervisor) {
         end_picture(supervisor, true);
 }
 
+/* The scripts end, and the window stays. */
+static void end_scripts(struct supervisor *supervisor) {
+    if (supervisor->deadline > 0)
+        return;
+    supervisor->stop = true;
+    supervisor->deadline = clock_now() + patience_again;
+    atomic_store(&supervisor->control->cancel, CANCEL_ALL);
+}
+
 /* As if its option were given from now on: another child runs the scripts. */
 static void change_setting(struct supervisor *supervisor, const struct viewer_setting *change) {
     setting_store(&setting_table[change->index], &supervisor->own_options->settings, change->number);
@@ -221,8 +228,7 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    bool at_once = supervisor->window && supervisor->window->status;
-    if (!supervisor->waits && (at_once || clock_now() - supervisor->viewer.window.script_began > patience_open))
+    if (!supervisor->waits)
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
@@ -257,6 +263,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
             return;
         case VIEWER_RUN_AGAIN:
             supervisor_restart(supervisor);
+            return;
+        case VIEWER_END_SCRIPTS:
+            end_scripts(supervisor);
             return;
         case VIEWER_LOG_NOTE:
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);

@@ -13,6 +13,8 @@ const char *inspect_ray(enum ray_kind kind) {
         return "refracted";
     case RAY_HOLE:
         return "hole";
+    case RAY_BELOW:
+        return "below";
     }
     return "?";
 }

@@ -222,10 +222,22 @@ static uint32_t idle_parts(const struct surface_tables *tables, const struct hit
     return idle;
 }
 
+/* The numbers of children along the route. */
+static void set_path(const struct picking *p) {
+    struct node_query *path = &p->out->path;
+    for (uint32_t i = 1; i < p->depth && p->depth <= NODE_LEVELS; i++) {
+        path->path[i] = node_list_number(p->steps[i - 1].node, p->steps[i].node);
+        if (path->path[i] == UINT32_MAX)
+            return;
+    }
+    path->depth = p->depth <= NODE_LEVELS ? p->depth : 0;
+}
+
 static bool describe_node(struct picking *p, const struct node *root, struct error *error) {
     struct picked *out = p->out;
     const struct node *node = p->steps[p->depth - 1].node;
     out->serial = node->serial;
+    set_path(p);
     out->route = route_hash(p->steps, p->depth);
     out->solid = p->depth > p->route ? route_hash(p->steps, p->route) : 0;
     pick_copy_name(out->name, node->name);
@@ -272,22 +284,30 @@ static bool find_first(void *context, uint32_t first, uint32_t count, const stru
 
 bool pick_node(const struct render_job *job, const struct node *root, const struct node_query *query,
                struct picked *out, struct error *error) {
-    struct picking p = {.world = job->world, .out = out, .depth = query->depth};
+    struct picking p = {.world = job->world, .out = out};
     struct node_query part = *query;
     *out = (struct picked){0};
-    for (part.depth = 1; part.depth <= query->depth && part.depth <= NODE_LEVELS; part.depth++) {
-        p.steps[part.depth - 1].node = node_list_find(root, &part);
-        if (!p.steps[part.depth - 1].node)
-            return true;
-    }
-    if (query->depth == 0 || query->depth > NODE_LEVELS)
+    if (query->depth == 0 && (query->serial == 0 || !node_list_locate(root, query->serial, &part)))
         return true;
+    uint32_t depth = part.depth, outer = 0; /* outer: the depth of the solid whose operand it is */
+    if (depth > NODE_LEVELS)
+        return true;
+    for (part.depth = 1; part.depth <= depth; part.depth++) {
+        const struct node *node = p.steps[part.depth - 1].node = node_list_find(root, &part);
+        if (!node)
+            return true;
+        bool solid = node->kind == NODE_CSG && !node_is_placing(node);
+        outer = outer == 0 && solid && part.depth < depth ? part.depth : outer;
+    }
+    p.depth = outer > 0 ? outer : depth;
     if (!world_visit_node_paths(p.world, root, find_first, &p, error))
         return false;
     out->hit = p.route > 0;
     if (!out->hit)
         return true;
-    out->up = (int32_t)(p.route - p.depth);
+    p.depth = depth;
+    p.whole = p.route > depth ? p.route : depth;
+    out->up = (int32_t)p.route - (int32_t)depth;
     out->levels = p.depth - 1;
     (void)node_path_text(p.steps, p.depth, out->node_path, sizeof out->node_path);
     const struct node *node = p.steps[p.depth - 1].node;
@@ -299,6 +319,29 @@ bool pick_node(const struct render_job *job, const struct node *root, const stru
         out->position = vec3_add_scaled(out->position, out->corners[i], 0.125);
     out->distance = vec3_length(vec3_sub(out->position, job->camera.eye));
     return true;
+}
+
+void material_rows(const struct world *world, const struct node_query *query, struct node_rows *out) {
+    if (query->depth == 0)
+        out->rows[SECTION_MATERIALS] =
+            (struct node_row){.children = world->material_count, .name = "Materials", .kind = " "};
+    if (query->depth != 1 || query->path[0] != SECTION_MATERIALS)
+        return;
+    for (uint32_t i = query->first; i < world->material_count && out->count < NODE_ROWS; i++) {
+        struct node_row *row = &out->rows[out->count++];
+        struct picked picked = {0};
+        describe_material(world->authored.materials[i], &picked);
+        (void)snprintf(row->name, sizeof row->name, "%u", picked.material_serial);
+        (void)snprintf(row->kind, sizeof row->kind, "%.15s", picked.material);
+    }
+}
+
+void pick_material(const struct world *world, const struct node_query *query, struct picked *out) {
+    *out = (struct picked){.path = *query};
+    if (query->depth != 2 || query->path[1] >= world->material_count)
+        return;
+    out->hit = true;
+    describe_material(world->authored.materials[query->path[1]], out);
 }
 
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,

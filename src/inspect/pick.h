@@ -13,11 +13,12 @@ enum { PICK_PATH = 512, PICK_NAME = 64 };
 
 struct picked {
     bool hit;
+    struct node_query path;    /* to the node; depth 0: it is too deep */
     char node_path[PICK_PATH]; /* the names and creation numbers from the root to the node */
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
-    uint64_t route;                        /* to it (viewer/view_overlay_internal.h); 0: not known */
+    uint64_t route;                        /* to it (preview/view_overlay_internal.h); 0: not known */
     uint64_t solid;                        /* of an operand: the route to the solid; else 0 */
     uint32_t levels;                       /* nodes above it */
     int32_t up;                            /* as requested, limited by the number of nodes */
@@ -47,6 +48,11 @@ struct pick_query {
  * camera. */
 bool pick_at(const struct render_job *job, const struct node *root, struct pick_query query, struct picked *out,
              struct error *error);
+
+/* The materials of a world in a tree of nodes: the number of them at its top, or rows of the list; and one of them, as
+ * if a node with it were hit. */
+void material_rows(const struct world *world, const struct node_query *query, struct node_rows *out);
+void pick_material(const struct world *world, const struct node_query *query, struct picked *out);
 
 /* The same for a node of the tree, at the middle of its box; a node of which nothing is drawn is not hit. */
 bool pick_node(const struct render_job *job, const struct node *root, const struct node_query *query,

@@ -106,6 +106,10 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         text_writer_put(writer,
                         ",\"origin\":%a,\"direction\":%a,\"time\":%j,\"share\":%j,\"media\":%u,\"media_ior\":%j",
                         ray->origin, ray->direction, ray->time, ray->share, ray->media_count, ray->media_ior);
+        if (ray->wavelength > 0)
+            text_writer_put(writer, ",\"wavelength\":%j", ray->wavelength);
+        if (ray->kind == RAY_BELOW)
+            text_writer_put(writer, ",\"scatterings\":%u", (unsigned)ray->scatterings);
         /* What it meets. */
         bool in_medium = ray->is_vertex && ray->vertex.in_medium;
         text_writer_put(writer, ",\"distance\":%j,\"meets\":\"%s\"", in_medium ? ray->vertex.distance : ray->distance,
@@ -113,6 +117,8 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
                         : ray->met        ? "surface"
                         : ray->area_light ? "light"
                                           : "background");
+        if (in_medium)
+            text_writer_put(writer, ",\"probability\":%j", ray->vertex.chance);
         if (ray->met && !in_medium)
             json_hit(report, writer, ray);
         else if (ray->is_vertex)

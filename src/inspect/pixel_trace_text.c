@@ -211,7 +211,9 @@ static void print_onward(struct text_state *t, const struct pixel_trace_ray *ray
 }
 
 static void print_scattering(struct text_state *t, const struct pixel_trace_ray *ray) {
-    text_writer_put(t->writer, "%ithe medium scatters it at distance %g\n", deep(t), ray->vertex.distance);
+    text_writer_put(t->writer,
+                    "%ithe medium scatters it at distance %g, with probability %g before the end of the ray\n", deep(t),
+                    ray->vertex.distance, ray->vertex.chance);
     for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
         print_light(t, light);
     print_onward(t, ray);
@@ -262,7 +264,11 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct text_writer *writer = t->writer;
     text_writer_put(writer, "%iray %u, %s", deep(t) - 2, ray->number,
-                    ray->kind == RAY_HOLE ? "through the hole" : inspect_ray(ray->kind));
+                    ray->kind == RAY_HOLE    ? "through the hole"
+                    : ray->kind == RAY_BELOW ? "out from under the surface"
+                                             : inspect_ray(ray->kind));
+    if (ray->scatterings > 0)
+        text_writer_put(writer, " after %u scatterings", (unsigned)ray->scatterings);
     if (ray->parent)
         text_writer_put(writer, ", weight %c", ray->weight);
     if (!ray->begun) {
@@ -275,6 +281,8 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     text_writer_put(writer, ray->time != 0 ? ", time %g" : "", ray->time);
     if (ray->media_count > 0)
         text_writer_put(writer, ", inside of %u, index %g", ray->media_count, ray->media_ior);
+    if (ray->wavelength > 0)
+        text_writer_put(writer, ", wavelength %g nm", 1000 * ray->wavelength);
     text_writer_put(writer, "\n");
     print_met(t, ray);
     /* What the way to the hit adds and leaves. */

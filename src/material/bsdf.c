@@ -79,9 +79,11 @@ struct colour bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 
                                         radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
             continue;
         case LOBE_MIRROR:
+        case LOBE_COAT:
         case LOBE_REFRACTION:
         case LOBE_GGX_REFLECTION:
         case LOBE_GGX_TRANSMISSION:
+        case LOBE_SUBSURFACE:
             continue;
         }
         sum = colour_add_scaled(sum, lobe->weight, factor);
@@ -147,8 +149,9 @@ static double blinn_pdf(const struct lobe *lobe, struct vec3 normal, struct vec3
 /* --- smooth boundaries --- */
 
 /* A reflection about an interpolated normal may point into the surface: then the geometric normal is used. */
-static struct vec3 mirror_direction(const struct bsdf *bsdf, struct vec3 wo) {
-    struct vec3 direction = dielectric_mirror(bsdf->side, wo);
+static struct vec3 mirror_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo) {
+    struct vec3 side = lobe->kind == LOBE_COAT ? bsdf->facets[lobe->facets].distribution.normal : bsdf->side;
+    struct vec3 direction = dielectric_mirror(side, wo);
     return vec3_dot(direction, bsdf->geometric_side) > 0 ? direction : dielectric_mirror(bsdf->geometric_side, wo);
 }
 
@@ -240,7 +243,9 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_BLINN:
         return n_l > 0 ? blinn_pdf(lobe, bsdf->lit, wo, wi) : 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
+    case LOBE_SUBSURFACE:
         return 0;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
@@ -262,7 +267,9 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
     case LOBE_BLINN:
         return n_l > 0 ? intensity_of(blinn_formula(lobe, bsdf->lit, wo, wi)) : 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
+    case LOBE_SUBSURFACE:
         return 0;
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION: {
@@ -315,7 +322,7 @@ static bool traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, s
     if (out->transmits)
         (void)bsdf_refract(bsdf, wo, &out->direction);
     else
-        out->direction = mirror_direction(bsdf, wo);
+        out->direction = mirror_direction(bsdf, lobe, wo);
     return true;
 }
 
@@ -339,11 +346,16 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
         out->direction = dielectric_mirror(facet, wo);
         return vec3_dot(wo, facet) > 0 && classic_cosine(bsdf, out->direction) > 0;
     case LOBE_MIRROR:
+    case LOBE_COAT:
     case LOBE_REFRACTION:
         return traced_direction(bsdf, lobe, wo, bsdf->side, out);
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return traced_direction(bsdf, lobe, wo, microfacet_normal(bsdf->side, wo, bsdf->alpha, u), out);
+    case LOBE_SUBSURFACE:
+        out->direction = diffuse_sample(vec3_negate(bsdf->side), u);
+        out->delta = true;
+        return vec3_dot(out->direction, bsdf->geometric_side) < 0;
         ROUGH_LOBES(LIST_LABEL)
         return rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits);
     }
@@ -496,7 +508,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     out->flags = sampled.transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
     /* No other lobe reaches the direction of a mirror. */
     if (sampled.delta) {
-        out->flags |= BSDF_DELTA;
+        out->flags |= BSDF_DELTA | (lobe_flags(lobe->kind) & BSDF_BELOW);
         out->weight = colour_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }

@@ -11,6 +11,8 @@
 #include "base/list.h"
 #include "material/medium.h"
 #include "material/microfacet_internal.h"
+#include "material/subsurface.h"
+#include "material/thin_film.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
 
@@ -26,8 +28,9 @@ enum bsdf_flags {
     BSDF_LAMBERT = 32,  /* f is the same for all directions */
     BSDF_EXPONENT = 64, /* it has one */
     BSDF_ROUGH = 128,   /* of layered materials, in rough_lobes.c */
-    BSDF_TINTED = 256,  /* f has a colour beside the weight, that of Fresnel's reflection by metals */
+    BSDF_TINTED = 256,  /* f has a colour beside the weight: Fresnel's shares of metals and thin films */
     BSDF_DIFFUSE = 512, /* render layers count it as diffuse */
+    BSDF_BELOW = 1024,  /* light comes out elsewhere: f and pdf are 0 */
 };
 
 /* Kind, name in pixel traces, flags. f is weight times: */
@@ -36,18 +39,25 @@ enum bsdf_flags {
     X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, r.v)^exponent / (pi n.l) */         \
     X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, n.h)^exponent / (pi n.l) */         \
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
+    X(LOBE_COAT, "coat", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA) /* a mirror with the normal of its facets */        \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
-    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */    \
+    /* Goes in as Lambert's lobe would come out. Its weight has the colour, which the walk divides by again. */        \
+    X(LOBE_SUBSURFACE, "subsurface", BSDF_REFLECTS | BSDF_DELTA | BSDF_DIFFUSE | BSDF_BELOW)
 /* Of layered materials; rough_lobes.c has the formulas. */
 #define ROUGH_LOBES(X)                                                                                                 \
     X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)                      \
     X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)   \
+    X(LOBE_DIFFUSE_THROUGH, "diffuse through", BSDF_ROUGH | BSDF_TRANSMITS) /* 1 / pi, behind a thin wall */           \
     X(LOBE_FUZZ, "fuzz", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                                    \
     X(LOBE_GLOSS, "gloss", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS)                                    \
     X(LOBE_METAL, "metal", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                      \
     X(LOBE_GLASS, "glass", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                  \
     X(LOBE_PANE, "pane", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                    \
+    X(LOBE_FILM, "film", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                        \
+    X(LOBE_FILM_GLASS, "glass below a film", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS | BSDF_TINTED)                  \
+    X(LOBE_FILM_PANE, "pane below a film", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS | BSDF_TINTED)                    \
     X(LOBE_FACETS_MULTIPLE, "facets, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                             \
     X(LOBE_FACETS_THROUGH, "facets through, multiple", BSDF_ROUGH | BSDF_TRANSMITS)
 #define LOBES(X) SIMPLE_LOBES(X) ROUGH_LOBES(X)
@@ -80,7 +90,7 @@ struct bsdf_facets {
     double through;           /* the share of that light that is transmitted */
 };
 
-enum { BSDF_LOBES = 12, BSDF_FACETS = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };
+enum { BSDF_LOBES = 14, BSDF_FACETS = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };
 
 struct bsdf {
     int count;
@@ -108,7 +118,9 @@ struct bsdf {
     const struct medium_stack *behind; /* if light passes other surfaces too: the media behind them all; else NULL */
     bool passes;                       /* some light enters the solid or passes the thin wall */
     double roughness;                  /* if it passes: that of the boundary, 2 where some light is diffuse */
+    struct thin_film film;             /* over the facets of lobes with a film; else undefined */
     struct bsdf_facets facets[BSDF_FACETS]; /* those that lobes refer to */
+    struct subsurface subsurface;           /* of LOBE_SUBSURFACE */
 };
 
 /* Other surfaces that coincide with this one, for light that passes them all. */
@@ -156,7 +168,7 @@ struct bsdf_sample {
     struct vec3 direction;
     struct colour weight; /* f |cos| / pdf; of delta lobes the limit of that */
     double pdf;           /* with BSDF_DELTA: the probability of the lobe */
-    unsigned flags;       /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
+    unsigned flags;       /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA; with that BSDF_BELOW: it goes in */
 };
 /* A direction for a point of the unit square, of one of the lobes, chosen approximately in proportion to their
  * contributions. False: no direction, which counts as black (a sample below the surface, a lobe without

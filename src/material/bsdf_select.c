@@ -78,7 +78,8 @@ struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow) {
         unsigned flags = lobe_flags(lobe->kind);
         if (flags & BSDF_EXPONENT)
             continue;
-        bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
+        bool smooth = ((flags & BSDF_DELTA) && !(flags & BSDF_BELOW)) ||
+                      (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
         guide.scatters = guide.scatters || (!smooth && !colour_is_black(lobe->weight));
         guide.albedo = colour_add(guide.albedo, lobe->weight);
         *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += colour_max_abs(lobe->weight);

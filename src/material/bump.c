@@ -181,8 +181,25 @@ static void turn(const struct surface_bump *bump, const struct texture_tables *t
         turn_by_texture(bump, textures, hit, normal);
 }
 
+static bool turn_all(const struct surface_tables *tables, const struct surface_material *material, bool of_coat,
+                     const struct hit *hit, struct vec3 *normal) {
+    bool any = false;
+    for (uint32_t i = 0; i < material->bump_count; i++) {
+        const struct surface_bump *bump = &tables->bumps[material->first_bump + i];
+        if (bump->of_coat != of_coat)
+            continue;
+        turn(bump, &tables->textures, hit, normal);
+        any = true;
+    }
+    return any;
+}
+
 void bump_turn_normal(const struct surface_tables *tables, const struct surface_material *material,
                       const struct hit *hit, struct vec3 *normal) {
-    for (uint32_t i = 0; i < material->bump_count; i++)
-        turn(&tables->bumps[material->first_bump + i], &tables->textures, hit, normal);
+    (void)turn_all(tables, material, false, hit, normal);
+}
+
+bool bump_turn_coat(const struct surface_tables *tables, const struct surface_material *material, const struct hit *hit,
+                    struct vec3 *normal) {
+    return turn_all(tables, material, true, hit, normal);
 }

@@ -14,5 +14,8 @@ struct bump bump_make(enum material_kind kind, const struct texture *texture);
  * nothing if a shape has none. */
 void bump_turn_normal(const struct surface_tables *tables, const struct surface_material *material,
                       const struct hit *hit, struct vec3 *normal);
+/* The same by the bumps of the clear coat, which the other function leaves out. False: there are none. */
+bool bump_turn_coat(const struct surface_tables *tables, const struct surface_material *material, const struct hit *hit,
+                    struct vec3 *normal);
 
 #endif

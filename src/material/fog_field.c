@@ -121,12 +121,13 @@ static struct vec3 checked_point(const struct fog_cells *cells, uint64_t i) {
     return vec3_make(x[0], x[1], x[2]);
 }
 
-static void evaluate(const struct expr_program *program, struct vec3 p, double out[EXPR_OUTPUTS]) {
+static void evaluate(const struct expr_program *program, struct vec3 p, double time, double out[EXPR_OUTPUTS]) {
     double inputs[EXPR_INPUT_COUNT] = {p.x, p.y, p.z};
     inputs[EXPR_WORLD_X] = p.x;
     inputs[EXPR_WORLD_Y] = p.y;
     inputs[EXPR_WORLD_Z] = p.z;
     inputs[EXPR_VIEW_Z] = 1;
+    inputs[EXPR_TIME] = time;
     expr_evaluate(program, inputs, out);
 }
 
@@ -134,7 +135,7 @@ static bool check_points(const struct fog_field *field, const struct fog_field_i
     for (uint64_t i = 0; i < CHECKED_POINTS; i++) {
         struct vec3 p = checked_point(&field->cells, i);
         double out[EXPR_OUTPUTS];
-        evaluate(field->density, p, out);
+        evaluate(field->density, p, 0, out);
         if (isnan(out[0]))
             return error_set(error, ERROR_SCENE,
                              "the density of %s must be at least 0; at p = {%.6g, %.6g, %.6g} it is not a number (NaN)",
@@ -151,7 +152,7 @@ static bool check_points(const struct fog_field *field, const struct fog_field_i
 static double largest_at_points(const struct fog_field *field) {
     double largest = 0, out[EXPR_OUTPUTS];
     for (uint64_t i = 0; i < CHECKED_POINTS; i++) {
-        evaluate(field->colour, checked_point(&field->cells, i), out);
+        evaluate(field->colour, checked_point(&field->cells, i), 0, out);
         for (int k = 0; k < field->colour->output_count; k++)
             largest = isfinite(out[k]) ? fmax(largest, out[k]) : largest;
     }
@@ -217,6 +218,17 @@ const struct expr_program *fog_field_density(const struct fog_field *field) {
 
 const struct expr_program *fog_field_colour(const struct fog_field *field) {
     return field->colour;
+}
+
+const float (*fog_field_cells(const struct fog_field *field, struct fog_cells *cells))[2] {
+    *cells = field->cells;
+    return (const float(*)[2])field->bounds;
+}
+
+double fog_field_at(const struct fog_field *field, struct vec3 p, double time) {
+    double out[EXPR_OUTPUTS];
+    evaluate(field->density, p, time, out);
+    return out[0];
 }
 
 /* --- along a line --- */

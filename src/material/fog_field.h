@@ -30,6 +30,12 @@ double fog_field_brightest(const struct fog_field *field);
 const struct expr_program *fog_field_density(const struct fog_field *field);
 const struct expr_program *fog_field_colour(const struct fog_field *field);
 
+/* Its cells, and for each the minimum and the maximum of the density. */
+struct fog_cells;
+const float (*fog_field_cells(const struct fog_field *field, struct fog_cells *cells))[2];
+/* The density at a point; it may be negative or NaN. */
+double fog_field_at(const struct fog_field *field, struct vec3 p, double time);
+
 struct fog_line {
     struct vec3 origin, direction; /* unit */
     double distance, time;         /* the distance may be infinite */

@@ -45,6 +45,7 @@ struct bump {
     /* Its number is the height, or its colour the normal along the coordinates that the shape supplies; of one image
      * alone, along those of the image. */
     const struct texture *texture;
+    bool of_coat;             /* turns the normal of the clear coat alone */
     bool from_above;          /* the shape's v counts from the top (material_mapping.h) */
     const struct bump *below; /* or NULL */
 };

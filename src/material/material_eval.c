@@ -188,6 +188,17 @@ static void eval_matte(const struct phong *numbers, const struct hit *hit, const
     out->turns_back = context->total_reflection;
 }
 
+void material_eval_matt(const struct surface_tables *tables, struct hit *hit, struct bsdf *out) {
+    static const struct phong white = {.kd = {1, 1, 1}, .two_sided = true};
+    static const struct material_context context = {.total_reflection = true};
+    const struct surface_material *material = &tables->materials[hit->material];
+    struct hit own = *hit;
+    hit->front = own.front = true;
+    hit->view = own.view = hit->normal_geometric;
+    bump_turn_normal(tables, material, hit, &own.normal);
+    eval_matte(&white, &own, &context, out);
+}
+
 /* The other surfaces of a joint tint what passes. */
 static void tint_passing(const struct bsdf_joint *joint, struct bsdf *bsdf) {
     for (int i = 0; joint && i < bsdf->count; i++)
@@ -216,8 +227,10 @@ void material_eval(const struct surface_tables *tables, const struct hit *hit, c
         return;
     if (material->has_layers) {
         openpbr_eval(tables, hit, media, context, &inputs, out);
-        out->ambient = context->ambient_plain ? colour_all(1) : inputs.kd;
+        out->ambient = context->ambient_plain ? colour_all(1) : out->albedo;
     } else {
+        if (media && media->wavelength > 0)
+            inputs.ior = dispersion_ior(material->phong.dispersion, inputs.ior, (double)media->wavelength);
         set_boundary(hit, media, context, &inputs, out);
         set_lobes(&inputs, context, out);
     }

@@ -30,6 +30,7 @@ struct material_context {
     bool ambient_plain;             /* the ambient colour is not multiplied by kd */
     bool total_reflection;          /* at total reflection, refracted light is reflected; else it is lost */
     bool no_black_highlight;        /* matte surfaces do not have a highlight with weight 0 */
+    bool walks;                     /* light may come out elsewhere than it goes under a surface (LOBE_SUBSURFACE) */
     const struct bsdf_joint *joint; /* or NULL: no other surface is there */
     bool thin;                      /* the surface is a wall without thickness, with the same medium on both sides */
 };
@@ -39,6 +40,9 @@ void material_inputs_at(const struct surface_tables *tables, const struct surfac
 /* By the material of the hit. media: those that contain the ray; NULL: none. A surface with opacity 0 has no lobes. */
 void material_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,
                    const struct material_context *context, struct bsdf *out);
+
+/* Where light comes out from under a surface: seen from outside, with the white lobe of Lambert alone. */
+void material_eval_matt(const struct surface_tables *tables, struct hit *hit, struct bsdf *out);
 
 /* Is called for every material of a chain, from the base on, with its inputs. */
 typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);

@@ -2,7 +2,9 @@
 #include "material/medium.h"
 
 #include "material/fog_field.h"
+#include "material/medium_mix.h"
 #include "math/elementary.h"
+#include "math/spectrum.h"
 
 #include <string.h>
 
@@ -14,18 +16,42 @@ static bool has_some(struct colour c) {
     return c.r > 0 || c.g > 0 || c.b > 0;
 }
 
+static const unsigned affects_all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
+
 struct medium medium_scattering(const struct medium_input *in) {
-    const unsigned all = MEDIUM_RAY_SIGHT | MEDIUM_RAY_SCATTERED | MEDIUM_RAY_SHADOW | MEDIUM_RAY_PHOTON;
     struct medium medium = {.ior = 1, .tint = {1, 1, 1}, .phase = in->phase, .scatters = has_some(in->scattering)};
     medium.scattering = in->scattering;
     medium.emission = in->emission;
     medium.extinction = colour_add(in->absorption, in->scattering);
-    medium.affects = has_some(medium.extinction) || has_some(in->emission) ? all : 0;
+    medium.density = in->density;
+    medium.mixed = in->density != NULL;
+    medium.affects = has_some(medium.extinction) || has_some(in->emission) ? affects_all : 0;
     return medium;
 }
 
-struct medium medium_inside(double ior, struct colour tint, struct colour absorption) {
-    struct medium medium = medium_scattering(&(struct medium_input){.absorption = absorption});
+struct medium medium_filling(const struct medium_input *in) {
+    struct medium medium = medium_scattering(in);
+    medium.fills = medium.mixed = true;
+    medium.affects = affects_all;
+    return medium;
+}
+
+struct medium medium_without_solid(const struct medium *filling) {
+    struct medium medium = *filling;
+    medium.fills = false;
+    medium.mixed = medium.density != NULL;
+    medium.affects = has_some(medium.extinction) || has_some(medium.emission) ? affects_all : 0;
+    return medium;
+}
+
+void medium_put_inside(struct medium *medium, const struct medium *inner) {
+    medium->inner = inner;
+    medium->mixed = true;
+    medium->affects = affects_all;
+}
+
+struct medium medium_inside(double ior, struct colour tint, const struct medium_input *in) {
+    struct medium medium = medium_scattering(in);
     medium.ior = ior;
     medium.tint = tint;
     return medium;
@@ -75,12 +101,9 @@ double medium_brightest(const struct medium *medium) {
     return fmax(source.r, fmax(source.g, source.b));
 }
 
-bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
-    out->transmittance = colour_all(1);
-    out->added = out->source = colour_all(0);
-    if (!medium_affects(kind, ray))
-        return false;
-    const struct medium *medium = medium_stack_current(ray->media);
+/* That of one medium. */
+static bool single_effect(const struct medium *medium, const struct ray *ray, double distance,
+                          struct medium_effect *out) {
     if (medium->fog)
         return fog_effect(medium->fog, ray, distance, out);
     out->transmittance = uniform_transmittance(medium->extinction, distance);
@@ -89,6 +112,29 @@ bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double di
         out->source = source_of(medium, out->added);
     }
     return true;
+}
+
+static bool mix_effect(const struct ray *ray, double distance, struct medium_effect *out) {
+    struct medium_mix mix;
+    medium_stack_mix(ray->media, &mix);
+    if (mix.count == 0)
+        return false;
+    if (mix.count == 1 && !mix.media[0]->density)
+        return single_effect(mix.media[0], ray, distance, out);
+    const struct medium_line line = {ray->origin, vec3_normalize(ray->direction), distance, ray->time};
+    out->transmittance = medium_mix_dimmed(&mix, &line);
+    return true;
+}
+
+bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out) {
+    out->transmittance = colour_all(1);
+    out->added = out->source = colour_all(0);
+    if (!medium_affects(kind, ray))
+        return false;
+    const struct medium *medium = medium_stack_current(ray->media);
+    if (medium->mixed)
+        return mix_effect(ray, distance, out);
+    return single_effect(medium, ray, distance, out);
 }
 
 static double quotient(double part, double all) {
@@ -102,6 +148,7 @@ struct colour medium_albedo(const struct medium *medium) {
 
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u) {
+    throughput = colour_abs(throughput); /* single wavelengths have negative components */
     double sum = throughput.r + throughput.g + throughput.b;
     struct colour share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3), s = medium->extinction;
     double extinction = u.x < share.r ? s.r : u.x < share.r + share.g ? s.g : s.b;
@@ -118,14 +165,30 @@ struct medium_sample medium_sample(const struct medium *medium, double distance,
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from) {
     to->media = from->media;
     to->count = from->count;
+    to->wavelength = from->wavelength;
     memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
+}
+
+/* Whether nothing tells two media apart. */
+static bool are_equal(const struct medium *a, const struct medium *b) {
+    return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density && colour_equal(a->extinction, b->extinction) &&
+           colour_equal(a->scattering, b->scattering) && colour_equal(a->emission, b->emission) &&
+           a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {
     const struct medium *x = medium_stack_current(a), *y = medium_stack_current(b);
-    return x->ior == y->ior && colour_equal(x->extinction, y->extinction) && colour_equal(x->tint, y->tint) &&
-           x->fog == y->fog && colour_equal(x->scattering, y->scattering) && colour_equal(x->emission, y->emission) &&
-           x->phase.kind == y->phase.kind && x->phase.g == y->phase.g;
+    struct medium_mix of_a, of_b;
+    if (medium_stack_ior(a) != medium_stack_ior(b) || !colour_equal(x->tint, y->tint))
+        return false;
+    if (!x->mixed && !y->mixed)
+        return are_equal(x, y);
+    medium_stack_mix(a, &of_a);
+    medium_stack_mix(b, &of_b);
+    bool equal = of_a.count == of_b.count;
+    for (uint32_t i = 0; equal && i < of_a.count; i++)
+        equal = are_equal(of_a.media[i], of_b.media[i]);
+    return equal;
 }
 
 void medium_stack_enter(struct medium_stack *stack, uint32_t solid) {
@@ -159,6 +222,12 @@ void medium_stack_leave(struct medium_stack *stack, uint32_t solid) {
     stack->count--;
 }
 
+struct colour medium_stack_choose_wavelength(struct medium_stack *stack, double u) {
+    struct colour weight;
+    stack->wavelength = (float)spectrum_sample(u, &weight);
+    return weight;
+}
+
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary) {
     if (boundary->thin)
         return;
@@ -176,7 +245,8 @@ double medium_stack_eta(const struct medium_stack *stack, const struct medium_bo
     /* An open surface seen from behind: the ray is in this medium although it never entered it. */
     if (end == 0)
         return boundary->ior / here;
-    if (end < stack->count)
+    /* Within another solid that has a surface. */
+    if (medium_stack_below(stack, stack->count) > end)
         return 1;
-    return here / (end > 1 ? medium_stack_at(stack, end - 2)->ior : 1);
+    return here / medium_stack_ior_of(stack, end - 1);
 }

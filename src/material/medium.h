@@ -1,10 +1,12 @@
-/* Media and their effect on the light along a ray: they absorb, scatter and emit, each the same everywhere and by
- * length; or are one of the classic fogs. A ray is in the medium of the solid that it entered last, and outside of all
- * solids in that of the whole scene. Rays have kinds, and each medium states which of them it affects: fog only lines
- * of sight, not the light of lamps; absorption all. */
+/* Media and their effect on the light along a ray: they absorb, scatter and emit by length, in proportion to a density;
+ * or are one of the classic fogs. A ray is in the medium of the solid with a surface that it entered last, and outside
+ * of all in that of the whole scene; the media of solids with an invisible surface that it entered since add to it.
+ * Rays have kinds, and each medium states which of them it affects: fog only lines of sight, not the light of lamps;
+ * absorption all. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
+#include "material/dispersion.h"
 #include "material/fog.h"
 #include "material/phase.h"
 #include "math/colour.h"
@@ -20,17 +22,23 @@ enum medium_ray {
     MEDIUM_RAY_PHOTON = 8,    /* of a photon */
 };
 
+struct density;
+
 struct medium {
     double ior;
-    struct colour tint;       /* of light that passes the surface of the solid */
-    const struct fog *fog;    /* or NULL; then nothing of the following */
-    struct colour extinction; /* absorption and scattering: the logarithm of light decreases by this per unit */
-    struct colour scattering; /* at most the extinction */
-    struct colour emission;   /* radiance per unit */
-    struct phase phase;       /* of scattering */
-    bool scatters;            /* scattering is not black */
-    bool fills;               /* inside of solids whose surface is invisible */
-    unsigned affects;         /* the set of enum medium_ray that do not pass it as if nothing were there */
+    struct dispersion dispersion;  /* of the index */
+    struct colour tint;            /* of light that passes the surface of the solid */
+    const struct fog *fog;         /* or NULL; then nothing of the following */
+    struct colour extinction;      /* absorption and scattering: the logarithm of light decreases by this per unit */
+    struct colour scattering;      /* at most the extinction */
+    struct colour emission;        /* radiance per unit */
+    struct phase phase;            /* of scattering */
+    const struct density *density; /* the factor of these three by place (density.h); NULL: 1 */
+    const struct medium *inner;    /* one more in the same solid, or NULL */
+    bool scatters;                 /* scattering is not black */
+    bool fills;                    /* inside of solids whose surface is invisible */
+    bool mixed;                    /* with a density or others in the same place: medium_mix.h */
+    unsigned affects;              /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 
 /* Around all solids. fog: or NULL. */
@@ -39,10 +47,17 @@ struct medium medium_outside(const struct fog *fog);
 struct medium_input {
     struct colour absorption, scattering, emission;
     struct phase phase;
+    const struct density *density; /* or NULL */
 };
 struct medium medium_scattering(const struct medium_input *in);
-/* Inside of a solid, without scattering and emission. */
-struct medium medium_inside(double ior, struct colour tint, struct colour absorption);
+/* The same in solids whose surface is invisible. */
+struct medium medium_filling(const struct medium_input *in);
+/* That of such a solid around all solids. */
+struct medium medium_without_solid(const struct medium *filling);
+/* Adds what is in the same solid, which must outlive it. */
+void medium_put_inside(struct medium *medium, const struct medium *inner);
+/* The same inside of a solid with an index. */
+struct medium medium_inside(double ior, struct colour tint, const struct medium_input *in);
 
 /* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
  * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
@@ -67,6 +82,7 @@ struct medium_stack {
     const struct media *media;
     uint32_t count;
     uint32_t solids[MEDIUM_STACK_LIMIT]; /* numbers */
+    float wavelength;                    /* of the light in them, in micrometres; 0: white light */
 };
 
 /* A surface between two media, at the hit of a ray. */
@@ -82,14 +98,29 @@ struct medium_boundary {
 static inline const struct medium *medium_stack_at(const struct medium_stack *stack, uint32_t i) {
     return &stack->media->all[stack->media->solids[stack->solids[i]].medium];
 }
-/* Where the ray is. */
+/* That of the solid entered last; it may not be alone. */
 static inline const struct medium *medium_stack_current(const struct medium_stack *stack) {
     return stack->count ? medium_stack_at(stack, stack->count - 1) : &stack->media->all[stack->media->outside];
 }
+/* Its index for a wavelength; 0: of white light. */
+static inline double medium_ior(const struct medium *medium, double wavelength) {
+    return wavelength > 0 ? dispersion_ior(medium->dispersion, medium->ior, wavelength) : medium->ior;
+}
 /* Whether nothing shows a surface between the current media of two stacks. */
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b);
+/* How many of the first `count` entries there are up to the last one that has a surface. */
+static inline uint32_t medium_stack_below(const struct medium_stack *stack, uint32_t count) {
+    while (count > 0 && medium_stack_at(stack, count - 1)->fills)
+        count--;
+    return count;
+}
+/* The index of refraction within the first `count` entries. */
+static inline double medium_stack_ior_of(const struct medium_stack *stack, uint32_t count) {
+    count = medium_stack_below(stack, count);
+    return count ? medium_ior(medium_stack_at(stack, count - 1), (double)stack->wavelength) : 1;
+}
 static inline double medium_stack_ior(const struct medium_stack *stack) {
-    return stack->count ? medium_stack_at(stack, stack->count - 1)->ior : 1;
+    return medium_stack_ior_of(stack, stack->count);
 }
 
 /* Only the entries in use. */
@@ -101,6 +132,9 @@ void medium_stack_leave(struct medium_stack *stack, uint32_t solid);
 
 /* Whether the ray is inside of the solid; SOLID_NONE: never. */
 bool medium_stack_has(const struct medium_stack *stack, uint32_t solid);
+
+/* Gives white light in these media a wavelength, by a number in [0, 1), and returns its weight (spectrum_sample). */
+struct colour medium_stack_choose_wavelength(struct medium_stack *stack, double u);
 
 /* The stack behind the surface. */
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);
@@ -119,8 +153,8 @@ struct medium_effect {
     struct colour source;        /* the same over an infinite distance, where that is finite */
 };
 
-/* From the ray's origin over a distance in world units (infinite: no hit). False: the ray is not affected, and
- * transmittance is 1. */
+/* From the ray's origin over a distance in world units (infinite: no hit), without random numbers: depths of a density
+ * are a quadrature. False: the ray is not affected, and transmittance is 1. */
 bool medium_transmittance(enum medium_ray kind, const struct ray *ray, double distance, struct medium_effect *out);
 
 /* The largest radiance that it shows over a long distance. */
@@ -138,9 +172,10 @@ struct medium_sample {
     struct colour weight; /* transmittance over the probability of coming this far; or with the colour of scattering,
                            over the density of the distance */
 };
-/* Samples over at most `distance` (may be infinite). The channel whose extinction decides is chosen in proportion to
- * the throughput of the path, and all channels use the sample with one-sample multiple importance sampling (Wilkie et
- * al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the throughput never grows. */
+/* Samples over at most `distance` (may be infinite) in a medium that is alone and has no density. The channel whose
+ * extinction decides is chosen in proportion to the throughput of the path, and all channels use the sample with
+ * one-sample multiple importance sampling (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the
+ * throughput never grows. */
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u);
 

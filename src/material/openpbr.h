@@ -14,11 +14,16 @@ struct openpbr {
     double base_weight, base_diffuse_roughness, base_metalness;
     double specular_weight, specular_anisotropy, specular_ior;
     struct colour transmission_colour;
+    struct colour transmission_scattering; /* inside of the solid, per unit */
+    double transmission_anisotropy;        /* mean cosine of that */
+    double subsurface_weight, subsurface_radius, subsurface_anisotropy;
+    struct colour subsurface_colour, subsurface_radius_scale;
     double coat_weight, coat_roughness, coat_anisotropy, coat_ior, coat_darkening;
     struct colour coat_colour;
     double fuzz_weight, fuzz_roughness;
     struct colour fuzz_colour;
-    bool deep; /* transmission_depth is above 0: the colour is that of the inside */
+    double film_weight, film_thickness, film_ior; /* the thickness in micrometres */
+    bool deep;                                    /* transmission_depth is above 0: the colour is that of the inside */
     bool thin_walled;
     bool classic;                      /* Whitted's integrator shades it by numbers of gr.material (openpbr_classic) */
     struct vec3 tangent, coat_tangent; /* in the world; 0: along u */

@@ -23,6 +23,8 @@
 #include "math/elementary.h"
 #include "math/frame.h"
 
+#include <stddef.h>
+
 /* --- making facets --- */
 
 void bsdf_facets_shape(struct bsdf_facets *facets, struct vec3 normal, struct vec3 along, double roughness,
@@ -238,6 +240,14 @@ static double reflected_share(const struct bsdf_facets *facets, double towards) 
     return 1;
 }
 
+/* The fraction that goes into the lobe; with a tint it is a part of the colour. */
+static double share_of_facet(const struct bsdf_facets *facets, unsigned flags, double towards) {
+    if (flags & BSDF_TINTED)
+        return 1;
+    double reflected = reflected_share(facets, towards);
+    return flags & BSDF_TRANSMITS ? 1 - reflected : reflected;
+}
+
 /* How one facet reflects or refracts a direction: its normal, the factor of its density, and that from Fresnel and
  * masking. */
 struct facet_path {
@@ -252,26 +262,28 @@ static struct facet_path path_by(const struct bsdf_facets *facets, struct vec3 w
     return share > 0 ? (struct facet_path){half, jacobian, share} : no_facet;
 }
 
-static struct facet_path mirrored(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
+static struct facet_path mirrored(const struct bsdf_facets *facets, unsigned flags, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add(wo, wi));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
         return no_facet;
-    return path_by(facets, wo, wi, half, 1 / (4 * v_h), reflected_share(facets, v_h));
+    return path_by(facets, wo, wi, half, 1 / (4 * v_h), share_of_facet(facets, flags, v_h));
 }
 
 /* Light that a thin wall transmits leaves in the mirrored direction on the other side. */
-static struct facet_path through_pane(const struct bsdf *bsdf, const struct bsdf_facets *facets, struct vec3 wo,
+static struct facet_path through_pane(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo,
                                       struct vec3 wi) {
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    const unsigned flags = lobe_flags(lobe->kind);
     struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
     double v_h = vec3_dot(wo, half);
     if (!(v_h > 0))
         return no_facet;
-    return path_by(facets, wo, above, half, 1 / (4 * v_h), 1 - reflected_share(facets, v_h));
+    return path_by(facets, wo, above, half, 1 / (4 * v_h), share_of_facet(facets, flags, v_h));
 }
 
 /* Walter et al. 2007, sections 5.2 and 5.3. */
-static struct facet_path refracted(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
+static struct facet_path refracted(const struct bsdf_facets *facets, unsigned flags, struct vec3 wo, struct vec3 wi) {
     if (facets->eta == 1)
         return no_facet;
     struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, facets->eta));
@@ -280,17 +292,18 @@ static struct facet_path refracted(const struct bsdf_facets *facets, struct vec3
     double v_h = vec3_dot(wo, half), l_h = vec3_dot(wi, half), sum = facets->eta * v_h + l_h;
     if (!(v_h > 0 && l_h < 0 && sum != 0))
         return no_facet;
-    return path_by(facets, wo, wi, half, -l_h / (sum * sum), 1 - reflected_share(facets, v_h));
+    return path_by(facets, wo, wi, half, -l_h / (sum * sum), share_of_facet(facets, flags, v_h));
 }
 
 static struct facet_path path_of(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
     const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
-    bool behind = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    const unsigned flags = lobe_flags(lobe->kind);
+    bool behind = flags & BSDF_TRANSMITS;
     if (!(cosine_on(bsdf, behind, wi) > 0))
         return no_facet;
     if (!behind)
-        return mirrored(facets, wo, wi);
-    return lobe->kind == LOBE_PANE ? through_pane(bsdf, facets, wo, wi) : refracted(facets, wo, wi);
+        return mirrored(facets, flags, wo, wi);
+    return facets->kind == FACETS_PANE ? through_pane(bsdf, lobe, wo, wi) : refracted(facets, flags, wo, wi);
 }
 
 static double path_pdf(const struct bsdf_facets *facets, struct vec3 wo, const struct facet_path *path) {
@@ -302,44 +315,52 @@ static bool facet_sample(const struct bsdf *bsdf, const struct lobe *lobe, struc
     const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
     struct vec3 facet = facet_distribution_sample(&facets->distribution, wo, u);
     *transmits = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
-    if (lobe->kind == LOBE_GLASS) {
+    if (*transmits && facets->kind != FACETS_PANE) {
         if (facets->eta == 1 || !dielectric_refract(facet, wo, facets->eta, direction))
             return false;
     } else {
         *direction = dielectric_mirror(facet, wo);
-        if (lobe->kind == LOBE_PANE)
+        if (*transmits)
             *direction = across_surface(bsdf, *direction);
     }
     return cosine_on(bsdf, *transmits, *direction) > 0;
 }
 
 struct facet_shares {
-    double reflected, lack;
+    struct colour reflected, lack;
 };
 
-/* Boundaries of two widths: sums over facets that the direction sees, at the points of a lattice of Fibonacci's. Steep
- * facets, beside the edges of the square of random numbers, lose most: the points are denser there. */
-static __attribute__((noinline)) struct facet_shares stretched_boundary(const struct facet_distribution *d,
-                                                                        struct vec3 direction, double eta) {
+/* Boundaries of two widths, or below a film (else NULL): sums over facets that the direction sees, at the points of a
+ * lattice of Fibonacci's. Steep facets, beside the edges of the square of random numbers, lose most: the points are
+ * denser there. */
+static __attribute__((noinline)) struct facet_shares
+sums_of_boundary(const struct facet_distribution *d, struct vec3 direction, double eta, const struct thin_film *film) {
     /* All quadrants, and both sides, are alike. */
     struct vec3 view = vec3_scale(d->normal, fabs(vec3_dot(direction, d->normal)));
     view = vec3_add_scaled(view, d->along, fabs(vec3_dot(direction, d->along)));
     view = vec3_add_scaled(view, d->across, fabs(vec3_dot(direction, d->across)));
     const bool dense = eta > 1; /* total reflection divides the facets */
     const int points = dense ? 233 : 34, step = dense ? 144 : 21;
-    double reflected = 0, passed = 0, all = 0;
+    struct colour reflected = {0, 0, 0}, passed = {0, 0, 0};
+    double all = 0;
     for (int i = 0; i < points; i++) {
         double s = (i + 0.5) / points, t = (i * step % points + 0.5) / points, weight = s * (1 - s) * t * (1 - t);
         struct sample2 u = {s * s * (3 - 2 * s), t * t * (3 - 2 * t)};
         struct vec3 facet = facet_distribution_sample(d, view, u), out = dielectric_mirror(facet, view);
-        double share = dielectric_fresnel(vec3_dot(facet, view), eta);
+        double towards = vec3_dot(facet, view);
+        struct colour share =
+            film ? thin_film_boundary(film, towards, eta) : colour_all(dielectric_fresnel(towards, eta));
         all += weight;
         if (vec3_dot(out, d->normal) > 0)
-            reflected += weight * share * facet_distribution_escape(d, view, out);
+            reflected = colour_add(reflected,
+                                   colour_scale(colour_scale(share, weight), facet_distribution_escape(d, view, out)));
         if (dielectric_refract(facet, view, eta, &out) && vec3_dot(out, d->normal) < 0)
-            passed += weight * (1 - share) * facet_distribution_escape(d, view, out);
+            passed = colour_add(passed, colour_scale(colour_scale(colour_sub(colour_all(1), share), weight),
+                                                     facet_distribution_escape(d, view, out)));
     }
-    return (struct facet_shares){reflected / all, fmax(1 - (reflected + passed) / all, 0)};
+    const struct colour sum = colour_add(reflected, passed);
+    return (struct facet_shares){{reflected.r / all, reflected.g / all, reflected.b / all},
+                                 not_negative(colour_make(1 - sum.r / all, 1 - sum.g / all, 1 - sum.b / all))};
 }
 
 /* The share of light from one direction that neither leaves by the first facet nor passes through it; `behind`: from
@@ -348,7 +369,7 @@ static double lack_towards(const struct bsdf_facets *facets, struct vec3 directi
     double eta = behind ? 1 / facets->eta : facets->eta, height = vec3_dot(direction, facets->distribution.normal);
     bool stretched = is_stretched(facets);
     if (facets->kind == FACETS_BOUNDARY)
-        return stretched ? stretched_boundary(&facets->distribution, direction, eta).lack
+        return stretched ? sums_of_boundary(&facets->distribution, direction, eta, NULL).lack.r
                          : 1 - albedo_boundary(fabs(height), facets->roughness, eta);
     double lack = 1 - albedo_mirror(fabs(height), facets->roughness);
     return stretched ? fmin(lack * stretch_towards(facets, direction), 1) : lack;
@@ -357,9 +378,9 @@ static double lack_towards(const struct bsdf_facets *facets, struct vec3 directi
 void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view) {
     if (facets->kind == FACETS_BOUNDARY) {
         if (is_stretched(facets)) {
-            struct facet_shares shares = stretched_boundary(&facets->distribution, view, facets->eta);
-            facets->reflected = shares.reflected;
-            facets->lack_seen = shares.lack;
+            struct facet_shares shares = sums_of_boundary(&facets->distribution, view, facets->eta, NULL);
+            facets->reflected = shares.reflected.r;
+            facets->lack_seen = shares.lack.r;
             return;
         }
         double cosine = fabs(vec3_dot(view, facets->distribution.normal));
@@ -368,6 +389,15 @@ void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view) {
             return;
     }
     facets->lack_seen = lack_towards(facets, view, false);
+}
+
+struct colour bsdf_facets_see_film(struct bsdf_facets *facets, const struct thin_film *film, struct vec3 view,
+                                   struct colour *lack) {
+    struct facet_shares shares = sums_of_boundary(&facets->distribution, view, facets->eta, film);
+    double mean = colour_dot(shares.lack, colour_all(1.0 / 3));
+    facets->lack_seen = mean;
+    *lack = colour_share(shares.lack, colour_all(mean));
+    return shares.reflected;
 }
 
 static double facets_multiple(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wi) {
@@ -394,24 +424,46 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GLOSS:
     case LOBE_METAL:
     case LOBE_GLASS:
-    case LOBE_PANE: {
+    case LOBE_PANE:
+    case LOBE_FILM:
+    case LOBE_FILM_GLASS:
+    case LOBE_FILM_PANE: {
         struct facet_path path = path_of(bsdf, lobe, wo, wi);
         return path_pdf(&bsdf->facets[lobe->facets], wo, &path) * path.share;
     }
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
         return facets_multiple(bsdf, lobe, wi) * n_i / PI;
+    case LOBE_DIFFUSE_THROUGH:
+        return n_i / PI;
         SIMPLE_LOBES(LIST_LABEL)
         break;
     }
     return 0;
 }
 
+/* What a facet below the film reflects. */
+static struct colour filmed_share(const struct bsdf *bsdf, const struct bsdf_facets *facets, double towards) {
+    switch (facets->kind) {
+    case FACETS_BOUNDARY:
+        return thin_film_boundary(&bsdf->film, towards, facets->eta);
+    case FACETS_PANE:
+        return thin_film_pane(&bsdf->film, towards, facets->eta);
+    case FACETS_METAL:
+        break;
+    }
+    return thin_film_metal(&bsdf->film, towards, bsdf_metal_fresnel(facets, towards));
+}
+
 struct colour rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    if (!(lobe_flags(lobe->kind) & BSDF_TINTED))
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    unsigned flags = lobe_flags(lobe->kind);
+    if (!(flags & BSDF_TINTED))
         return lobe->weight;
-    double towards = vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)));
-    return colour_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
+    if (lobe->kind == LOBE_METAL)
+        return colour_mul(lobe->weight, bsdf_metal_fresnel(facets, vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)))));
+    struct colour share = filmed_share(bsdf, facets, vec3_dot(wo, path_of(bsdf, lobe, wo, wi).half));
+    return colour_mul(lobe->weight, flags & BSDF_TRANSMITS ? colour_sub(colour_all(1), share) : share);
 }
 
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
@@ -425,11 +477,15 @@ double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct v
     case LOBE_OREN_NAYAR_MULTIPLE:
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
+    case LOBE_DIFFUSE_THROUGH:
         return n_i / PI;
     case LOBE_GLOSS:
     case LOBE_METAL:
     case LOBE_GLASS:
-    case LOBE_PANE: {
+    case LOBE_PANE:
+    case LOBE_FILM:
+    case LOBE_FILM_GLASS:
+    case LOBE_FILM_PANE: {
         struct facet_path path = path_of(bsdf, lobe, wo, wi);
         return path_pdf(&bsdf->facets[lobe->facets], wo, &path);
     }
@@ -454,12 +510,16 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_OREN_NAYAR_MULTIPLE:
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
+    case LOBE_DIFFUSE_THROUGH:
         *direction = cosine_sample(*transmits ? vec3_negate(bsdf->side) : bsdf->side, u);
         break;
     case LOBE_GLOSS:
     case LOBE_METAL:
     case LOBE_GLASS:
     case LOBE_PANE:
+    case LOBE_FILM:
+    case LOBE_FILM_GLASS:
+    case LOBE_FILM_PANE:
         return facet_sample(bsdf, lobe, wo, u, direction, transmits);
         SIMPLE_LOBES(LIST_LABEL)
         return false;

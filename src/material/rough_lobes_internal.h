@@ -31,6 +31,10 @@ void bsdf_facets_metal(struct bsdf_facets *facets, struct colour f0, struct colo
  * nor passes through it (not for boundaries of opaque surfaces). Before the lobes are evaluated. */
 void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view);
 
+/* The same of a boundary below a film: what facets reflect. *lack: lack_seen of each channel over its mean. */
+struct colour bsdf_facets_see_film(struct bsdf_facets *facets, const struct thin_film *film, struct vec3 view,
+                                   struct colour *lack);
+
 /* The reflectance of metal at a facet for this cosine to the view, and its mean over a hemisphere, weighted with the
  * cosine. */
 struct colour bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine);

@@ -11,7 +11,8 @@ struct surface_material surface_material_make(const struct material *material, b
                                               const struct texture *textures[INPUT_COUNT]) {
     const struct texture *own[INPUT_COUNT], **inputs = textures ? textures : own;
     struct surface_material out = {.fresnel = material->fresnel,
-                                   .filled = material_origin(material)->medium != NULL,
+                                   .filled = material->medium && material->medium->fills,
+                                   .holds_medium = material->medium != NULL,
                                    .has_layers = material->openpbr != NULL,
                                    .phong = material_origin(material)->phong};
     for (int i = 0; i < INPUT_COUNT; i++)
@@ -63,6 +64,7 @@ static bool add_bump(struct surface_builder *builder, const struct bump *bump, u
                                  .height = bump->height,
                                  .relative = bump->relative,
                                  .from_above = bump->from_above,
+                                 .of_coat = bump->of_coat,
                                  .texture = TEXTURE_NONE};
     builder->authored_bumps[at] = bump;
     if (!texture_builder_add(&builder->textures, texture, bump->kind == MATERIAL_BUMP, &out->program))
@@ -171,6 +173,11 @@ bool surface_passes(const struct surface_material *surface) {
            surface_has_texture(surface, INPUT_REFRACT);
 }
 
+bool surface_walks(const struct surface_material *surface) {
+    const struct openpbr *v = &surface->openpbr;
+    return surface->has_layers && v->subsurface_weight > 0 && v->subsurface_radius > 0;
+}
+
 struct medium surface_medium(const struct surface_material *surface) {
     const struct phong *numbers = &surface->phong;
     const struct openpbr *openpbr = surface->has_layers ? &surface->openpbr : NULL;
@@ -180,7 +187,19 @@ struct medium surface_medium(const struct surface_material *surface) {
         ior = openpbr_ior(openpbr->specular_ior, openpbr->specular_weight);
         tint = openpbr->deep ? colour_all(1) : openpbr->transmission_colour;
     }
-    return medium_inside(ior, tint, numbers->absorption);
+    struct medium_input inside = {.absorption = numbers->absorption};
+    if (openpbr) {
+        inside.scattering = openpbr->transmission_scattering;
+        inside.phase.g = openpbr->transmission_anisotropy;
+    }
+    struct medium medium = medium_inside(ior, tint, &inside);
+    medium.dispersion = numbers->dispersion;
+    return medium;
+}
+
+bool surface_disperses(const struct surface_material *surface) {
+    bool thin = surface->has_layers && surface->openpbr.thin_walled;
+    return surface->phong.dispersion.amount > 0 && !thin && surface_passes(surface);
 }
 
 bool surface_divides_media(const struct surface_material *surface) {
@@ -225,7 +244,8 @@ static double layers_specular(const struct surface_material *surface) {
     double base = dielectric_fresnel_average(1 / ior), coat = dielectric_fresnel_average(1 / v->coat_ior);
     if (surface_has_texture(surface, INPUT_METALNESS) || surface_has_texture(surface, INPUT_REFRACT))
         return 1;
-    if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT))
+    if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT) ||
+        v->film_weight > 0 || surface_has_texture(surface, INPUT_FILM_WEIGHT))
         base = fmax(base, 0.04);
     if (!surface_has_texture(surface, INPUT_KS))
         base *= colour_max_abs(surface->phong.ks);
@@ -273,9 +293,11 @@ static double layers_albedo_bound(const struct surface_tables *tables, const str
     double transmission = v->deep ? 0
                                   : layer_bound(tables, surface, INPUT_REFRACT, surface->phong.refract,
                                                 INPUT_TRANSMISSION_COLOUR, v->transmission_colour);
+    double below = layer_bound(tables, surface, INPUT_SUBSURFACE_WEIGHT, v->subsurface_weight, INPUT_SUBSURFACE_COLOUR,
+                               v->subsurface_colour);
     double coat = layer_bound(tables, surface, INPUT_COAT_WEIGHT, v->coat_weight, INPUT_COAT_COLOUR, v->coat_colour);
     double fuzz = layer_bound(tables, surface, INPUT_FUZZ_WEIGHT, v->fuzz_weight, INPUT_FUZZ_COLOUR, v->fuzz_colour);
-    return fmax(fmax(base, transmission) * fmax(coat, 1), fuzz);
+    return fmax(fmax(fmax(base, fmin(below, 1)), transmission) * fmax(coat, 1), fuzz);
 }
 
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */

@@ -12,7 +12,7 @@
 struct surface_bump {
     enum material_kind kind;
     double height;
-    bool relative, from_above;
+    bool relative, from_above, of_coat;
     uint32_t program; /* a number, or a colour of MATERIAL_NORMAL */
     uint32_t texture; /* of one image alone, or one recorded function: its index; else TEXTURE_NONE */
 };
@@ -22,8 +22,9 @@ struct surface_material {
     uint32_t first_bump, bump_count; /* from the lowest to the highest */
     bool plain;                      /* every input is a number, and nothing turns the normal */
     bool fresnel;
-    bool filled;     /* solids have a medium inside, behind an invisible surface */
-    bool has_layers; /* those of `openpbr` take the place of the classic lobes */
+    bool filled;       /* solids have a medium inside, behind an invisible surface */
+    bool holds_medium; /* one of its own, beside or instead of its surface */
+    bool has_layers;   /* those of `openpbr` take the place of the classic lobes */
     /* Data that hits must compute for it: the footprint in pattern space; the direction of bumps and the tangents of
      * the pattern (hit->raise, along_a). */
     bool needs_footprint, needs_tangents;
@@ -59,6 +60,10 @@ static inline bool surface_has_holes(const struct surface_material *surface) {
 bool surface_is_transparent(const struct surface_material *surface);
 /* Whether light may pass the surface of the solid at some points. */
 bool surface_passes(const struct surface_material *surface);
+/* Whether some light is scattered under it (LOBE_SUBSURFACE) where the caller follows that. */
+bool surface_walks(const struct surface_material *surface);
+/* Whether it refracts wavelengths by different indices. */
+bool surface_disperses(const struct surface_material *surface);
 /* The inside of a solid, by the numbers. */
 struct medium surface_medium(const struct surface_material *surface);
 /* Whether light may pass through the surface into another medium; thin walls have the same one on both sides. */

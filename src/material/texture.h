@@ -15,6 +15,7 @@
 #include "expr/expr_program.h"
 #include "geometry/hit.h"
 #include "image/image.h"
+#include "material/dispersion.h"
 #include "math/colour.h"
 
 #include <stdatomic.h>
@@ -114,6 +115,7 @@ struct phong {
     struct colour emission, absorption;
     double roughness;
     int glossy_samples;
+    struct dispersion dispersion; /* of the index, inside of solids */
 };
 
 /* Inputs of materials: the names that scripts use, and whether it is a colour; first those of gr.openpbr_material
@@ -126,6 +128,9 @@ struct phong {
     X(INPUT_SPECULAR_ANISOTROPY, "specular_roughness_anisotropy", false)                                               \
     X(INPUT_SPECULAR_IOR, "specular_ior", false)                                                                       \
     X(INPUT_TRANSMISSION_COLOUR, "transmission_color", true)                                                           \
+    X(INPUT_SUBSURFACE_WEIGHT, "subsurface_weight", false)                                                             \
+    X(INPUT_SUBSURFACE_COLOUR, "subsurface_color", true)                                                               \
+    X(INPUT_SUBSURFACE_RADIUS, "subsurface_radius", false)                                                             \
     X(INPUT_COAT_WEIGHT, "coat_weight", false)                                                                         \
     X(INPUT_COAT_COLOUR, "coat_color", true)                                                                           \
     X(INPUT_COAT_ROUGHNESS, "coat_roughness", false)                                                                   \
@@ -134,7 +139,9 @@ struct phong {
     X(INPUT_COAT_DARKENING, "coat_darkening", false)                                                                   \
     X(INPUT_FUZZ_WEIGHT, "fuzz_weight", false)                                                                         \
     X(INPUT_FUZZ_COLOUR, "fuzz_color", true)                                                                           \
-    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)
+    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness", false)                                                                   \
+    X(INPUT_FILM_WEIGHT, "thin_film_weight", false)                                                                    \
+    X(INPUT_FILM_THICKNESS, "thin_film_thickness", false)
 #define MATERIAL_INPUTS(X)                                                                                             \
     X(INPUT_KD, "kd", true)                                                                                            \
     X(INPUT_KS, "ks", true)                                                                                            \

@@ -36,6 +36,9 @@ static inline struct colour colour_add_scaled(struct colour a, struct colour b, 
 static inline double colour_dot(struct colour a, struct colour b) {
     return a.r * b.r + a.g * b.g + a.b * b.b;
 }
+static inline struct colour colour_abs(struct colour a) {
+    return (struct colour){fabs(a.r), fabs(a.g), fabs(a.b)};
+}
 static inline double colour_max_abs(struct colour a) {
     double r = fabs(a.r), g = fabs(a.g), b = fabs(a.b), max = r > g ? r : g;
     return max > b ? max : b;

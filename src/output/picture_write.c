@@ -126,6 +126,8 @@ static enum denoiser denoiser_of(const struct options *options, const struct pic
     enum denoiser denoiser = merges ? options->settings.denoise : picture->request.settings.denoise;
     if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES))
         return DENOISER_NONE;
+    if (!merges && !settings_denoise(&picture->request.settings)) /* features for the window only */
+        return DENOISER_NONE;
     return denoiser == DENOISER_AUTO ? DENOISER_GRAY : denoiser;
 }
 

@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "material/bsdf_select.h"
 #include "material/material_eval.h"
+#include "material/medium_mix.h"
 #include "photon/photon_target_internal.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
@@ -27,6 +28,7 @@ struct photon_job {
     struct world_scratch *scratches; /* of each worker */
     uint64_t seed;
     uint32_t count;
+    bool disperses; /* indices of refraction depend on the wavelength */
 };
 
 /* A photon under way. */
@@ -65,8 +67,10 @@ static struct branching branching_make(const struct bsdf *bsdf) {
 static bool scatter_photon(struct photon_path *path, const struct hit *hit, const struct bsdf *bsdf,
                            const struct branching *branching) {
     double to[BSDF_LOBES], all = 0;
+    /* Single wavelengths have negative components. */
+    const struct colour left = colour_abs(path->left);
     for (int i = 0; i < branching->count; i++) {
-        to[i] = fmax(mean(colour_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
+        to[i] = fmax(mean(colour_mul(left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
     /* All photons should have equal power: that after the strongest object of the cell. */
@@ -91,6 +95,34 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
         bsdf_cross(bsdf, &path->media);
     path->ray = hit_ray(hit, &path->ray, sampled.direction, &path->media);
     path->specular = true;
+    return true;
+}
+
+/* Passes the media over a distance. True: one of them has scattered the photon. */
+static bool pass_media(struct photon_path *path, double distance) {
+    struct medium_mix mix;
+    struct medium_track track;
+    if (!medium_affects(MEDIUM_RAY_PHOTON, &path->ray))
+        return false;
+    medium_stack_mix(path->ray.media, &mix);
+    const struct medium_line line = {path->ray.origin, path->ray.direction, distance, path->ray.time};
+    if (!medium_mix_scatters(&mix)) {
+        path->left = colour_mul(path->left, medium_mix_left(&mix, &line, random_combine(path->key, path->draws++)));
+        return false;
+    }
+    double u = draw(path), v = draw(path);
+    const struct medium_draw numbers = {{u, v}, random_combine(path->key, path->draws++)};
+    medium_mix_track(&mix, &line, path->left, numbers, &track);
+    path->left = colour_mul(path->left, track.weight);
+    if (!track.scatterer)
+        return false;
+    u = draw(path), v = draw(path);
+    path->length += track.distance;
+    path->ray.origin = vec3_add_scaled(path->ray.origin, path->ray.direction, track.distance);
+    path->ray.direction =
+        phase_sample(&track.scatterer->phase, vec3_negate(path->ray.direction), (struct sample2){u, v});
+    path->ray.t_min = 0;
+    path->ray.skip_primitive = path->ray.skip_part = 0;
     return true;
 }
 
@@ -129,16 +161,20 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
         struct hit hit;
         struct bsdf bsdf;
         joint.joined = JOINED_NOT;
-        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit))
-            return;
+        if (!world_nearest_surface(s->world, &path.ray, scratch, &hit)) {
+            if (!pass_media(&path, INFINITY))
+                return;
+            continue;
+        }
+        if (s->disperses && world_needs_wavelength(s->world, &hit, &path.media))
+            path.left = colour_mul(path.left, medium_stack_choose_wavelength(&path.media, draw(&path)));
         if (world_touches(s->world, &hit))
             world_join_path(s->world, &path.ray, &path.media, scratch, &hit, &joint);
         if (joint.joined == JOINED_AWAY)
             continue;
+        if (pass_media(&path, hit.t))
+            continue;
         path.length += hit.t;
-        struct medium_effect effect;
-        if (medium_transmittance(MEDIUM_RAY_PHOTON, &path.ray, hit.t, &effect))
-            path.left = colour_mul(path.left, effect.transmittance);
         const struct material_context context = {.specular = s->settings->specular,
                                                  .ambient_plain = s->settings->ambient_plain,
                                                  .total_reflection = true,
@@ -216,6 +252,7 @@ bool photons_make(struct photon_map *map, const struct photon_scene *scene, stru
     struct photon_job s = {.world = scene->world,
                            .settings = settings,
                            .pool = pool,
+                           .disperses = world_disperses(scene->world),
                            .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
     *map = (struct photon_map){0};
     /* Where photons are sent decides how many; each has its own place, so their order is fixed. */

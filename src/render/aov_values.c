@@ -69,19 +69,13 @@ void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask
 
 /* Render layers, tile by tile after the picture is done. */
 
-static uint64_t work_of(const struct worker *worker) {
-    const struct geom_scratch *done = &worker->scratch.geom;
-    return done->cost.hierarchy_steps + done->cost.voxels + done->cost.triangle_tests + done->box_tests +
-           done->shape_tests;
-}
-
 /* The cost of the samples of a pixel, and their number. */
 static void measure_pixel(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y, float cost[3],
                           float samples[3]) {
-    uint64_t work = work_of(worker), rays = worker->camera_rays;
+    uint64_t work = geom_work(&worker->scratch.geom), rays = worker->camera_rays;
     integrator_repeat(renderer, worker, x, y);
     for (int c = 0; c < 3; c++) {
-        cost[c] = (float)(work_of(worker) - work);
+        cost[c] = (float)(geom_work(&worker->scratch.geom) - work);
         samples[c] = (float)(worker->camera_rays - rays);
     }
 }

@@ -4,6 +4,7 @@
 #include "render/direct_internal.h"
 
 #include "light/light_edit.h"
+#include "render/media_light.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are traced together */
@@ -197,6 +198,16 @@ static struct colour one_light(struct integrator_state *state, const struct ligh
     return light_of_samples(state, light, number, hit, bsdf, key);
 }
 
+/* What media leave of a light's way to the hit, for all of the light that of its middle. */
+static struct colour left_of_light(struct integrator_state *state, const struct light *light, const struct hit *hit) {
+    struct light_target middle;
+    if (!light_middle(light, &middle))
+        return colour_all(1);
+    struct ray ray = {.origin = off_surface(hit), .time = hit->time, .media = state->lit_from};
+    ray.direction = light_target_from(&middle, ray.origin);
+    return media_left(state->job->world, &ray, light_target_end(&middle), NULL, state->scratch);
+}
+
 struct colour direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
                            uint64_t key) {
     const struct world *world = state->job->world;
@@ -212,6 +223,8 @@ struct colour direct_light(struct integrator_state *state, const struct hit *hit
         state->scratch->light = i % WORLD_SHADOW_CACHE;
         OBSERVE(state->observer, OBSERVED_LIGHT_BEGIN, .light = {i, light, OBSERVER_NO_BLOCKER, {0, 0, 0}});
         struct colour own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
+        if (state->lit_from && !colour_is_black(own))
+            own = colour_mul(own, left_of_light(state, light, hit));
         sum = colour_add(sum, own);
         reached |= (uint64_t)(own.r != 0 || own.g != 0 || own.b != 0) << i % 64;
         OBSERVE(state->observer, OBSERVED_LIGHT_END, .light = {i, light, OBSERVER_NO_BLOCKER, own});

@@ -8,6 +8,7 @@
 #include "world/packet.h"
 #include "world/world_describe.h"
 
+#include <float.h>
 #include <math.h>
 
 enum { SIDE = 8, HOLES = 16 }; /* of a packet; that a ray may pass */
@@ -22,8 +23,27 @@ struct headlight {
     struct camera_frame camera;
     struct world_scratch *scratch; /* by worker */
     double brightness;             /* that undoes the exposure */
+    enum headlight_shows shows;
+    double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
 };
+
+/* The surface in the other pictures. */
+static struct colour describe(const struct headlight *headlight, const struct hit *hit, const struct bsdf *bsdf) {
+    struct vec3 n = bsdf->side;
+    double distance = vec3_length(vec3_sub(hit->point, headlight->camera.eye));
+    struct colour colour =
+        headlight->shows == HEADLIGHT_NORMALS
+            ? colour_make(0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z)
+            : colour_all((headlight->farthest - distance) / (headlight->farthest - headlight->nearest + DBL_MIN));
+    return colour_scale(colour, headlight->brightness);
+}
+
+/* Work as a colour. */
+static struct colour heat(const struct headlight *headlight, uint64_t work) {
+    double t = fmin(el_log2(1 + (double)work) / 12, 1), high = fmax(2 * t - 1, 0);
+    return colour_scale(colour_make(high, fmin(2 * t, 1) - high, fmax(1 - 2 * t, 0)), headlight->brightness);
+}
 
 static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
@@ -49,10 +69,13 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
     for (int i = 0; found && i < HOLES; i++) {
         material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
-            return shade(headlight, &ray, &bsdf);
+            return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &bsdf)
+                                                          : describe(headlight, &hit, &bsdf);
         ray = hit_ray(&hit, &ray, ray.direction, ray.media);
         found = world_nearest_surface(world, &ray, scratch, &hit);
     }
+    if (headlight->shows != HEADLIGHT_SURFACES)
+        return colour_all(0);
     return sky_colour(&world->sky, vec3_normalize(ray.direction), ray.footprint.spread);
 }
 
@@ -68,9 +91,12 @@ static void render_single(const struct headlight *headlight, struct world_scratc
     struct ray ray;
     struct packet_answer met;
     struct colour colour = {0, 0, 0};
+    uint64_t before = geom_work(&scratch->geom);
     if (camera_ray_through(&headlight->camera, x + 0.5, y + 0.5, (struct sample2){0.5, 0.5}, 0, &ray)) {
         bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
         colour = colour_of(headlight, scratch, ray, found ? &met : NULL);
+        if (headlight->shows == HEADLIGHT_COST)
+            colour = heat(headlight, geom_work(&scratch->geom) - before);
     }
     store(pixel, colour);
 }
@@ -122,9 +148,18 @@ static void render_tile(void *context, uint32_t tile, int worker) {
                           memory_order_release);
 }
 
-bool render_headlight(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
-                      struct error *error) {
-    struct headlight headlight = {.job = job, .pool = pool, .brightness = el_exp2(-job->settings.tone.exposure)};
+static void measure_depths(struct headlight *headlight) {
+    struct box bounds = world_finite_bounds(headlight->job->world);
+    struct vec3 before = vec3_sub(bounds.min, headlight->camera.eye),
+                behind = vec3_sub(headlight->camera.eye, bounds.max);
+    headlight->nearest = vec3_length(vec3_max(vec3_max(before, behind), vec3_all(0)));
+    headlight->farthest = vec3_length(vec3_max(vec3_negate(before), vec3_negate(behind)));
+}
+
+bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
+                      struct render_statistics *statistics, struct error *error) {
+    struct headlight headlight = {
+        .job = job, .pool = pool, .shows = shows, .brightness = el_exp2(-job->settings.tone.exposure)};
     struct settings settings = job->settings;
     char warning[256];
     int workers = pool_workers(pool);
@@ -132,7 +167,9 @@ bool render_headlight(const struct render_job *job, struct pool *pool, struct re
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &headlight.camera,
                         warning, error))
         return false;
-    headlight.plain = camera_is_plain(&headlight.camera);
+    headlight.plain = camera_is_plain(&headlight.camera) && shows != HEADLIGHT_COST;
+    if (shows == HEADLIGHT_DEPTH)
+        measure_depths(&headlight);
     headlight.scratch = mem_alloc_zero((size_t)workers, sizeof *headlight.scratch);
     bool ok = headlight.scratch != NULL;
     for (int i = 0; ok && i < workers; i++)

@@ -5,9 +5,14 @@
 
 #include "render/render.h"
 
+/* What it shows: surfaces under the light; half of the unit normal plus a half; the depth, from white to black over the
+ * distances of the box around all finite objects; the work for the ray, by its logarithm from blue over green to red
+ * (4096 steps and tests). The last three have this value for any exposure. */
+enum headlight_shows { HEADLIGHT_SURFACES, HEADLIGHT_NORMALS, HEADLIGHT_DEPTH, HEADLIGHT_COST };
+
 /* Renders every wanted tile of the film. Surfaces are as bright in the file as without exposure; the sky is that of the
  * picture. False: cancelled, or no memory. */
-bool render_headlight(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
-                      struct error *error);
+bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
+                      struct render_statistics *statistics, struct error *error);
 
 #endif

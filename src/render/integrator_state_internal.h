@@ -28,6 +28,7 @@ struct integrator_state {
     const struct pool *pool; /* returns whether to stop; NULL: never */
     struct world_scratch *scratch;
     const struct medium_stack *eye_medium_stack; /* the medium that contains the camera */
+    const struct medium_stack *lit_from;         /* the media before the surface that is lit; or NULL: nothing dims */
     struct sampler sampler;                      /* of the current pixel sample */
     const struct photon_map *caustics;           /* or NULL */
     struct observer *observer;                   /* or NULL */
@@ -35,6 +36,7 @@ struct integrator_state {
     struct camera_hit *camera_hit;               /* or NULL; for a camera ray until its first hit is shaded */
     /* With settings.transparent: the share of the current sample that sees the background; 0 before. */
     double seen_through;
+    bool media_dim; /* media may dim rays to lights */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set after a colour that was not finite or too large */
 };

@@ -10,7 +10,8 @@
 
 #include <stdint.h>
 
-enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE };
+/* BELOW: from under a surface, from the last scattering there to where it comes out. */
+enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE, RAY_BELOW };
 /* Why a ray was not followed, or its hit not evaluated. */
 enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
 #define OBSERVER_NO_BLOCKER UINT32_MAX
@@ -69,6 +70,7 @@ struct observation {
             const struct light *light; /* that shows itself before the hit, or NULL; neither: the sky */
             double distance;           /* world units; infinite */
             double share;              /* the largest share of its result that can reach the pixel */
+            int scatterings;           /* of RAY_BELOW, under the surface */
         } begin;
         struct {
             const struct material *link;
@@ -98,6 +100,7 @@ struct observation {
             enum path_end end;
             double distance; /* of PATH_SEES_LIGHT and in_medium, world units */
             bool in_medium;  /* scattered by the medium of the ray, before its hit */
+            double chance;   /* of that */
             /* Of the emission of the hit or the sky and of lights, weighted by multiple importance sampling; direct:
              * photons and the light of the sampled light together. */
             struct colour emission, photons, direct;

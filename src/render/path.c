@@ -6,6 +6,7 @@
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 #include "render/sample_internal.h"
+#include "world/world_describe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -86,6 +87,64 @@ static bool find_photon_lights(struct path_tracer *tracer, const struct world *w
     return lights != NULL;
 }
 
+/* The lights with a position, if there are media. */
+static bool find_lamps(struct path_tracer *tracer) {
+    const struct world_lights *lights = &tracer->lights;
+    struct light_target middle;
+    if (!tracer->has_fillings && !tracer->in_medium)
+        return true;
+    uint32_t *lamps = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *lamps);
+    for (uint32_t i = 0; lamps && i < lights->count; i++)
+        if (light_middle(&lights->lights[i], &middle) && !middle.distant)
+            lamps[tracer->lamp_count++] = i;
+    tracer->lamps = lamps;
+    return lamps != NULL;
+}
+
+/* --- sealed solids --- */
+
+static bool share_points(const struct box *a, const struct box *b) {
+    struct box both = box_meet(*a, *b);
+    return !box_is_empty(&both);
+}
+
+/* Whether a light may have points in the box. */
+static bool light_is_in(const struct world_lights *lights, uint32_t number, const struct box *box) {
+    const struct light *light = &lights->lights[number];
+    uint32_t primitive = lights->emitters[number].primitive, parts = light_part_count(light);
+    if (primitive != WORLD_NOTHING)
+        return share_points(&lights->world->boxes[primitive], box);
+    for (uint32_t i = 0; i < parts; i++) {
+        struct light_bounds bounds;
+        if (light_bounds_of(light, i, &bounds) == LIGHT_EXTENT_BOUNDED && share_points(&bounds.box, box))
+            return true;
+    }
+    return false;
+}
+
+/* Whether the surface of the solid stops every ray between a point inside and a lamp: light passes it refracted. */
+static bool is_sealed(const struct world_lights *lights, const struct solid *solid) {
+    const struct world *world = lights->world;
+    const struct prototype *prototype = primitive_prototype(world, solid->primitive);
+    const struct medium *medium = &world->media.all[solid->medium];
+    bool sealed = (medium->scatters || medium->inner) && !medium->fills && !prototype->holes && !prototype->is_thin &&
+                  prototype->cull == CULL_NONE && geometry_is_closed(&prototype->geometry);
+    for (uint32_t i = 0; i < lights->count && sealed; i++)
+        sealed = !light_is_in(lights, i, &world->boxes[solid->primitive]);
+    return sealed;
+}
+
+static bool find_sealed(struct path_tracer *tracer, const struct world *world) {
+    uint32_t count = world->first_solid ? world->first_solid[world->primitive_count] : 0;
+    bool *sealed = count > 0 ? arena_alloc_array(&tracer->arena, count, sizeof *sealed) : NULL, any = false;
+    for (uint32_t i = 0; sealed && i < count; i++) {
+        sealed[i] = is_sealed(&tracer->lights, &world->media.solids[i]);
+        any = any || sealed[i];
+    }
+    tracer->sealed = any ? sealed : NULL;
+    return count == 0 || sealed;
+}
+
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
@@ -105,6 +164,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     for (uint32_t i = 0; i < world->material_count; i++)
         tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
     tracer->in_medium = world_outside(world)->affects != 0;
+    tracer->disperses = world_disperses(world);
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
@@ -113,6 +173,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     /* The lights and, with --caustics, the photons that they send. */
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
+    if (tracer->built && (!find_lamps(tracer) || !find_sealed(tracer, world)))
+        return error_no_memory(error, "the solids of the scene");
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;
     if (!find_photon_lights(tracer, world))

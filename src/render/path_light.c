@@ -8,9 +8,10 @@
 #include "light/light_edit.h"
 
 #include "material/bsdf_select.h"
-#include "material/medium.h"
+#include "material/medium_mix.h"
+#include "render/media_light.h"
+#include "render/path_aim.h"
 #include "render/path_light_internal.h"
-#include "world/joint.h"
 #include "world/world_describe.h"
 
 /* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
@@ -20,10 +21,12 @@ static double weight_of(const struct path_tracer *tracer, enum path_strategy str
     return pdf * pdf / (pdf * pdf + other * other);
 }
 
-/* The part of a light's radiance that the path adds. If photons come from this light, the fraction `photons` of the
- * path's weight belongs to the photon map. */
-static struct colour without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
-                                    struct colour radiance) {
+double path_light_weight(const struct path_tracer *tracer, double pdf, double other) {
+    return weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other);
+}
+
+struct colour path_without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
+                                  struct colour radiance) {
     if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
         return radiance;
     return colour_mul(radiance, colour_sub(colour_all(1), thrown));
@@ -57,7 +60,7 @@ static void leave_surface(const struct path_vertex *vertex, struct path_shadow *
     shadow->skip_part = skip.part;
 }
 
-static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
     const struct world_light_sample *sample = &out->sample;
     struct ray *shadow = &out->ray;
     shadow->origin = vertex->receiver->from;
@@ -77,40 +80,13 @@ static void send_shadow_ray(const struct path_vertex *vertex, struct path_shadow
     out->sent = true;
 }
 
-/* What the media on a shadow ray leave over t up to `end`, through the invisible surfaces of media. */
-static struct colour left_of_light(const struct world *world, const struct ray *shadow, double end,
-                                   struct world_scratch *scratch) {
-    struct medium_stack media;
-    struct ray rest = *shadow;
-    struct colour left = colour_all(1);
-    double length = vec3_length(shadow->direction);
-    bool met = true;
-    medium_stack_copy(&media, shadow->media);
-    rest.media = &media;
-    while (met) {
-        struct hit hit;
-        struct joint joint = {.joined = JOINED_NOT};
-        struct medium_effect effect;
-        rest.t_max = end;
-        met = world_nearest_surface(world, &rest, scratch, &hit);
-        if (met && world_touches(world, &hit))
-            world_join_path(world, &rest, &media, scratch, &hit, &joint);
-        if (joint.joined == JOINED_AWAY)
-            continue;
-        if (medium_transmittance(MEDIUM_RAY_SHADOW, &rest, (met ? hit.t : end) * length, &effect))
-            left = colour_mul(left, effect.transmittance);
-        if (!met)
-            break;
-        rest = joint_ray_through_hole(&joint, &hit, &rest, &media);
-        rest.direction = shadow->direction;
-        (void)joint_pass_invisible(world, &joint, &hit, &media);
-        end -= hit.t;
-    }
-    return left;
+/* The random numbers of a stretch of a ray to a light from the last vertex of the path. */
+static uint64_t stretch_key(const struct path *path, uint64_t stretch) {
+    return random_combine(random_combine(path->sampler.key, path->dimension | SAMPLER_STRETCH), stretch);
 }
 
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                                  const struct light_receiver *receiver, struct path_shadow *shadow) {
+                                  const struct path *path, struct path_shadow *shadow) {
     const struct world_lights *lights = &tracer->lights;
     const struct world_light_sample *sample = &shadow->sample;
     double end = shadow->ray.t_max;
@@ -119,22 +95,23 @@ struct colour path_light_arriving(const struct path_tracer *tracer, struct integ
     state->shadow_rays++;
     if (sample->decided) {
         shadow->ray.t_max = INFINITY;
-        radiance = world_lights_seen_by(lights, receiver, sample, &shadow->ray, state->scratch, &end);
+        radiance = world_lights_seen_by(lights, &path->scatter, sample, &shadow->ray, state->scratch, &end);
     } else {
         radiance = colour_scale(radiance, world_lights_visible(lights, &shadow->ray, state->scratch));
     }
-    if (tracer->has_fillings && !colour_is_black(radiance))
-        return colour_mul(radiance, left_of_light(lights->world, &shadow->ray, end, state->scratch));
+    if (tracer->has_fillings && !colour_is_black(radiance)) {
+        uint64_t key = stretch_key(path, 0);
+        return colour_mul(radiance, media_left(lights->world, &shadow->ray, end, &key, state->scratch));
+    }
     if (colour_is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
-    struct medium_effect effect;
-    (void)medium_transmittance(MEDIUM_RAY_SHADOW, &shadow->ray, end * vec3_length(shadow->ray.direction), &effect);
-    return colour_mul(radiance, effect.transmittance);
+    return colour_mul(radiance, medium_ray_left(MEDIUM_RAY_SHADOW, &shadow->ray,
+                                                end * vec3_length(shadow->ray.direction), stretch_key(path, 0)));
 }
 
 /* --- kinds of scattering --- */
 
-enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSION };
+enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSION, SCATTERING_VOLUME };
 
 static enum scattering scattering_of(unsigned lobe_flags) {
     return lobe_flags & BSDF_TRANSMITS ? SCATTERING_TRANSMISSION
@@ -147,11 +124,16 @@ void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]) {
         out[i] = colour_all((int)scattering_of(flags) == i ? 1 : 0);
 }
 
+void path_share_volume(struct colour out[PATH_SCATTERINGS]) {
+    for (int i = 0; i < PATH_SCATTERINGS; i++)
+        out[i] = colour_all(i == SCATTERING_VOLUME ? 1 : 0);
+}
+
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi,
                  struct colour out[PATH_SCATTERINGS]) {
     const struct bsdf *bsdf = vertex->at.bsdf;
     if (!bsdf) {
-        path_share_all(BSDF_DIFFUSE, out);
+        path_share_volume(out);
         return;
     }
     const uint32_t of_kind[PATH_SCATTERINGS] = {[SCATTERING_DIFFUSE] = lobes & bsdf_select(bsdf, BSDF_FOR_DIFFUSE),
@@ -210,11 +192,13 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     struct colour f = scattered(vertex, vertex->at.lobes, sample->direction);
     if (!vertex->substitute && colour_is_black(f))
         return false;
+    if (tracer->photon_lights && !vertex->at.bsdf)
+        f = path_without_thrown(tracer, part.light, vertex->thrown, f);
     uint32_t traced =
         tracer->photon_lights && vertex->at.bsdf ? vertex->at.lobes & bsdf_lobes_with(vertex->at.bsdf, BSDF_TRACED) : 0;
     if (traced && !colour_is_black(vertex->thrown)) {
         struct colour by_traced = scattered(vertex, traced, sample->direction);
-        f = colour_sub(f, colour_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
+        f = colour_sub(f, colour_sub(by_traced, path_without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
     double pdf = pmf * sample->pdf;
     if (sample->is_delta) {
@@ -223,6 +207,8 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
         double other = interaction_pdf(&vertex->at, sample->direction);
         f = colour_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
+    if (vertex->tracked)
+        f = colour_scale(f, path_tracked_weight(tracer, vertex->tracked, part, pmf));
     choice->lobes = f;
     choice->highlight = colour_all(0);
     /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that
@@ -230,12 +216,12 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     if (vertex->substitute && part.light < lights->world->light_count &&
         (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample->is_delta))
         choice->highlight =
-            without_thrown(tracer, part.light, vertex->thrown,
-                           colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
+            path_without_thrown(tracer, part.light, vertex->thrown,
+                                colour_scale(scattered(vertex, vertex->substitute, sample->direction), 1 / pdf));
     out->scattered = colour_add(f, choice->highlight);
     if (colour_is_black(out->scattered))
         return false;
-    send_shadow_ray(vertex, out);
+    path_send_shadow_ray(vertex, out);
     return true;
 }
 
@@ -243,7 +229,7 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
 
 /* The weight of a scattered ray that hits a light; sampling the light would find this point with that density. */
 static double met_weight(const struct path_tracer *tracer, const struct path_segment *segment, double pdf) {
-    return segment->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->pdf, pdf);
+    return segment->path->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->path->pdf, pdf);
 }
 
 struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
@@ -251,11 +237,11 @@ struct colour path_emission(const struct path_tracer *tracer, const struct path_
     const struct world_lights *lights = &tracer->lights;
     if (lights->of_primitive[hit->primitive] == LIGHT_NONE && colour_is_black(emission))
         return emission;
-    struct colour radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
-    radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->thrown, radiance);
-    if (colour_is_black(radiance) || segment->pdf == 0)
+    struct colour radiance = world_lights_radiance(lights, segment->path->scatter.primitive, hit, emission);
+    radiance = path_without_thrown(tracer, lights->of_primitive[hit->primitive], segment->path->thrown, radiance);
+    if (colour_is_black(radiance) || segment->path->pdf == 0)
         return radiance;
-    double pdf = world_lights_pdf_of_hit(lights, segment->receiver, vec3_negate(hit->view), hit);
+    double pdf = world_lights_pdf_of_hit(lights, &segment->path->scatter, vec3_negate(hit->view), hit);
     return colour_scale(radiance, met_weight(tracer, segment, pdf));
 }
 
@@ -267,21 +253,21 @@ struct colour path_area_lights(const struct path_tracer *tracer, const struct pa
     uint32_t number;
     if (lights->area_light_count == 0)
         return sum;
-    struct ray ray = *segment->ray;
+    struct ray ray = segment->path->ray;
     ray.t_max = t_max;
     ray.t_min = -segment->passed;
     world_lights_met_begin(&traversal, lights, &ray);
     while (world_lights_met_next(&traversal, &number, &hit)) {
-        struct medium_effect effect;
         bool counted = segment->passed > 0 && !(hit.t > 0); /* before the hole */
-        if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
+        if (counted || !world_lights_illuminate(lights, number, segment->path->scatter.primitive))
             continue;
         struct colour radiance = light_emitted(&lights->lights[number], &ray, &hit);
-        if (path_is_affected(tracer, MEDIUM_RAY_SCATTERED, &ray) &&
-            medium_transmittance(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction), &effect))
-            radiance = colour_mul(radiance, effect.transmittance);
-        radiance = without_thrown(tracer, number, segment->thrown, radiance);
-        double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
+        if (path_is_affected(tracer, MEDIUM_RAY_SCATTERED, &ray))
+            radiance =
+                colour_mul(radiance, medium_ray_left(MEDIUM_RAY_SCATTERED, &ray, hit.t * vec3_length(ray.direction),
+                                                     stretch_key(segment->path, number)));
+        radiance = path_without_thrown(tracer, number, segment->path->thrown, radiance);
+        double pdf = world_lights_pdf(lights, &segment->path->scatter, number, vec3_normalize(ray.direction), &hit);
         sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;
@@ -291,15 +277,15 @@ struct colour path_environment(const struct path_tracer *tracer, const struct pa
     const struct world_lights *lights = &tracer->lights;
     const struct light_hit hit = {.t = INFINITY};
     struct colour sum = {0, 0, 0};
-    struct vec3 direction = vec3_normalize(segment->ray->direction);
+    struct vec3 direction = vec3_normalize(segment->path->ray.direction);
     for (uint32_t i = 0; i < lights->sampler.infinite_count; i++) {
         uint32_t number = lights->sampler.infinite[i];
         const struct light *light = &lights->lights[number];
-        if (light_is_delta(light) || !world_lights_illuminate(lights, number, segment->receiver->primitive))
+        if (light_is_delta(light) || !world_lights_illuminate(lights, number, segment->path->scatter.primitive))
             continue;
-        double pdf = world_lights_pdf(lights, segment->receiver, number, direction, &hit);
+        double pdf = world_lights_pdf(lights, &segment->path->scatter, number, direction, &hit);
         struct colour radiance =
-            without_thrown(tracer, number, segment->thrown, light_emitted(light, segment->ray, &hit));
+            path_without_thrown(tracer, number, segment->path->thrown, light_emitted(light, &segment->path->ray, &hit));
         sum = colour_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;

@@ -6,6 +6,8 @@
 #include "render/path_internal.h"
 #include "render/path_state_internal.h"
 
+struct path_tracked;
+
 struct path_vertex {
     const struct ray *ray; /* that ends here */
     const struct hit *hit; /* of a surface */
@@ -14,6 +16,8 @@ struct path_vertex {
     uint32_t substitute;  /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;           /* of a line of sight, on which mirrors show only visible lights */
     struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
+    const struct path_tracked *tracked; /* in a medium whose ray has other samples of lights (path_aim.h); or NULL */
+    bool sealed;          /* no lamp reaches it */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */
@@ -23,11 +27,8 @@ static inline bool path_is_affected(const struct path_tracer *tracer, enum mediu
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {
-    const struct ray *ray;
-    const struct light_receiver *receiver;
-    double pdf;           /* density of its direction by solid angle; 0: the only possible direction */
-    struct colour thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
-    double passed;        /* after holes: the line began at t = -passed */
+    const struct path *path;
+    double passed; /* after holes: the line began at t = -passed */
 };
 
 /* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension selects a
@@ -44,10 +45,17 @@ struct path_choice {
 /* Chooses a light, a point on it and the ray to it. False: nothing is to be sent, but out->part is set. */
 bool path_choose_light(const struct path_tracer *tracer, const struct path_vertex *vertex,
                        const struct path_light_draw *draw, struct path_shadow *out, struct path_choice *choice);
-/* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. receiver: the
- * one that was chosen for. */
+/* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. */
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
-                                  const struct light_receiver *receiver, struct path_shadow *shadow);
+                                  const struct path *path, struct path_shadow *shadow);
+/* The ray to the sample in `out`. */
+void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out);
+/* The weight of a sample of a light with density `pdf` that rays find with density `other`. */
+double path_light_weight(const struct path_tracer *tracer, double pdf, double other);
+/* The part of a light's radiance that the path adds. If photons come from this light, the fraction `thrown` of the
+ * path's weight belongs to the photon map. */
+struct colour path_without_thrown(const struct path_tracer *tracer, uint32_t light, struct colour thrown,
+                                  struct colour radiance);
 /* What path_shares returns, for a light in the direction wi, highlights included. */
 void path_direct_shares(const struct path_vertex *vertex, const struct path_choice *choice, struct vec3 wi,
                         struct colour shares[PATH_SCATTERINGS]);
@@ -56,6 +64,8 @@ void path_direct_shares(const struct path_vertex *vertex, const struct path_choi
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct colour out[PATH_SCATTERINGS]);
 /* The fractions of a lobe with these flags: all of its light belongs to one kind. */
 void path_share_all(unsigned flags, struct colour out[PATH_SCATTERINGS]);
+/* Those of a medium. */
+void path_share_volume(struct colour out[PATH_SCATTERINGS]);
 /* The light along scattered rays, weighted against path_direct: that of an emissive surface (`emission` at the hit);
  * that of the area lights that the ray crosses before t_max; that of skies if it hits nothing. */
 struct colour path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,

@@ -16,11 +16,14 @@
  * samples of lights. */
 
 #include "material/bsdf_select.h"
-#include "material/medium.h"
+#include "material/medium_mix.h"
 #include "math/range.h"
+#include "math/spectrum.h"
+#include "render/path_aim.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
+#include "render/subsurface_walk.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -73,6 +76,13 @@ static float in_unit(double x) {
     return x >= 1 ? 1 : x > 0 ? (float)x : 0;
 }
 
+/* The weight as for white light. */
+static struct colour neutral_weight(const struct path *path) {
+    if (!(path->media.wavelength > 0))
+        return path->weight;
+    return colour_share(path->weight, spectrum_weight((double)path->media.wavelength));
+}
+
 /* The end of a line of sight. distance: along the last ray of the path. */
 static void set_features(const struct integrator_state *state, const struct path *path, struct colour albedo,
                          struct vec3 normal, double distance) {
@@ -80,7 +90,7 @@ static void set_features(const struct integrator_state *state, const struct path
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct colour behind = colour_mul(path->weight, albedo);
+    const struct colour behind = colour_mul(neutral_weight(path), albedo);
     const struct colour a =
         parts->reflected > 0 ? colour_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
     const float features[PATH_GLOW] = {in_unit(a.r),
@@ -105,7 +115,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
         set_features(state, path, guide.albedo, bsdf->lit, parts->travelled);
     } else if (guide.refracted > 0 && parts->reflected == 0) {
         parts->reflected = guide.reflected / (guide.reflected + guide.refracted);
-        parts->seen = colour_scale(path->weight, parts->reflected);
+        parts->seen = colour_scale(neutral_weight(path), parts->reflected);
     }
 }
 
@@ -113,7 +123,7 @@ static void meet_features(const struct integrator_state *state, const struct pat
 
 /* A scattered ray. passed: after holes, the line began at t = -passed. */
 static struct path_segment segment_of(const struct path *path, double passed) {
-    return (struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown, passed};
+    return (struct path_segment){path, passed};
 }
 
 /* After holes, the distance from where the line began, in t of the ray. */
@@ -126,30 +136,118 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
-/* Passes the medium over a distance. True: it scatters the path, after *distance. */
-static bool pass_medium(const struct integrator_state *state, struct path *path, enum medium_ray kind,
-                        double *distance) {
-    const struct medium *medium = medium_stack_current(path->ray.media);
+/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_aim.h. */
+struct path_stretch {
+    double distance, end; /* the end of the ray */
+    const struct medium *medium;
+    struct path_tracked tracked;
+};
+
+/* The random numbers of the media along the path's ray. */
+static uint64_t medium_key(const struct path *path) {
+    return random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM);
+}
+
+/* The samples of lights on the way, and what weights those of the vertex against them: the weight of the path is still
+ * that before the way. */
+static __attribute__((noinline)) void aim(const struct path_tracer *tracer, struct integrator_state *state,
+                                          struct path *path, const struct medium_mix *mix, double distance) {
+    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
+    struct path_parts *parts = parts_of(state);
+    path->light = colour_add(path->light, light);
+    if (!parts || colour_is_black(light))
+        return;
+    struct colour scattered[PATH_SCATTERINGS];
+    path_share_volume(scattered);
+    add_to_groups(parts, path->depth + 1, path->depth == 0 ? scattered : parts->shares, light);
+}
+
+/* What weights the light at a vertex against those samples. */
+static void note_tracked(const struct path *path, const struct medium_mix *mix, struct colour weight, double end,
+                         struct path_stretch *out) {
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), out->distance,
+                                     path->ray.time};
+    out->tracked = (struct path_tracked){&path->ray, end, out->distance, medium_mix_density(mix, &line, weight)};
+}
+
+/* Passes the medium, up to out->distance. */
+static void pass_single(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                        const struct medium *medium, enum medium_ray kind, struct path_stretch *out) {
     struct medium_effect effect;
     if (medium->scatters) {
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
-        add_light(state, path, medium_emission(medium, *distance));
-        struct medium_sample sample = medium_sample(medium, *distance, path->weight, u);
-        path->weight = colour_mul(path->weight, sample.weight);
-        *distance = sample.distance;
-        return sample.scatters;
+        const struct medium_mix mix = {1, {medium}};
+        const double end = out->distance;
+        const bool aims = path_aims(tracer, path);
+        const struct colour weight = path->weight;
+        add_light(state, path, medium_emission(medium, end));
+        if (aims)
+            aim(tracer, state, path, &mix, end);
+        struct medium_sample sample = medium_sample(medium, end, weight, u);
+        path->weight = colour_mul(weight, sample.weight);
+        out->distance = sample.distance;
+        out->medium = sample.scatters ? medium : NULL;
+        if (aims && sample.scatters)
+            note_tracked(path, &mix, weight, end, out);
+        return;
     }
-    if (medium_transmittance(kind, &path->ray, *distance, &effect)) {
+    if (medium_transmittance(kind, &path->ray, out->distance, &effect)) {
         add_light(state, path, effect.added);
         path->weight = colour_mul(path->weight, effect.transmittance);
     }
-    return false;
 }
 
-/* Adds everything between the origin of the ray and its end: area lights, media. *distance: to the hit, the light or
- * where the medium scatters. */
-static enum travelled travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
-                             const struct hit *hit, struct path_watch *watch, double *distance) {
+/* The same for several together, and for a density. */
+static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, enum medium_ray kind, struct path_stretch *out) {
+    struct medium_mix mix;
+    struct medium_track track;
+    medium_stack_mix(path->ray.media, &mix);
+    if (mix.count == 0)
+        return;
+    if (mix.count == 1 && !mix.media[0]->density) {
+        pass_single(tracer, state, path, mix.media[0], kind, out);
+        return;
+    }
+    const double end = out->distance;
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), end, path->ray.time};
+    const struct medium_draw numbers = {sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM),
+                                        medium_key(path)};
+    const struct colour weight = path->weight;
+    medium_mix_track(&mix, &line, weight, numbers, &track);
+    add_light(state, path, track.emitted);
+    /* What only absorbs does not end the path. */
+    if (!medium_mix_scatters(&mix)) {
+        path->weight = colour_mul(weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
+        return;
+    }
+    const bool aims = path_aims(tracer, path);
+    if (aims)
+        aim(tracer, state, path, &mix, end);
+    path->weight = colour_mul(weight, track.weight);
+    out->distance = track.distance;
+    out->medium = track.scatterer;
+    if (aims && track.scatterer)
+        note_tracked(path, &mix, weight, end, out);
+}
+
+/* Passes what is around the ray, up to out->distance. */
+static void pass_medium(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                        enum medium_ray kind, struct path_stretch *out) {
+    const struct medium *medium = medium_stack_current(path->ray.media);
+    out->end = out->distance;
+    out->medium = NULL;
+    out->tracked.density = 0;
+    if (medium->mixed)
+        pass_mix(tracer, state, path, kind, out);
+    else
+        pass_single(tracer, state, path, medium, kind, out);
+}
+
+/* Adds everything between the origin of the ray and its end: area lights, media. out: set unless it ends at
+ * its hit without a medium. */
+static enum travelled travel(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                             const struct hit *hit, struct path_watch *watch, struct path_stretch *out) {
     double end = hit ? hit->t : path->ray.t_max;
     struct colour radiance;
     bool seen = false;
@@ -162,14 +260,15 @@ static enum travelled travel(const struct path_tracer *tracer, const struct inte
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
     if (!seen && !path_is_affected(tracer, kind, &path->ray))
         return ENDS_AT_HIT;
-    *distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    if (pass_medium(state, path, kind, distance))
+    out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
+    pass_medium(tracer, state, path, kind, out);
+    if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
         return ENDS_AT_HIT;
     const struct path_parts *parts = parts_of(state);
-    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + *distance : 0);
-    watch_arrival(watch, path, *distance);
+    set_features(state, path, light_albedo(radiance), vec3_all(0), parts ? parts->travelled + out->distance : 0);
+    watch_arrival(watch, path, out->distance);
     add_light(state, path, radiance);
     watch_stage(watch, path, STAGE_EMISSION);
     (void)watch_end(watch, PATH_SEES_LIGHT);
@@ -239,8 +338,11 @@ static struct colour share_of_lobes(const struct path_vertex *vertex, uint32_t l
  * from such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
     const struct bsdf *bsdf = vertex->at.bsdf;
-    uint32_t traced = bsdf ? vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED) : 0;
-    uint32_t receiving = bsdf ? vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS) : 0;
+    /* Photons pass media as paths do. */
+    if (!bsdf)
+        return;
+    uint32_t traced = vertex->at.lobes & bsdf_lobes_with(bsdf, BSDF_TRACED);
+    uint32_t receiving = vertex->at.lobes & bsdf_select(bsdf, BSDF_FOR_PHOTONS);
     bool delta = (sample->flags & BSDF_DELTA) != 0;
     struct colour by_traced = delta ? colour_all(1) : share_of_lobes(vertex, traced, sample->direction);
     path->thrown = colour_mul(colour_add(path->received, path->thrown), by_traced);
@@ -258,6 +360,31 @@ static __attribute__((noinline)) void send_in_medium(struct ray *ray, struct vec
     ray->skip_primitive = ray->skip_part = 0;
 }
 
+/* Goes under the surface, on to where it comes out: the path's ray ends there. No scattering of the path, until it is
+ * scattered out. */
+static __attribute__((noinline)) bool walk_below(struct integrator_state *state, struct path *path,
+                                                 const struct path_vertex *vertex, const struct bsdf_sample *sample,
+                                                 struct path_watch *watch) {
+    const struct subsurface *under = &vertex->at.bsdf->subsurface;
+    struct subsurface_walk walk = {.world = state->job->world,
+                                   .scratch = state->scratch,
+                                   .primitive = vertex->hit->primitive,
+                                   .under = *under,
+                                   .key = random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM),
+                                   .ray = hit_ray(vertex->hit, &path->ray, sample->direction, &path->media),
+                                   .weight = colour_mul(path->weight, colour_share(sample->weight, under->colour))};
+    if (!subsurface_walk(&walk))
+        return watch_end(watch, walk.scatterings > 0 ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
+    path->weight = walk.weight;
+    path->kind = RAY_BELOW;
+    watch_walk(watch, walk.scatterings);
+    if (walk.comes_out) {
+        path->ray = walk.ray;
+        path->met = (struct packet_answer){.primitive = walk.primitive, .crossing = walk.crossing};
+    }
+    return true;
+}
+
 /* Continues in a direction that the BSDF or the phase function samples. */
 static inline __attribute__((always_inline)) bool scatter(const struct path_tracer *tracer,
                                                           struct integrator_state *state, struct path *path,
@@ -269,6 +396,8 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
         return watch_end(watch, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
+    if (sample.flags & BSDF_BELOW)
+        return walk_below(state, path, vertex, &sample, watch);
     /* A shading normal may reflect into the surface. */
     if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return watch_end(watch, PATH_IS_ABSORBED);
@@ -321,30 +450,45 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) && path->depth == 0)
+    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+        path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
 
+/* The way to the hit in a sealed solid, where nothing but the medium is, before the hit is described: most rays do not
+ * come that far. False: it is another way, and nothing is done. */
+static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tracer, struct integrator_state *state,
+                                                    struct path *path, struct path_stretch *out) {
+    if (path->kind == RAY_BELOW || !path_is_sealed(tracer, &path->media) ||
+        touching_has(&state->job->world->touching, path->met.primitive))
+        return false;
+    out->distance = path->met.crossing.t * vec3_length(path->ray.direction);
+    pass_medium(tracer, state, path, MEDIUM_RAY_SCATTERED, out);
+    return true;
+}
+
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
-                                                  struct path *path, double distance, struct path_shadow *shadow,
-                                                  struct path_watch *watch) {
-    const struct medium *medium = medium_stack_current(path->ray.media);
+                                                  struct path *path, const struct path_stretch *end,
+                                                  struct path_shadow *shadow, struct path_watch *watch) {
     struct vec3 direction = vec3_normalize(path->ray.direction);
-    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, distance);
+    struct vec3 point = vec3_add_scaled(path->ray.origin, direction, end->distance);
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
-    watch_medium(watch);
+    watch_medium(watch, path, end->end);
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
     if (parts && path->sight)
-        set_features(state, path, medium_albedo(medium), vec3_all(0), parts->travelled + distance);
+        set_features(state, path, medium_albedo(end->medium), vec3_all(0), parts->travelled + end->distance);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct path_vertex vertex = {.ray = &path->ray,
-                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &medium->phase},
+                                       .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
                                        .receiver = &path->scatter,
-                                       .sight = path->sight};
+                                       .sight = path->sight,
+                                       .thrown = path->thrown,
+                                       .tracked = end->tracked.density > 0 ? &end->tracked : NULL,
+                                       .sealed = path_is_sealed(tracer, &path->media)};
     return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
 }
 
@@ -357,6 +501,7 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
     const struct material_context context = {.specular = state->job->settings.specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
+                                             .walks = true,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
     if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
@@ -381,6 +526,26 @@ struct path_hit {
     struct hit hit;
     struct joint joint;
 };
+
+/* The vertex where the path comes out from under a surface. False: the path ends here. */
+static __attribute__((noinline)) bool come_out(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, struct hit *hit, struct path_shadow *shadow,
+                                               struct path_watch *watch) {
+    struct bsdf bsdf;
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .receiver = &path->scatter};
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    state->hits++;
+    material_eval_matt(&state->job->world->surfaces, hit, &bsdf);
+    path->scatter = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, hit->offset),
+                                            bsdf.side, hit->primitive};
+    vertex.at = (struct interaction){.bsdf = &bsdf, .lobes = 1, .wo = hit->view};
+    if (tracer->photon_lights) {
+        add_photons(tracer, state, path, &vertex);
+        vertex.thrown = colour_add(path->received, path->thrown);
+        watch_stage(watch, path, STAGE_PHOTONS);
+    }
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
+}
 
 /* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -447,8 +612,10 @@ static void begin(struct path *path, const struct integrator_state *state, const
     path->sampler.key = key;
 }
 
-/* What the ray hits first. */
+/* What the ray hits first; one that comes out from under a surface knows it. */
 static void extend(const struct integrator_state *state, struct path *path) {
+    if (path->kind == RAY_BELOW)
+        return;
     if (!world_nearest_crossing(state->job->world, &path->ray, state->scratch, &path->met.primitive,
                                 &path->met.crossing))
         path->met.primitive = WORLD_NOTHING;
@@ -460,13 +627,27 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
                   struct path_shadow *shadow, struct path_watch *watch) {
     const struct world *world = state->job->world;
     bool met = path->met.primitive != WORLD_NOTHING;
+    struct path_stretch end;
     struct path_hit at;
     at.joint.joined = JOINED_NOT;
     shadow->part.light = LIGHT_NONE;
     shadow->sent = false;
+    bool travelled = !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
+    if (travelled && end.medium)
+        return meet_medium(tracer, state, path, &end, shadow, watch);
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
+        if (path->kind == RAY_BELOW) {
+#if OBSERVED
+            watch_ray(watch, state->observer, path, &at.hit);
+#endif
+            return come_out(tracer, state, path, &at.hit, shadow, watch);
+        }
+        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+            double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
+            path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
+        }
         if (world_touches(world, &at.hit))
             world_join_path(world, &path->ray, &path->media, state->scratch, &at.hit, &at.joint);
         if (at.joint.joined == JOINED_AWAY) {
@@ -479,13 +660,12 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
 #endif
     /* The way to it, then the surface or the sky there. */
-    double distance;
-    enum travelled to = travel(tracer, state, path, met ? &at.hit : NULL, watch, &distance);
+    enum travelled to = travelled ? ENDS_AT_HIT : travel(tracer, state, path, met ? &at.hit : NULL, watch, &end);
     if (to == ENDS_AT_LIGHT)
         return false;
-    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? distance : 0);
+    watch_arrival(watch, path, to == ENDS_IN_MEDIUM ? end.distance : 0);
     if (to == ENDS_IN_MEDIUM)
-        return meet_medium(tracer, state, path, distance, shadow, watch);
+        return meet_medium(tracer, state, path, &end, shadow, watch);
     if (met)
         return meet_surface(tracer, state, path, &at, shadow, watch);
     leave_scene(tracer, state, path);
@@ -498,7 +678,7 @@ static void shadow(const struct path_tracer *tracer, struct integrator_state *st
                    struct path_shadow *shadow) {
     struct colour arriving = colour_all(0), seen = colour_all(0);
     if (shadow->sent) {
-        arriving = path_light_arriving(tracer, state, &path->scatter, shadow);
+        arriving = path_light_arriving(tracer, state, path, shadow);
         seen = colour_mul(shadow->scattered, arriving);
         struct colour light = colour_mul(shadow->weight, seen);
         path->light = colour_add(path->light, light);

@@ -3,6 +3,7 @@
 #ifndef GRAY_RENDER_PATH_WATCH_INTERNAL_H
 #define GRAY_RENDER_PATH_WATCH_INTERNAL_H
 
+#include "material/medium_mix.h"
 #include "render/path_state_internal.h"
 
 /* The stages of a vertex. */
@@ -16,9 +17,11 @@ struct path_watch {
         struct colour lights[STAGES]; /* the radiance of the path after each stage */
         double distance;              /* at which a visible light ends the path, or the medium scatters it */
         bool in_medium;
+        double chance; /* of the medium to scatter it before the end of the ray */
     } rays[64];
     int count;
-    bool cut; /* the current ray is none of them */
+    int scatterings; /* under the surface that the path has gone through last */
+    bool cut;        /* the current ray is none of them */
     enum path_end end;
 };
 
@@ -42,11 +45,23 @@ static inline void watch_arrival(struct path_watch *watch, const struct path *pa
     watch_stage(watch, path, STAGE_BEFORE_HIT);
 }
 
-/* The medium scatters the path at the distance where watch_arrival said that it is. */
-static inline void watch_medium(struct path_watch *watch) {
+/* The medium scatters the path at the distance where watch_arrival said that it is; the ray would have ended at
+ * `end`. */
+static inline void watch_medium(struct path_watch *watch, const struct path *path, double end) {
     struct watched_ray *ray = OBSERVED ? watched_ray(watch) : NULL;
-    if (ray)
-        ray->in_medium = true;
+    if (!ray)
+        return;
+    const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), end, path->ray.time};
+    struct medium_mix mix;
+    medium_stack_mix(path->ray.media, &mix);
+    double sum = ray->weight.r + ray->weight.g + ray->weight.b;
+    ray->in_medium = true;
+    ray->chance = sum > 0 ? 1 - colour_dot(ray->weight, medium_mix_dimmed(&mix, &line)) / sum : 0;
+}
+
+static inline void watch_walk(struct path_watch *watch, int scatterings) {
+    if (OBSERVED)
+        watch->scatterings = scatterings;
 }
 
 /* The path ends for this reason: false. */
@@ -74,7 +89,8 @@ static void watch_ray(struct path_watch *watch, const struct observer *observer,
     watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
     watch_arrival(watch, path, 0);
     OBSERVE(observer, OBSERVED_RAY_BEGIN,
-            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1)});
+            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1),
+                      path->kind == RAY_BELOW ? watch->scatterings : 0});
 }
 
 /* The end of the current ray: what its hit adds to the path. */
@@ -89,6 +105,7 @@ static void watch_vertex(struct path_watch *watch, const struct observer *observ
             .vertex = {.end = watch->end,
                        .distance = ray->distance,
                        .in_medium = ray->in_medium,
+                       .chance = ray->chance,
                        .emission = gains[STAGE_EMISSION],
                        .photons = gains[STAGE_PHOTONS],
                        .direct = colour_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),

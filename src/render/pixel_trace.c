@@ -111,8 +111,10 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     recorded->direction = ray->direction;
     recorded->time = ray->time;
     recorded->share = seen->share;
+    recorded->scatterings = seen->scatterings;
     recorded->media_count = ray->media ? ray->media->count : 0;
     recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
+    recorded->wavelength = ray->media ? (double)ray->media->wavelength : 0;
     recorded->area_light = seen->light;
     recorded->met = seen->hit && !seen->light;
     if (recorded->met)

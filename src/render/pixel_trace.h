@@ -53,8 +53,10 @@ struct pixel_trace_ray {
     double time;
     double share;         /* upper bound of the fraction of its radiance that arrives in the pixel */
     struct colour weight; /* the factor of its radiance in the surface where it started */
+    int scatterings;      /* of RAY_BELOW, under the surface */
     uint32_t media_count;
-    double media_ior; /* of where it starts */
+    double media_ior;  /* of where it starts */
+    double wavelength; /* of its light where it ends, in micrometres; 0: white light */
     /* What it hit: a surface, else a visible light, else the sky. */
     bool met;
     struct hit hit;

@@ -4,6 +4,7 @@
 #include "render/aov_values_internal.h"
 #include "render/integrator.h"
 #include "render/integrator_internal.h"
+#include "render/media_light.h"
 
 #include "base/mem.h"
 #include "denoise/film_denoise.h"
@@ -251,6 +252,7 @@ static bool start_workers(struct renderer *renderer, int workers) {
     renderer->workers = mem_alloc_zero((size_t)workers, sizeof *renderer->workers);
     if (!renderer->workers)
         return false;
+    bool dims = media_dim_lights(renderer->job->world);
     for (int i = 0; i < workers; i++) {
         struct worker *worker = &renderer->workers[i];
         if (!world_scratch_init(&worker->scratch, renderer->job->world))
@@ -259,7 +261,8 @@ static bool start_workers(struct renderer *renderer, int workers) {
         worker->state = (struct integrator_state){.job = renderer->job,
                                                   .pool = renderer->pool,
                                                   .scratch = &worker->scratch,
-                                                  .eye_medium_stack = &renderer->eye_medium_stack};
+                                                  .eye_medium_stack = &renderer->eye_medium_stack,
+                                                  .media_dim = dims};
     }
     return true;
 }
@@ -424,8 +427,8 @@ static bool is_unfinished(const struct renderer *renderer) {
 static bool show_denoised(struct renderer *renderer) {
     struct film *film = renderer->job->film;
     struct error error = {0};
-    if (!renderer->job->settings.passes || !(path_film_parts(film->record) & PATH_PART_FEATURES) ||
-        film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
+    if (!renderer->job->settings.passes || !settings_denoise(&renderer->job->settings) ||
+        !(path_film_parts(film->record) & PATH_PART_FEATURES) || film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
         return true;
     return film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
 }
@@ -464,7 +467,8 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
 static enum work_answer next_pass(void *context, struct work_queue *queue) {
     struct renderer *renderer = context;
     struct sample_pass *pass = &renderer->pass;
-    double now = clock_now(), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
+    double now = clock_now();
+    double seconds = fmax((now - renderer->passes_begun) / (pass->end - renderer->job->kept_samples), 1e-9);
     if (queue->out > 0)
         return WORK_LATER;
     if (renderer_is_done(renderer) || pass->end == pass->limit || !atomic_load(&renderer->unsatisfied) ||
@@ -481,7 +485,8 @@ static enum work_answer next_pass(void *context, struct work_queue *queue) {
 
 static void begin_passes(struct renderer *renderer) {
     renderer->passes_begun = clock_now();
-    renderer->pass = (struct sample_pass){.limit = renderer->pass.end, .begin = 0, .end = 1, .open = true};
+    uint32_t kept = renderer->job->kept_samples;
+    renderer->pass = (struct sample_pass){.limit = renderer->pass.end, .begin = kept, .end = kept + 1, .open = true};
     renderer->queue.more = next_pass;
     renderer->queue.context = renderer;
 }

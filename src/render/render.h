@@ -21,6 +21,7 @@ struct render_job {
     uint32_t width, height; /* of the whole picture */
     struct colour ambient;
     bool background_lights;          /* the script chose the sky of the world: paths take its light */
+    uint32_t kept_samples; /* that all pixels of the film have: passes of a progressive integrator go on with the next */
     struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
     struct pool_event *handed;       /* or NULL; signalled when tiles become wanted, and when no more can */

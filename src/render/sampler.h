@@ -97,7 +97,10 @@ struct sampler {
  * the unit square is one dimension. */
 enum sampler_dimension { SAMPLER_PIXEL, SAMPLER_LENS, SAMPLER_TIME, SAMPLER_FIRST_VERTEX };
 enum { SAMPLER_VERTEX_DIMENSIONS = 3 };
-#define SAMPLER_MEDIUM (UINT32_C(1) << 31) /* with the first dimension of a vertex: the way of the ray to it */
+#define SAMPLER_WAVELENGTH (UINT32_C(1) << 29)
+#define SAMPLER_MEDIUM (UINT32_C(1) << 31)  /* with the first dimension of a vertex: the way of the ray to it */
+#define SAMPLER_AIM (UINT32_C(1) << 29)     /* likewise: light along that way */
+#define SAMPLER_STRETCH (UINT32_C(1) << 30) /* in the same way: the rays to lights */
 
 /* Sample `number` of a pixel (counted row by row over the whole picture) of side x side. */
 static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_t number, uint32_t side) {
@@ -140,7 +143,7 @@ static inline uint64_t sampler_right_eye(const struct sampler *sampler) {
 
 /* Keys below that of a ray: for its child rays, and for the lights at its hit. The facets of a rough surface have keys
  * below SAMPLER_ROUGH. */
-enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE };
+enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE, SAMPLER_IN_MEDIUM };
 static inline uint64_t sampler_branch(uint64_t ray_key, enum sampler_branch branch) {
     return random_combine(ray_key, (uint64_t)UINT32_MAX + (uint64_t)branch);
 }

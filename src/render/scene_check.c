@@ -7,6 +7,7 @@
 #include "render/camera.h"
 #include "render/sample_internal.h"
 #include "scene/node.h"
+#include "world/world_describe.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -292,6 +293,22 @@ static void check_thin_walls(const struct check *check) {
     }
 }
 
+static void check_subsurface(const struct check *check) {
+    const struct world *world = check->world;
+    for (uint32_t i = 0; i < world->material_count && check->job->settings.integrator == INTEGRATOR_WHITTED; i++)
+        if (surface_walks(&world->surfaces.materials[i]))
+            give(check, FAULT_SUBSURFACE,
+                 "light that is scattered under a surface is shown as diffuse light of subsurface_color; "
+                 "--integrator path follows it");
+}
+
+/* Photons are of single wavelengths under every integrator. */
+static void check_dispersion(const struct check *check) {
+    if (check->job->settings.integrator == INTEGRATOR_WHITTED && world_disperses(check->world))
+        give(check, FAULT_DISPERSION,
+             "glass with dispersion is shown with one index of refraction; --integrator path divides the colours");
+}
+
 static void notice_empty(const struct check *check, const struct node *solid) {
     char position[256] = "";
     origin_of(solid, position, sizeof position);
@@ -320,6 +337,8 @@ void scene_check(const struct render_job *job, unsigned *noticed, world_warning 
     }
     check_materials(&check);
     check_thin_walls(&check);
+    check_subsurface(&check);
+    check_dispersion(&check);
     if (moves || check_view(&check)) {
         check_size(&check);
         check_light(&check);

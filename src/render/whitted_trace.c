@@ -2,6 +2,7 @@
  * and the position in the tree of rays. */
 #include "material/bsdf_select.h"
 #include "material/medium.h"
+#include "render/media_light.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
 #include "world/joint.h"
@@ -274,6 +275,7 @@ static struct colour follow_layers(struct integrator_state *state, const struct 
 
 static struct colour shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
     OBSERVE(state->observer, OBSERVED_SURFACE, .surface = at->bsdf);
+    state->lit_from = state->media_dim ? at->ray->media : NULL;
     struct colour colour = style_light(state, at->hit, at->bsdf, path->key);
     colour = colour_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
@@ -332,7 +334,7 @@ static struct colour incident_radiance(struct integrator_state *state, const str
     struct path dimmed;
     bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct colour left = air.transmittance;
-    OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight});
+    OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight, 0});
     if (affected) {
         dimmed = path_on(path, colour_max_abs(left));
         path = &dimmed;
@@ -352,6 +354,9 @@ static struct colour incident_radiance(struct integrator_state *state, const str
     else
         colour = sky_colour(&world->sky, vec3_normalize(ray->direction), ray->footprint.spread);
     seen = colour;
+    if (affected && looked)
+        in_scattered = colour_add(
+            in_scattered, media_in_scattering(state, ray, distance, sampler_branch(path->key, SAMPLER_IN_MEDIUM)));
     if (affected)
         colour = colour_add(colour_mul(colour, left), in_scattered);
     colour = integrator_clamp_light(state, colour, light_limit);

@@ -24,6 +24,8 @@ struct material added_material(struct colour colour) {
 static uint64_t target_of(const struct change *change) {
     if (change->kind == CHANGE_MATERIAL)
         return (uint64_t)change->serial * MATERIAL_PART_PARTS + (uint64_t)change->part;
+    if (change->kind == CHANGE_SOLO) /* there is one at most */
+        return 0;
     bool counted = change->kind == CHANGE_ADD || change->kind == CHANGE_ADD_LIGHT || change->kind == CHANGE_OWN;
     return counted ? change->number : change->serial;
 }
@@ -186,7 +188,17 @@ static struct node *node_of(struct change_application *l, uint32_t serial, const
     return node;
 }
 
+enum { SOLO_LEVELS = 64 };
 enum { COMMON_PART = offsetof(struct node, joint_x) };
+
+static struct changed_node *record(struct change_application *l, struct node *node) {
+    struct changed_node *note = &l->out->nodes[l->out->node_count++];
+    note->node = node;
+    note->end = node->last_child;
+    note->material = node->kind == NODE_GEOMETRY ? node->material : NULL;
+    memcpy(&note->before, node, COMMON_PART);
+    return note;
+}
 
 /* Records the state of the node. */
 static struct node *begin_node(struct change_application *l) {
@@ -195,12 +207,35 @@ static struct node *begin_node(struct change_application *l) {
         report_missing(l, "the node", l->change->serial);
         return NULL;
     }
-    struct changed_node *note = &l->out->nodes[l->out->node_count++];
-    note->node = node;
-    note->end = node->last_child;
-    note->material = node->kind == NODE_GEOMETRY ? node->material : NULL;
-    memcpy(&note->before, node, COMMON_PART);
+    (void)record(l, node);
     return node;
+}
+
+/* Each node above the solo one has one child. Operands stay with their solids. */
+static void leave_only(struct change_application *l) {
+    struct scene_traversal t = {.operands = OPERANDS_AS_CHILD, .distinct = true};
+    enum scene_event event;
+    scene_traversal_begin(&t, l->root);
+    while ((event = scene_traversal_next(&t)) < SCENE_END) {
+        if (event == SCENE_ENTER && scene_traversal_node(&t)->serial == l->change->serial)
+            break;
+    }
+    struct node *above = l->root;
+    for (uint32_t i = 1; event < SCENE_END && i < t.depth && i < SOLO_LEVELS && above; i++) {
+        struct node_child *child = above->first_child;
+        while (child && child->node != t.steps[i].node)
+            child = child->next;
+        if (!child)
+            break;
+        struct changed_node *note = record(l, above);
+        note->only.node = child->node;
+        above->first_child = above->last_child = &note->only;
+        above->child_count = 1;
+        above = child->node;
+    }
+    if (event >= SCENE_END)
+        report_missing(l, "the node", l->change->serial);
+    scene_traversal_end(&t);
 }
 
 static void transform_node(struct change_application *l) {
@@ -468,6 +503,9 @@ static bool lay(struct change_application *l) {
     case CHANGE_ADD_LIGHT:
         add_light(l);
         break;
+    case CHANGE_SOLO:
+        leave_only(l);
+        break;
     case CHANGE_KINDS:
         break;
     }
@@ -479,7 +517,7 @@ bool changes_lay_over(struct change_range changes, const struct change_target *t
     uint32_t count = changes.count, light_count = target->light_count;
     *out = (struct changed_scene){.lights = mem_alloc_zero((size_t)light_count + count, sizeof *out->lights),
                                   .light_count = light_count,
-                                  .nodes = mem_alloc_zero((size_t)count + 1, sizeof *out->nodes),
+                                  .nodes = mem_alloc_zero((size_t)count + SOLO_LEVELS, sizeof *out->nodes),
                                   .materials = mem_alloc_zero((size_t)count + 1, sizeof *out->materials),
                                   .added = mem_alloc_zero((size_t)count + 1, sizeof(struct node *))};
     struct change_application l = {

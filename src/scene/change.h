@@ -20,6 +20,7 @@ enum change_kind {
     CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
     CHANGE_DARK,      /* a light is removed */
+    CHANGE_SOLO,      /* only a node, and what is below it, is drawn; not written as Lua */
     CHANGE_KINDS
 };
 enum { TURN_AT = 6, COLOUR_AT = 15 };
@@ -86,6 +87,7 @@ struct changed_node {
     struct node_child *end;          /* its last child before */
     const struct material *material; /* of a shape */
     struct node moved_end;           /* of a node that moves to another's place: that place, changed alike */
+    struct node_child only;          /* its one child, of a node above a solo one */
 };
 struct changed_material {
     struct material *material;

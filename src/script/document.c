@@ -49,6 +49,7 @@ static void describe_parameter(const struct script_parameter *p, char out[DOCUME
                        : p->flags & OR_COMPASS                           ? " or {azimuth = ..., elevation = ...}"
                        : p->flags & OR_PAIR                              ? " or two numbers"
                        : p->flags & OR_SKY                               ? " or a sky"
+                       : p->flags & OR_FILE                              ? ", a function or the name of a file"
                        : p->kind == KIND_BOOLEAN && p->flags & OR_NUMBER ? " or a number"
                        : p->kind == KIND_NUMBER && choices[0]            ? " or "
                                                                          : "";
@@ -183,6 +184,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     static const char *const annotations[] = {KIND_LIST(KIND_ANNOTATION)};
     if (p->kind == KIND_COLOUR && (p->flags & (OR_PROFILE | OR_FUNCTION)))
         return "gr.triple|string|gr.texture|function";
+    if (p->kind == KIND_NUMBERS && (p->flags & OR_FILE))
+        return "number|number[]|string|gr.texture|function";
     if (p->kind == KIND_IMAGE && (p->flags & OR_TEXTURE))
         return "string|gr.texture|function";
     if (p->kind == KIND_IMAGE && (p->flags & OR_SKY))

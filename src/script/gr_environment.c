@@ -212,75 +212,6 @@ static bool gr_sun_light(struct script_context *context, const struct script_val
     return gr_directional_light(context, distant, result, error);
 }
 
-/* Media. */
-
-enum {
-    MEDIUM_ABSORPTION,
-    MEDIUM_SCATTERING,
-    MEDIUM_ALBEDO,
-    MEDIUM_DISTANCE,
-    MEDIUM_EMISSION,
-    MEDIUM_G,
-    MEDIUM_PHASE,
-};
-static const struct script_parameter medium_parameters[] = {
-    [MEDIUM_ABSORPTION] = {"absorption", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                           "Light absorbed, per unit of length."},
-    [MEDIUM_SCATTERING] = {"scattering", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                           "Light scattered, per unit of length."},
-    [MEDIUM_ALBEDO] = {"albedo", KIND_COLOUR, OPTIONAL, IN_RANGE(0, 1), NULL, "{1, 1, 1}",
-                       "With distance, instead of absorption and scattering: the share that is scattered."},
-    [MEDIUM_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
-                         "The mean free path: what light travels between two events, on average."},
-    [MEDIUM_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                         "Light that the medium adds, per unit of length."},
-    [MEDIUM_G] = {"g", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",
-                  "Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward."},
-    [MEDIUM_PHASE] = {"phase", KIND_CHOICE, OPTIONAL, 0, 0, "rayleigh", NULL, NULL,
-                      "Rayleigh's phase function, of very small particles, instead of g."},
-};
-
-/* The material of solids that it fills: their surface is a hole everywhere. */
-static struct material *keep_medium(struct script_context *context, const struct medium *medium, struct error *error) {
-    struct arena *arena = &context->scene.arena;
-    struct material *material = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
-    struct medium *kept = arena_alloc(arena, sizeof *kept);
-    if (!material || !kept) {
-        error_no_memory(error, "a medium");
-        return NULL;
-    }
-    *kept = *medium;
-    material->medium = kept;
-    material->inputs[INPUT_OPACITY] = texture_keep(arena, texture_number(0), error);
-    return material->inputs[INPUT_OPACITY] ? material : NULL;
-}
-
-static bool gr_medium(struct script_context *context, const struct script_value *args, struct script_result *result,
-                      struct error *error) {
-    bool by_distance = args[MEDIUM_ALBEDO].given || args[MEDIUM_DISTANCE].given;
-    if (by_distance && (args[MEDIUM_ABSORPTION].given || args[MEDIUM_SCATTERING].given))
-        return error_set(error, ERROR_SCENE, "give absorption and scattering, or albedo and distance, not both");
-    if (args[MEDIUM_PHASE].given && args[MEDIUM_G].given)
-        return error_set(error, ERROR_SCENE, "phase = 'rayleigh' has no g; give one of them");
-    struct medium_input in = {.absorption = args[MEDIUM_ABSORPTION].colour,
-                              .scattering = args[MEDIUM_SCATTERING].colour,
-                              .emission = args[MEDIUM_EMISSION].colour,
-                              .phase = {PHASE_HENYEY_GREENSTEIN, args[MEDIUM_G].number}};
-    if (args[MEDIUM_PHASE].given)
-        in.phase = (struct phase){PHASE_RAYLEIGH, 0};
-    if (by_distance) {
-        double events = args[MEDIUM_DISTANCE].given ? 1 / args[MEDIUM_DISTANCE].number : 1;
-        in.scattering = colour_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].colour : colour_all(1), events);
-        in.absorption = colour_sub(colour_all(events), in.scattering);
-    }
-    struct medium medium = medium_scattering(&in);
-    medium.fills = true;
-    if (!colour_finite(medium.extinction))
-        return error_set(error, ERROR_SCENE, "absorption and scattering are too large together");
-    result->pointer = keep_medium(context, &medium, error);
-    return result->pointer;
-}
-
 /* Fogs. */
 
 static bool give_fog(struct script_context *context, struct fog *fog, const struct script_value *args,
@@ -454,8 +385,6 @@ static const struct script_function environment_rows[] = {
     GR("clear_sky", clear_sky_parameters, RESULT_SKY, gr_clear_sky,
        "The clear sky model of Preetham, Shirley and Smits (1999).", "sun turbidity?"),
 
-    GR("medium", medium_parameters, RESULT_MEDIUM, gr_medium,
-       "A medium that absorbs, scatters and emits light, the same everywhere.", "scattering absorption?"),
     GR("uniform_fog", fog_parameters, RESULT_FOG, gr_fog, "Fog of constant density.", "density colour?"),
     GR("linear_fog", linear_fog_parameters, RESULT_FOG, gr_linear_fog,
        "Fog whose transmittance falls linearly with distance.", "near far colour?"),

@@ -82,7 +82,8 @@ enum {
     PHONG_ABSORPTION,
     PHONG_OPACITY,
     PHONG_METALNESS,
-    PHONG_BUMP
+    PHONG_BUMP,
+    PHONG_GLASS
 };
 #define KD ROW("kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Diffuse and ambient colour.")
 #define KS                                                                                                             \
@@ -111,7 +112,8 @@ enum {
     [PHONG_METALNESS] = ROW("metalness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",                \
                             "Fraction of kd that replaces ks."),                                                       \
     [PHONG_BUMP] = ROW("bump", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",                                   \
-                       "Heights: a result of gr.bump, a file or a texture.")
+                       "Heights: a result of gr.bump, a file or a texture."),                                          \
+    [PHONG_GLASS] = GLASS_FIELD
 
 static const struct script_parameter material_parameters[] = {
     [PHONG_KD] = KD,
@@ -185,6 +187,10 @@ static bool with_textures(struct script_context *context, struct material *m, co
 }
 
 static struct material *phong(struct script_context *context, const struct script_value *args, struct error *error) {
+    if (args[PHONG_GLASS].given && args[PHONG_IOR].given) {
+        error_set(error, ERROR_SCENE, "glass has an index of its own: ior is not needed");
+        return NULL;
+    }
     struct material *m = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
     if (!m)
         return NULL;
@@ -195,6 +201,11 @@ static struct material *phong(struct script_context *context, const struct scrip
     m->phong.refract = args[PHONG_REFRACT].number;
     m->phong.has_ior = args[PHONG_IOR].given;
     m->phong.ior = args[PHONG_IOR].given ? args[PHONG_IOR].number : 1;
+    if (args[PHONG_GLASS].given) {
+        m->phong.dispersion = (struct dispersion){1, gr_glass_of(&args[PHONG_GLASS])};
+        m->phong.has_ior = true;
+        m->phong.ior = glass_ior(m->phong.dispersion.glass);
+    }
     m->phong.two_sided = args[PHONG_TWO_SIDED].boolean;
     static const enum material_highlight highlights[] = {HIGHLIGHTS(LIST_MEMBER)};
     if (args[PHONG_HIGHLIGHT].given)
@@ -211,7 +222,7 @@ static bool gr_material(struct script_context *context, const struct script_valu
                         struct error *error) {
     context_warn_of_bytes(context, "kd", args[PHONG_KD].colour);
     context_warn_of_bytes(context, "ks", args[PHONG_KS].colour);
-    if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
+    if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given && !args[PHONG_GLASS].given)
         return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));
 }

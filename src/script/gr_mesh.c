@@ -297,7 +297,7 @@ static bool gr_mesh(struct script_context *context, const struct script_value *a
     const char *name = args[MESH_NAME].given ? args[MESH_NAME].text : "mesh";
     enum node_cull cull = (enum node_cull)args[MESH_CULL].choice;
     const struct material *material;
-    if (!choose_material(&args[MESH_MATERIAL], &args[MESH_MEDIUM], &material, error))
+    if (!choose_material(context, &args[MESH_MATERIAL], &args[MESH_MEDIUM], &material, error))
         return false;
     if (from_file) {
         /* A file: its nodes, with materials for its parts. */

@@ -147,7 +147,7 @@ static const struct script_parameter sphere_parameters[] = {
 static bool gr_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SHAPE_NAME], "sphere"), error);
-    if (!node || !set_shape_fields(args, node, error))
+    if (!node || !set_shape_fields(context, args, node, error))
         return false;
     node->shape.kind = SHAPE_SPHERE;
     node->shape.sphere.centre = args[SPHERE_CENTRE].vector;
@@ -167,7 +167,7 @@ static const struct script_parameter cube_parameters[] = {
 static bool gr_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SHAPE_NAME], "cube"), error);
-    if (!node || !set_shape_fields(args, node, error))
+    if (!node || !set_shape_fields(context, args, node, error))
         return false;
     struct vec3 corner = args[CUBE_CORNER].vector, size = args[CUBE_SIZE].given ? args[CUBE_SIZE].vector : vec3_all(1);
     struct vec3 other = vec3_add(corner, size);

@@ -52,6 +52,7 @@ enum {
     GEOMETRY_TANGENT,
     GEOMETRY_COAT_NORMAL,
     GEOMETRY_COAT_TANGENT,
+    OPENPBR_GLASS,
     OPENPBR_GLOSSY_SAMPLES,
     OPENPBR_CLASSIC,
 };
@@ -63,8 +64,11 @@ enum {
     { name, KIND_COLOUR, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, otherwise, help }
 #define INDEX(name, otherwise, help)                                                                                   \
     { name, KIND_NUMBER, OPTIONAL | OR_TEXTURE | LOW_OPEN, ABOVE(0), NULL, otherwise, help }
-#define LATER(name, kind, otherwise)                                                                                   \
-    { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not implemented." }
+#define MEAN_COSINE(name)                                                                                              \
+    {                                                                                                                  \
+        name, KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",                                \
+            "Mean cosine of that scattering."                                                                          \
+    }
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
@@ -100,17 +104,20 @@ static const struct script_parameter openpbr_parameters[] = {
         {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
          "Distance inside the solid after which white light has transmission_color; 0: at the surface."},
     [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                              "Scattering inside the solid. Not implemented: must be black."},
-    [TRANSMISSION_SCATTER_ANISOTROPY] = {"transmission_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1),
-                                         NULL, "0", "No effect, because transmission_scatter is black."},
-    [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
-    [TRANSMISSION_DISPERSION_ABBE] = LATER("transmission_dispersion_abbe_number", KIND_NUMBER, "20"),
-    [SUBSURFACE_WEIGHT] = LATER("subsurface_weight", KIND_NUMBER, "0"),
-    [SUBSURFACE_COLOUR] = LATER("subsurface_color", KIND_COLOUR, "{0.8, 0.8, 0.8}"),
-    [SUBSURFACE_RADIUS] = LATER("subsurface_radius", KIND_NUMBER, "1"),
-    [SUBSURFACE_RADIUS_SCALE] = LATER("subsurface_radius_scale", KIND_COLOUR, "{1, 0.5, 0.25}"),
-    [SUBSURFACE_SCATTER_ANISOTROPY] = {"subsurface_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1), NULL,
-                                       "0", "Not implemented."},
+                              "Scattering inside the solid along the distance transmission_depth."},
+    [TRANSMISSION_SCATTER_ANISOTROPY] = MEAN_COSINE("transmission_scatter_anisotropy"),
+    [TRANSMISSION_DISPERSION_SCALE] = {"transmission_dispersion_scale", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL,
+                                       "0; 1 with glass", "Factor of the dispersion; 0: none."},
+    [TRANSMISSION_DISPERSION_ABBE] = {"transmission_dispersion_abbe_number", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0),
+                                      NULL, "20", "Abbe's number of the dispersion by Cauchy's law."},
+    [SUBSURFACE_WEIGHT] =
+        SHARE("subsurface_weight", "0", "Share of the diffuse base whose light is scattered under the surface."),
+    [SUBSURFACE_COLOUR] = TINT("subsurface_color", "{0.8, 0.8, 0.8}", "The colour that a large solid shows by it."),
+    [SUBSURFACE_RADIUS] = {"subsurface_radius", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1",
+                           "Mean free path under the surface; 0 is Lambert's diffuse light."},
+    [SUBSURFACE_RADIUS_SCALE] = {"subsurface_radius_scale", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{1, 0.5, 0.25}",
+                                 "Factors of subsurface_radius by channel."},
+    [SUBSURFACE_SCATTER_ANISOTROPY] = MEAN_COSINE("subsurface_scatter_anisotropy"),
     [COAT_WEIGHT] = SHARE("coat_weight", "0", "Share of the surface with a clear coat."),
     [COAT_COLOUR] = TINT("coat_color", "{1, 1, 1}", "Colour of light that passed the coat twice."),
     [COAT_ROUGHNESS] = SHARE("coat_roughness", "0", "Roughness of the coat; 0 is polished."),
@@ -124,18 +131,22 @@ static const struct script_parameter openpbr_parameters[] = {
     [EMISSION_LUMINANCE] = {"emission_luminance", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0",
                             "Emitted light, below coat and fuzz; 1 means radiance 1."},
     [EMISSION_COLOUR] = TINT("emission_color", "{1, 1, 1}", "Its colour."),
-    [THIN_FILM_WEIGHT] = LATER("thin_film_weight", KIND_NUMBER, "0"),
-    [THIN_FILM_THICKNESS] = LATER("thin_film_thickness", KIND_NUMBER, "0.5"),
-    [THIN_FILM_IOR] = LATER("thin_film_ior", KIND_NUMBER, "1.4"),
+    [THIN_FILM_WEIGHT] =
+        SHARE("thin_film_weight", "0", "Share of the base with a film that shows colours of interference."),
+    [THIN_FILM_THICKNESS] = {"thin_film_thickness", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0.5",
+                             "Its thickness in micrometres; 0: no film."},
+    [THIN_FILM_IOR] = {"thin_film_ior", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1.4",
+                       "Its index of refraction."},
     [GEOMETRY_OPACITY] = SHARE("geometry_opacity", "1", "Opacity of the surface; below 1 it has holes."),
     [GEOMETRY_THIN_WALLED] = {"geometry_thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
                               "Whether the surface is a wall without thickness: nothing is inside."},
     [GEOMETRY_NORMAL] = {"geometry_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
     [GEOMETRY_TANGENT] = {"geometry_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
-    [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",
-                              "Not implemented."},
+    [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "that of the base",
+                              "The same for the coat."},
     [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
                                "The same for the coat."},
+    [OPENPBR_GLASS] = GLASS_FIELD,
     [OPENPBR_GLOSSY_SAMPLES] = SAMPLES,
     [OPENPBR_CLASSIC] = CLASSIC,
 };
@@ -146,25 +157,6 @@ static double number_or(const struct script_value *value, double otherwise) {
 
 static struct colour colour_or(const struct script_value *value, struct colour otherwise) {
     return value->given ? value->colour : otherwise;
-}
-
-/* What the specification has and gray has not. */
-static bool is_there(const struct script_value *args, struct error *error) {
-    static const struct {
-        int parameter;
-        bool colour;
-    } later[] = {{THIN_FILM_WEIGHT, false},
-                 {SUBSURFACE_WEIGHT, false},
-                 {TRANSMISSION_DISPERSION_SCALE, false},
-                 {TRANSMISSION_SCATTER, true},
-                 {GEOMETRY_COAT_NORMAL, false}};
-    for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
-        const struct script_value *value = &args[later[i].parameter];
-        bool used = later[i].colour ? colour_max_abs(value->colour) > 0 : value->number != 0;
-        if (value->given && (used || later[i].parameter == GEOMETRY_COAT_NORMAL))
-            return error_set(error, ERROR_SCENE, "%s is not implemented", openpbr_parameters[later[i].parameter].name);
-    }
-    return true;
 }
 
 /* A material whose numbers are those of the specification. */
@@ -241,6 +233,9 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {SPECULAR_IOR, INPUT_SPECULAR_IOR, false},
                 {TRANSMISSION_WEIGHT, INPUT_REFRACT, true},
                 {TRANSMISSION_COLOUR, INPUT_TRANSMISSION_COLOUR, false},
+                {SUBSURFACE_WEIGHT, INPUT_SUBSURFACE_WEIGHT, true},
+                {SUBSURFACE_COLOUR, INPUT_SUBSURFACE_COLOUR, false},
+                {SUBSURFACE_RADIUS, INPUT_SUBSURFACE_RADIUS, false},
                 {COAT_WEIGHT, INPUT_COAT_WEIGHT, true},
                 {COAT_COLOUR, INPUT_COAT_COLOUR, false},
                 {COAT_ROUGHNESS, INPUT_COAT_ROUGHNESS, true},
@@ -250,6 +245,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {FUZZ_WEIGHT, INPUT_FUZZ_WEIGHT, true},
                 {FUZZ_COLOUR, INPUT_FUZZ_COLOUR, false},
                 {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
+                {THIN_FILM_WEIGHT, INPUT_FILM_WEIGHT, true},
+                {THIN_FILM_THICKNESS, INPUT_FILM_THICKNESS, false},
                 {EMISSION_COLOUR, INPUT_EMISSION, false},
                 {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
     /* A texture of each input. */
@@ -267,8 +264,8 @@ static bool with_textures(struct script_context *context, struct material *m, co
 }
 
 /* A picture alone is a normal map. */
-static bool with_normal(struct script_context *context, struct material *m, const struct script_value *value,
-                        struct error *error) {
+static bool with_normal(struct script_context *context, struct material *m, bool of_coat,
+                        const struct script_value *value, struct error *error) {
     if (!value->given)
         return true;
     const struct bump *given = read_bump_values(context, value, error);
@@ -280,6 +277,7 @@ static bool with_normal(struct script_context *context, struct material *m, cons
         bump.height = 1;
         bump.relative = false;
     }
+    bump.of_coat = of_coat;
     return material_add_bump(m, &bump, &context->scene.arena, error);
 }
 
@@ -303,7 +301,15 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->specular_weight = number_or(&args[SPECULAR_WEIGHT], out->specular_weight);
     out->specular_anisotropy = args[SPECULAR_ANISOTROPY].number;
     out->specular_ior = number_or(&args[SPECULAR_IOR], out->specular_ior);
+    if (args[OPENPBR_GLASS].given)
+        out->specular_ior = glass_ior(gr_glass_of(&args[OPENPBR_GLASS]));
     out->transmission_colour = colour_or(&args[TRANSMISSION_COLOUR], out->transmission_colour);
+    out->transmission_anisotropy = args[TRANSMISSION_SCATTER_ANISOTROPY].number;
+    out->subsurface_weight = args[SUBSURFACE_WEIGHT].number;
+    out->subsurface_colour = colour_or(&args[SUBSURFACE_COLOUR], out->subsurface_colour);
+    out->subsurface_radius = number_or(&args[SUBSURFACE_RADIUS], out->subsurface_radius);
+    out->subsurface_radius_scale = colour_or(&args[SUBSURFACE_RADIUS_SCALE], out->subsurface_radius_scale);
+    out->subsurface_anisotropy = args[SUBSURFACE_SCATTER_ANISOTROPY].number;
     out->coat_weight = args[COAT_WEIGHT].number;
     out->coat_colour = colour_or(&args[COAT_COLOUR], out->coat_colour);
     out->coat_roughness = args[COAT_ROUGHNESS].number;
@@ -313,6 +319,9 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     out->fuzz_weight = args[FUZZ_WEIGHT].number;
     out->fuzz_colour = colour_or(&args[FUZZ_COLOUR], out->fuzz_colour);
     out->fuzz_roughness = number_or(&args[FUZZ_ROUGHNESS], out->fuzz_roughness);
+    out->film_weight = args[THIN_FILM_WEIGHT].number;
+    out->film_thickness = number_or(&args[THIN_FILM_THICKNESS], out->film_thickness);
+    out->film_ior = number_or(&args[THIN_FILM_IOR], out->film_ior);
     out->classic = args[OPENPBR_CLASSIC].boolean;
     out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
     out->tangent = args[GEOMETRY_TANGENT].vector;
@@ -327,14 +336,23 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
     phong->has_ior = phong->refract > 0 && !out->thin_walled;
     phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
-    /* With a depth, the colour is that of light after this length. */
+    const struct script_value *scale = &args[TRANSMISSION_DISPERSION_SCALE];
+    phong->dispersion.glass = gr_glass_of(&args[OPENPBR_GLASS]);
+    phong->dispersion.amount = phong->dispersion.glass > 0
+                                   ? number_or(scale, 1)
+                                   : scale->number / number_or(&args[TRANSMISSION_DISPERSION_ABBE], 20);
+    /* With a depth, the colour is that of light after this length: its extinction. Where scattering alone is more,
+     * gray absorption is added. */
     double depth = args[TRANSMISSION_DEPTH].number;
     struct colour colour = out->transmission_colour;
     if (!(depth > 0) || !phong->has_ior)
         return;
     out->deep = true;
-    phong->absorption =
+    out->transmission_scattering = colour_scale(args[TRANSMISSION_SCATTER].colour, 1 / depth);
+    struct colour extinction =
         colour_make(absorption(colour.r, depth), absorption(colour.g, depth), absorption(colour.b, depth));
+    struct colour rest = colour_sub(extinction, out->transmission_scattering);
+    phong->absorption = colour_sub(rest, colour_all(fmin(fmin(fmin(rest.r, rest.g), rest.b), 0)));
 }
 
 static bool openpbr(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -342,8 +360,10 @@ static bool openpbr(struct script_context *context, const struct script_value *a
     struct openpbr *numbers;
     if (args[TRANSMISSION_DEPTH].number > 0 && args[TRANSMISSION_COLOUR].texture)
         return error_set(error, ERROR_SCENE, "transmission_color must be a colour where transmission_depth is above 0");
-    if (!is_there(args, error) ||
-        !tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
+    if (args[OPENPBR_GLASS].given && (args[SPECULAR_IOR].given || args[TRANSMISSION_DISPERSION_ABBE].given))
+        return error_set(error, ERROR_SCENE, "glass has an index and a dispersion of its own: %s is not needed",
+                         args[SPECULAR_IOR].given ? "specular_ior" : "transmission_dispersion_abbe_number");
+    if (!tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
         !tangent_is_fine(&openpbr_parameters[GEOMETRY_COAT_TANGENT], &args[GEOMETRY_COAT_TANGENT], error))
         return false;
     struct material *m = layered(context, &numbers, error);
@@ -351,7 +371,8 @@ static bool openpbr(struct script_context *context, const struct script_value *a
         return false;
     set_numbers(args, numbers, &m->phong);
     result->pointer = m;
-    return with_textures(context, m, args, error) && with_normal(context, m, &args[GEOMETRY_NORMAL], error);
+    return with_textures(context, m, args, error) && with_normal(context, m, false, &args[GEOMETRY_NORMAL], error) &&
+           with_normal(context, m, true, &args[GEOMETRY_COAT_NORMAL], error);
 }
 
 #define METAL_WORD(name, ...) " " name
@@ -401,7 +422,7 @@ static bool metal(struct script_context *context, const struct script_value *arg
     result->pointer = m;
     return with_texture(context, m, INPUT_ROUGHNESS, true, &args[METAL_ROUGHNESS], error) &&
            with_texture(context, m, INPUT_SPECULAR_ANISOTROPY, true, &args[METAL_ANISOTROPY], error) &&
-           with_normal(context, m, &args[METAL_NORMAL], error);
+           with_normal(context, m, false, &args[METAL_NORMAL], error);
 }
 
 static const struct script_function rows[] = {

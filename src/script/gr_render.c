@@ -603,7 +603,8 @@ static bool gr_render(struct script_context *context, const struct script_value 
     }
     if (fog && args[RENDER_MEDIUM].given)
         return error_set(error, ERROR_SCENE, "fog and medium are both around the solids; give one of them");
-    request.outside = args[RENDER_MEDIUM].given ? *args[RENDER_MEDIUM].material->medium : medium_outside(fog);
+    request.outside =
+        args[RENDER_MEDIUM].given ? medium_without_solid(args[RENDER_MEDIUM].material->medium) : medium_outside(fog);
     /* Functions, lens, motion, sky and light. */
     if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||

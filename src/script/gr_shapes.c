@@ -21,7 +21,7 @@ static struct node *shape_node(struct script_context *context, const struct scri
                                struct error *error) {
     const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
-    return node && set_shape_fields(args, node, error) ? node : NULL;
+    return node && set_shape_fields(context, args, node, error) ? node : NULL;
 }
 
 static bool give_shape(struct node *node, const struct shape *shape, struct script_result *result) {

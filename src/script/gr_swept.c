@@ -21,7 +21,7 @@ static bool give_node(struct script_context *context, const struct script_value 
                       const struct shape *shape, struct script_result *result, struct error *error) {
     const struct script_value *name = &args[SHAPE_NAME];
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, name->given ? name->text : otherwise, error);
-    if (!node || !set_shape_fields(args, node, error))
+    if (!node || !set_shape_fields(context, args, node, error))
         return false;
     node->shape = *shape;
     result->pointer = node;

@@ -6,6 +6,7 @@
 #include "call/arguments.h"
 #include "call/context.h"
 #include "material/metals.h"
+#include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
 #include "script/script_internal.h"
 #include "settings/setting.h"
@@ -53,6 +54,7 @@ static const struct script_parameter glass_parameters[] = {
     {"ior", KIND_NUMBER, OPTIONAL, IN_RANGE(1, 4), NULL, "1.5", "Index of refraction."},
     {"depth", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Distance inside after which light has colour."},
     {"thin", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the surface is a pane: nothing is inside."},
+    GLASS_FIELD,
 };
 #define METAL_WORD(name, ...) " " name
 static const struct script_parameter metal_parameters[] = {

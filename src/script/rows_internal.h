@@ -2,6 +2,7 @@
 #ifndef GRAY_SCRIPT_ROWS_INTERNAL_H
 #define GRAY_SCRIPT_ROWS_INTERNAL_H
 
+#include "script/gr_medium_internal.h"
 #include "script/table_internal.h"
 
 #include <math.h>
@@ -34,7 +35,10 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_MEDIUM, SHAPE_FIRST 
 #define THIN_WALLED                                                                                                    \
     { "thin_walled", KIND_BOOLEAN, OPTIONAL | RARE, ANY, NULL, "whether it is open", THIN_WALLED_HELP }
 #define MEDIUM                                                                                                         \
-    { "medium", KIND_MEDIUM, OPTIONAL | RARE, ANY, NULL, "none", "Fills the solid, instead of a material." }
+    {                                                                                                                  \
+        "medium", KIND_MEDIUM, OPTIONAL | RARE, ANY, NULL, "none",                                                     \
+            "Fills the solid, instead of a material or behind its surface."                                            \
+    }
 #define SHAPE(otherwise)                                                                                               \
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
     [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},  \
@@ -43,15 +47,10 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_THIN_WALLED, SHAPE_MEDIUM, SHAPE_FIRST 
 static inline enum node_walls walls_of(const struct script_value *thin_walled) {
     return !thin_walled->given ? WALLS_BY_SHAPE : thin_walled->boolean ? WALLS_THIN : WALLS_OF_SOLID;
 }
-static inline bool choose_material(const struct script_value *material, const struct script_value *medium,
-                                   const struct material **out, struct error *error) {
-    *out = medium->given ? medium->material : material->material;
-    return !(medium->given && material->given) ||
-           error_set(error, ERROR_SCENE, "material and medium: the surface of a medium is invisible; give one of them");
-}
-static inline bool set_shape_fields(const struct script_value *args, struct node *node, struct error *error) {
+static inline bool set_shape_fields(struct script_context *context, const struct script_value *args, struct node *node,
+                                    struct error *error) {
     node->walls = walls_of(&args[SHAPE_THIN_WALLED]);
-    return choose_material(&args[SHAPE_MATERIAL], &args[SHAPE_MEDIUM], &node->material, error);
+    return choose_material(context, &args[SHAPE_MATERIAL], &args[SHAPE_MEDIUM], &node->material, error);
 }
 
 #endif

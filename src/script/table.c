@@ -10,10 +10,10 @@
 
 /* In the order of the manual. */
 static const struct function_rows *const parts[] = {
-    &node_functions,     &mesh_functions,          &solid_functions,    &shape_functions,       &swept_functions,
-    &displace_functions, &texture_functions,       &material_functions, &glyph_functions,       &layered_functions,
-    &word_functions,     &light_functions,         &change_functions,   &environment_functions, &render_functions,
-    &method_functions,   &render_method_functions, &export_functions, &frame_functions};
+    &node_functions,     &mesh_functions,    &solid_functions,         &shape_functions,       &swept_functions,
+    &displace_functions, &texture_functions, &material_functions,      &glyph_functions,       &layered_functions,
+    &word_functions,     &light_functions,   &change_functions,        &environment_functions, &medium_functions,
+    &render_functions,   &method_functions,  &render_method_functions, &export_functions,      &frame_functions};
 
 static const struct value_functions *const value_parts[] = {&vector_functions, &display_colour_functions,
                                                             &key_functions, &symbol_functions};

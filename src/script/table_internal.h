@@ -8,8 +8,8 @@
 /* The rows of the files gr_....c: beside the functions. */
 extern const struct function_rows node_functions, mesh_functions, solid_functions, shape_functions, swept_functions,
     displace_functions, texture_functions, material_functions, glyph_functions, layered_functions, light_functions,
-    change_functions, environment_functions, render_functions, method_functions, render_method_functions,
-    export_functions, frame_functions, word_functions;
+    change_functions, environment_functions, medium_functions, render_functions, method_functions,
+    render_method_functions, export_functions, frame_functions, word_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */

@@ -294,7 +294,7 @@ static const char *needed_value(const struct setting *option, char room[128]) {
     case SETTING_LAYERS:
         return "names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, lights, and with "
                "--integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, specular_direct, "
-               "specular_indirect, transmission_direct, transmission_indirect) or all";
+               "specular_indirect, transmission_direct, transmission_indirect, volume_direct, volume_indirect) or all";
     case SETTING_TEXT:
         return "a text";
     case SETTING_SIZE:

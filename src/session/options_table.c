@@ -172,9 +172,8 @@ static const struct setting options_table[] = {
      0, 1e9, "60",
      "With --mpi: regard a process that sends nothing for this long as lost; others render its tiles; 0: never."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "-gui", NULL, "", NULL, FIELD(window), 0, 0, 0, NULL,
-     "Show the picture in a window during rendering and fly through the scene: R renders, S saves the view, V saves "
-     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits; in animations, K "
-     "plays and pauses, H and J go to the previous and the next frame, O turns the loop on or off."},
+     "Show the picture in a window during rendering, walk through the scene and edit it; F1 lists the keys. Files are "
+     "watched as with --watch. Without a script the window shows recent files and the demos."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "--watch", NULL, "", NULL, FIELD(watch), 0, 0, 0, NULL,
      "Run the scripts again when a script, or a file that it reads, changes; Ctrl-C ends gray."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "-q|quiet", NULL, "", NULL, FIELD(quiet), 0, 0, 0, NULL,

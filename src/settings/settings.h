@@ -195,7 +195,9 @@ enum { EXPOSURE_MAX = 100, EXPOSURES(LIST_MEMBER) }; /* of 101: until the light 
     X(AOV_SPECULAR_DIRECT, "specular_direct", "RGB")                                                                   \
     X(AOV_SPECULAR_INDIRECT, "specular_indirect", "RGB")                                                               \
     X(AOV_TRANSMISSION_DIRECT, "transmission_direct", "RGB")                                                           \
-    X(AOV_TRANSMISSION_INDIRECT, "transmission_indirect", "RGB")
+    X(AOV_TRANSMISSION_INDIRECT, "transmission_indirect", "RGB")                                                       \
+    X(AOV_VOLUME_DIRECT, "volume_direct", "RGB")                                                                       \
+    X(AOV_VOLUME_INDIRECT, "volume_indirect", "RGB")
 enum aov { AOVS(LIST_MEMBER) };
 enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_ALL ((UINT32_C(1) << AOV_COUNT) - 1)
@@ -206,7 +208,7 @@ enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_NAMES AOVS(AOV_NAME_IN_LIST)
 
 /* Part of the keys of tile files: grows when a row is added, removed or moved, or its values change their meaning. */
-enum { SETTINGS_VERSION = 4 };
+enum { SETTINGS_VERSION = 5 };
 
 /* What a setting changes: the samples of a picture; the finished picture, which is made of the samples; or only how it
  * is made. */
@@ -275,6 +277,9 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
       EFFECT_WHITTED)                                                                                                  \
     X(WHOLE, int, area_samples, SAMPLES, 4, 1, 64, NO_WORDS, "-al-samples|alsamples", "N", NULL, "area_samples", NULL, \
       RAYS, "N x N shadow rays for each area light.", EFFECT_WHITTED)                                                  \
+    X(WHOLE, int, medium_samples, SAMPLES, 16, 1, 4096, NO_WORDS, "--medium-samples", "N", NULL, "medium_samples",     \
+      NULL, RAYS, "N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.",     \
+      EFFECT_WHITTED)                                                                                                  \
     X(NUMBER, double, cutoff, SAMPLES, 0.0001, 0, 1, NO_WORDS, "--cutoff", "X", NULL, "cutoff", NULL, RAYS,            \
       "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.",                \
       EFFECT_WHITTED)                                                                                                  \

@@ -10,20 +10,21 @@
 #include <string.h>
 
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
-static const double pass_goal = 0.033;
+static const double pass_goal = 1 / 30.0, margin = 1.02;
 
 static bool is_different(double a, double b) {
     return a < b || a > b;
 }
 
 static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
-    return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera)
-                                                             : viewer->request.camera,
-                              .exposure = viewer->request.settings.tone.exposure,
-                              .divide = divide,
-                              .plain = plain,
-                              .headlight = plain && viewer_has_widgets(viewer) && !viewer_plays(viewer),
-                              .own = !viewer->camera_moved};
+    return (struct pass_view){
+        .camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera) : viewer->request.camera,
+        .exposure = viewer->request.settings.tone.exposure,
+        .divide = divide,
+        .plain = plain,
+        .headlight = plain && (!viewer_plays(viewer) || viewer->window.mode.previews || viewer_shows_denoised(viewer)),
+        .shows = viewer->window.mode.shows,
+        .own = !viewer->camera_moved};
 }
 
 /* The scripts ran again: a moved camera and the edits are kept. */
@@ -56,8 +57,7 @@ static void close_window(struct viewer *viewer) {
     mem_free(viewer->window.drawn);
     viewer_destroy_overlay(viewer);
     viewer_destroy_large(viewer);
-    mem_free(viewer->window.panel.canvas.rgba);
-    viewer->window.image = viewer->window.drawn = viewer->window.panel.canvas.rgba = NULL;
+    viewer->window.image = viewer->window.drawn = NULL;
     viewer->window.light = NULL;
     viewer->window.layout = (struct window_layout){0};
     viewer->window.open = false;
@@ -84,17 +84,16 @@ static bool fit_images(struct viewer *viewer, struct error *error) {
         close_window(viewer);
         return false;
     }
-    viewer->display.fits_window = viewer->window.dirty = true;
-    if (!viewer_resize(viewer, layout.width, layout.height, layout.density))
-        viewer_show_message(viewer, "gray: out of memory for a window of this size");
+    viewer->window.dirty = true;
+    viewer_resize(viewer, layout.width, layout.height, layout.density);
     return true;
 }
 
-static bool open_window(struct viewer *viewer, const char *title, struct error *error) {
+static bool open_window(struct viewer *viewer, struct error *error) {
     if (!make_images(viewer, error))
         return false;
-    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, viewer->request.width,
-                                                      viewer->request.height, title, error);
+    viewer->window.driver->state->has_scene = true;
+    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, error);
     return viewer->window.open;
 }
 
@@ -108,7 +107,7 @@ bool viewer_open(struct viewer *viewer, const struct window_driver *driver, cons
     (void)snprintf(viewer->request.file, sizeof viewer->request.file, "%s", title);
     viewer->display.tiles = 1;
     fly_camera_begin(&viewer->fly_camera, &camera, &unknown);
-    return open_window(viewer, title, error);
+    return open_window(viewer, error);
 }
 
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
@@ -128,7 +127,8 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
                               .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
-                              .stepped = now};
+                              .stepped = now,
+                              .begun = now};
     viewer->window.driver = driver;
     viewer->window.large.shown = false;
     viewer->window.large.refused_width = 0;
@@ -142,7 +142,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         forget_work(&before);
     viewer_player_begin(viewer, &before);
     resized = resized || viewer->display.tiles != before.display.tiles; /* before: maybe a window without picture */
-    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
+    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, error))
         return false;
     memset(viewer->window.drawn, 0, viewer->display.tiles);
     return true;
@@ -171,6 +171,13 @@ bool viewer_has_tiles(const struct viewer *viewer) {
     const struct viewer_pass *pass = &viewer->pass;
     return viewer->block && pass->view.own && !pass->view.plain && pass->view.divide == 1 && pass->view.samples == 0 &&
            pass->view.width == 0 && !pass->edited;
+}
+
+bool viewer_delays_change(struct viewer *viewer, double now) {
+    static const double long_time = 30; /* seconds */
+    double end = viewer->finished > 0 ? viewer->finished : now;
+    viewer->window.changed = viewer->window.open && viewer->begun > 0 && end - viewer->begun > long_time;
+    return viewer->window.changed;
 }
 
 void viewer_keep(struct viewer *viewer) {
@@ -229,9 +236,61 @@ bool viewer_is_enlarging(const struct viewer *viewer) {
     return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
+void viewer_choose_mode(struct viewer *viewer, struct view_mode mode) {
+    viewer->window.mode = mode;
+    viewer_outdate(viewer);
+    viewer_halt(viewer, false);
+}
+
+void viewer_outdate(struct viewer *viewer) {
+    const double pause = 0.3; /* seconds; between two movements */
+    struct viewer_motion *motion = &viewer->motion;
+    if (motion->began <= 0 || viewer->stepped - motion->last > pause)
+        *motion = (struct viewer_motion){.began = viewer->stepped};
+    motion->last = viewer->stepped;
+    viewer->pass.outdated = true;
+}
+
+/* Counts the pictures of a movement; at the end reports how soon they came, and the first denoised one. */
+static void note_motion(struct viewer *viewer, double now) {
+    struct viewer_motion *motion = &viewer->motion;
+    const struct pass_view *view = &viewer->pass.view;
+    if (motion->began <= 0 || viewer->pass.began < motion->began)
+        return;
+    motion->first_shown = motion->first_shown > 0 ? motion->first_shown : now;
+    if (viewer->pass.began < motion->last + pass_goal) {
+        motion->pictures++;
+        motion->divide = view->divide;
+    }
+    if (view->headlight && view->divide == 1)
+        (void)snprintf(
+            viewer->note, sizeof viewer->note,
+            "%.40s: %u pictures in %.2f s, at 1/%u, the first after %.0f ms, all pixels %.0f ms after the last",
+            viewer->request.file, motion->pictures, motion->last - motion->began, motion->divide,
+            1000 * (motion->first_shown - motion->began), 1000 * (now - motion->last));
+    if (view->headlight)
+        return;
+    (void)snprintf(viewer->note, sizeof viewer->note, "%.40s: the integrator after %.0f ms, at 1/%u",
+                   viewer->request.file, 1000 * (now - motion->last), view->divide);
+    motion->began = 0;
+}
+
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds) {
+    uint32_t divide = viewer->pass.divide;
+    if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
+        return;
+    double needed = fmin(divide * sqrt((now - viewer->pass.began) / seconds), 1.5 * divide);
+    if (needed > divide)
+        divide = needed < DIVIDE_LIMIT ? (uint32_t)ceil(needed) : DIVIDE_LIMIT;
+    else if (ceil(margin * needed) < divide)
+        divide = (uint32_t)fmax(1, ceil(margin * needed));
+    viewer->pass.divide = divide;
+}
+
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
     bool known = viewer->pass.report.threads > 0;
-    bool few = viewer->pass.view.plain || viewer->pass.view.samples > 0;
+    bool last = viewer->window.mode.previews && viewer->pass.view.headlight && viewer->pass.view.divide == 1;
+    bool few = (viewer->pass.view.plain && !last) || viewer->pass.view.samples > 0;
     viewer->pass.result = report->stopped ? RESULT_STOPPED : few ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
@@ -246,10 +305,9 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         return;
     }
     viewer_draw_tiles(viewer);
-    /* Passes that take no time do not help to choose divide. */
-    double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
-    if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
-        viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
+    note_motion(viewer, now);
+    if (known)
+        viewer_fit_resolution(viewer, now, pass_goal);
 }
 
 void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
@@ -267,8 +325,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer->built = reply->built;
         viewer->scene = *reply;
         viewer->nodes.count = 0;
-        if (viewer_has_widgets(viewer))
-            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
+        viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PASS:
@@ -288,6 +345,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
+        if (viewer->command.change.kind == CHANGE_ADD || viewer->command.change.kind == CHANGE_ADD_LIGHT)
+            viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
         if (!reply->unbuilt || reply->light_count > 0)
             viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
@@ -299,7 +358,8 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_lights(viewer, reply);
         return;
     case REPLY_NODES:
-        viewer->window.driver->nodes(viewer->window.driver->context, &viewer->command.node, &reply->nodes);
+        viewer->rows = reply->nodes;
+        viewer_receive_nodes(viewer, &viewer->command.node, &viewer->rows);
         return;
     case REPLY_PIXEL_TRACE:
         return;
@@ -318,8 +378,6 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     if (!resume) {
         viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
-        viewer->pass.view.samples = viewer->pass.draft_samples;
-        viewer->pass.draft_samples = 0;
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
                               is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
@@ -327,6 +385,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
         if (viewer->pass.film.marked)
             memset(viewer->pass.film.marked, 0, (size_t)viewer->pass.film.width * viewer->pass.film.height);
     }
+    viewer->pass.view.kept = 0;
     for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++) {
         if (!resume || atomic_load(&viewer->pass.film.tiles[tile]) != FILM_TILE_DONE)
             atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
@@ -381,7 +440,6 @@ static void command_nodes(struct viewer *viewer) {
 static void command_pixel_trace(struct viewer *viewer) {
     viewer->trace.requested = false;
     viewer->trace.text[0] = '\0';
-    viewer->trace.line = 0;
     viewer->command = (struct preview_command){.kind = COMMAND_PIXEL_TRACE,
                                                .view = current_view(viewer, 1, false),
                                                .x = viewer->trace.x,
@@ -394,32 +452,30 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
-/* Between the preview and the picture of a progressive integrator: few samples, denoised, since many take long. */
-static const struct { uint32_t divide, samples; } drafts[] = {{3, 4}, {2, 8}, {1, 16}};
-
-/* The draft after this pass, or that which comes first. False: the picture itself. */
-static bool begin_draft(struct viewer *viewer, double now) {
-    const struct pass_view *view = &viewer->pass.view;
-    size_t next = 0;
-    while (view->samples > 0 && next < sizeof drafts / sizeof *drafts && drafts[next].samples <= view->samples)
-        next++;
-    if (next == sizeof drafts / sizeof *drafts || !viewer_shows_denoised(viewer) ||
-        drafts[next].samples > settings_path_samples(&viewer->request.settings) / 2)
-        return false;
-    viewer->pass.draft_samples = drafts[next].samples;
-    begin_pass(viewer, drafts[next].divide, false, false, now);
-    return true;
+/* Between the preview and the picture of a progressive integrator: denoised pictures, of 4 samples at a third of the
+ * pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part of.
+ * Where the noise or the time decides, there are at most 16. */
+static void begin_finer_pass(struct viewer *viewer, double now) {
+    enum { FIRST = 4, HALF = 8, ADAPTIVE_LIMIT = 16 };
+    const struct settings *settings = &viewer->request.settings;
+    bool adapts = settings->noise > 0 || settings->time_limit > 0;
+    uint32_t done = viewer->pass.view.samples, all = settings_path_samples(settings);
+    uint32_t samples = done > 0 ? 2 * done : FIRST, divide = samples == FIRST ? 3 : samples == HALF ? 2 : 1;
+    bool last = !viewer_shows_denoised(viewer) || samples > all / 2 || (adapts && samples > ADAPTIVE_LIMIT);
+    bool keeps = done > HALF && !adapts && viewer->pass.result == RESULT_COARSE;
+    begin_pass(viewer, last ? 1 : divide, false, false, now);
+    viewer->pass.view.samples = last ? 0 : samples;
+    viewer->pass.view.kept = keeps ? done : 0;
+    viewer->command.view = viewer->pass.view;
 }
 
 bool viewer_shows_denoised(const struct viewer *viewer) {
-    return viewer_has_widgets(viewer) && (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
+    return (path_film_parts(viewer->request.record) & PATH_PART_FEATURES) != 0;
 }
 
 static enum viewer_action next_command(struct viewer *viewer, double now) {
     if (viewer_large_is_outdated(viewer) && !viewer->pass.outdated)
         viewer_drop_large(viewer);
-    bool first = viewer->pass.from_coarse && !viewer_has_widgets(viewer);
-    uint32_t divide = first ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
         viewer->edit.click_waits = viewer->trace.requested = false;
@@ -437,7 +493,7 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         return VIEWER_NOTHING;
     } else if (viewer->pass.outdated) {
         viewer->pass.from_coarse = false;
-        begin_pass(viewer, divide, true, false, now);
+        begin_pass(viewer, viewer->pass.divide, true, false, now);
     } else if (viewer->lights.known < viewer->lights.count) {
         viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights.known};
     } else if (!viewer->pass.view.plain &&
@@ -453,8 +509,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         begin_pass(viewer, viewer->pass.view.divide / 2, true, false, now);
     } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
-    } else if (!begin_draft(viewer, now)) {
-        begin_pass(viewer, 1, false, false, now);
+    } else {
+        begin_finer_pass(viewer, now);
     }
     if (viewer->command.kind != COMMAND_PASS)
         viewer->pass.state = PASS_BUSY;
@@ -493,6 +549,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit &&
+           (!viewer->window.logs_notes || viewer->note[0] == '\0') &&
            viewer->window.driver->poll(viewer->window.driver->context, &event))
         viewer_handle_event(viewer, &event);
     /* A fine pass of an outdated view is being stopped: it would show the previous view. */
@@ -508,8 +565,8 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;
-    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->pass.view.own &&
-        !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
+    if (viewer->pass.result == RESULT_COMPLETE && !viewer->pass.view.plain && viewer->pass.view.width == 0 &&
+        viewer->pass.view.own && !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
         viewer->written = true;
         if (viewer->request.settings.overlay != OVERLAY_NONE)
             overlay_lay(&viewer->pass.film, viewer->overlay.lines);

@@ -1,27 +1,19 @@
 /* A picture in a window: shows it while it is rendered, takes input, and decides what the render process does next. The
  * render process renders one pass after the other (coarse ones first, and while the camera moves), replies after each,
  * and waits for the next command. The supervisor does not wait: it draws the window from the film in its current state.
- * viewer.c decides, viewer_input.c reads keys and mouse, viewer_edit.c and viewer_lights.c change the scene,
- * viewer_player.c plays animations, viewer_draw.c, viewer_hud.c and viewer_panel.c draw. */
+ * viewer.c decides, viewer_input.c reads keys and mouse, viewer_form.c has the inputs of the inspector, viewer_edit.c
+ * and viewer_lights.c change the scene, viewer_player.c plays animations, viewer_draw.c and viewer_overlay.c draw. */
 #ifndef GRAY_VIEWER_VIEWER_H
 #define GRAY_VIEWER_VIEWER_H
 
 #include "base/file_output.h"
 #include "base/share.h"
 #include "film/film.h"
+#include "preview/preview_messages.h"
+#include "render/fly_camera.h"
+#include "scene/edits.h"
 #include "session/control.h"
-#include "viewer/edits.h"
-#include "viewer/fly_camera.h"
-#include "viewer/panel.h"
-#include "viewer/preview_messages.h"
-#include "viewer/window.h"
-
-/* An edge between a pixel that shows the selected node and one that does not: the left or the upper edge of the pixel
- * (x, y). */
-struct outline_side {
-    uint32_t x, y;
-    bool upright;
-};
+#include "window/window.h"
 
 enum viewer_action {
     VIEWER_NOTHING,
@@ -32,7 +24,8 @@ enum viewer_action {
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
-    VIEWER_RUN_AGAIN,      /* the scripts must run again, which have ended */
+    VIEWER_RUN_AGAIN,      /* the scripts must run again */
+    VIEWER_END_SCRIPTS,    /* they must end */
     VIEWER_LOG_NOTE,       /* viewer->note is a line for the log */
     VIEWER_NEXT_FRAME,     /* the same, and the animation goes to viewer_next_frame */
     VIEWER_NEXT_PICTURE,   /* this picture is finished: the script continues */
@@ -47,7 +40,7 @@ struct window_layout {
 };
 
 /* What was clicked on. */
-enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT };
+enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT, SELECTED_MATERIAL };
 struct selection {
     enum selected kind;
     struct picked picked;     /* of a node, as it was when it was picked */
@@ -83,13 +76,18 @@ struct viewer_pass {
     struct picture_report report; /* of the last pass that was finished */
     bool edited;                  /* for a changed scene */
     uint32_t divide;              /* of passes while the camera moves */
-    uint32_t draft_samples;       /* of the next pass, or 0: all */
     double began;
     bool outdated;    /* the camera is not that of `view`, or the scene was changed */
     bool from_coarse; /* the next pass is a coarse one (R) */
     bool halted;      /* by the user: no pass starts until the user does something */
     bool unbuilt;     /* the render process has no world of the current changes */
     double halted_at; /* 0: the time of the stop was reported */
+};
+
+/* A movement of the camera, for the log. */
+struct viewer_motion {
+    double began, last, first_shown; /* the first and the last change of the view, and the first picture after them */
+    uint32_t pictures, divide;       /* shown while it moved, the last one with this resolution */
 };
 
 /* Rows of the tree that the window wants; later ones are dropped, and wanted again when they come into view. */
@@ -111,49 +109,46 @@ struct viewer_edit {
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;
-    enum material_part part; /* of the material, for which the panel has sliders */
-    bool joins;              /* the next change by the mouse is part of the last one */
+    int axis;       /* that the tool is for, from 1; 0: it is free */
+    bool handle;    /* the tool ends when the button is released */
+    char typed[24]; /* the number for the tool */
+    bool joins;     /* the next change by the mouse is part of the last one */
 };
 
 /* Lights of the scene as they are reported, in parts. */
 struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
-    uint32_t room, count, known;
-    double colour_max;   /* of the sliders of a light's colour */
-    bool listed;         /* whether a list of them is shown ... */
-    uint32_t list_first; /* ... and its first light */
+    uint32_t count, known;
 };
 
 /* The trace of a pixel. */
 struct viewer_trace {
-    bool requested;   /* of the pixel x, y of the whole picture; it was not sent yet */
-    double x, y;      /* pixels of the whole picture */
-    char text[16384]; /* empty: none is shown */
-    int line;         /* the first one shown */
+    bool requested;          /* of the pixel x, y of the whole picture; it was not sent yet */
+    double x, y;             /* pixels of the whole picture */
+    char text[WINDOW_TRACE]; /* empty: none is shown */
 };
 
-/* The part of the overlay that the render process makes (viewer_overlay.c). */
+/* What is drawn over the picture (viewer_draw.c): the render process makes lines of pixels, and the outline. */
 struct viewer_overlay {
     enum overlay kind;               /* which lines are wanted */
     float (*lines)[4];               /* over the image, where has_lines; owned */
     bool has_lines;                  /* lines are visible, possibly those of another view */
     bool lines_fresh, outline_fresh; /* those of the view in full detail, or a failed request */
-    struct outline_side *sides;      /* the outline; owned */
-    uint32_t side_count, side_room;
+    struct window_line *outline;     /* in pixels of the picture; owned */
+    uint32_t outline_count;          /* 0: there is none, or it is too long */
 };
 
 /* The content of the screen, of this picture. */
 struct viewer_display {
-    size_t tiles;     /* room in window.drawn */
-    int panel_height; /* of the panel of the selection, in the last frame */
-    bool hud_dirty;   /* the drawing over the image is out of date */
+    size_t tiles;   /* room in window.drawn */
+    bool hud_dirty; /* the lines over the image, and the widgets, are out of date */
     double shown_at, figures_at;
-    bool fits_window; /* the window should get the size of the picture */
 };
 
 /* The mouse. */
 struct viewer_input {
-    bool grabbed;            /* flying: the mouse turns the camera (with widgets: while a button is held) */
+    double x, y;             /* where it is */
+    bool flies;              /* letters move the camera, and a held button turns it */
     int pressed;             /* the button that is down on the picture, or 0 */
     bool dragged, shift;     /* the mouse has moved since; shift was held */
     double press_x, press_y; /* where */
@@ -201,6 +196,12 @@ struct viewer_setting {
     double number;
 };
 
+/* What the view shows when the camera stands: the picture, or the preview of all pixels. */
+struct view_mode {
+    bool previews;
+    enum headlight_shows shows;
+};
+
 /* The window and its state: what stays from one picture to the next. */
 struct viewer_window {
     const struct window_driver *driver;
@@ -209,6 +210,8 @@ struct viewer_window {
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
+    struct view_mode mode;
+    bool changed;                  /* a file has changed that an older picture was made of */
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
@@ -217,8 +220,7 @@ struct viewer_window {
     uint8_t *drawn;                /* by tile: the state in which it is on the image, or 0; owned */
     bool dirty;                    /* the image was changed since it was shown */
     struct window_layout layout;
-    struct panel panel; /* its canvas is owned */
-    bool hides_hud;     /* nothing is drawn over the picture */
+    bool hides_lines; /* over the picture */
     struct viewer_notice notice;
     struct viewer_large large;
 };
@@ -237,12 +239,15 @@ struct viewer {
     char message[512];          /* an error, or empty */
     char note[160];             /* for the log, or empty */
     double built;               /* when the world was built; 0: already reported */
+    double begun, finished;     /* the picture; 0: not yet */
 
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
     struct viewer_pass pass;
+    struct viewer_motion motion; /* began 0: reported */
     struct viewer_edit edit;
     struct viewer_nodes nodes;
+    struct node_rows rows; /* the last ones that have come */
     struct viewer_lights lights;
     struct viewer_trace trace;
     struct viewer_overlay overlay;
@@ -255,6 +260,7 @@ struct viewer {
     struct viewer_setting setting;  /* for VIEWER_CHANGE_SETTING */
     enum viewer_action action;      /* requested by a key or a button */
     bool next, quit;                /* likewise: the next picture, the end */
+    char save_as[1024];             /* the file for an action that saves; empty: a new name */
 };
 
 /* A picture to be rendered. */
@@ -267,7 +273,7 @@ struct viewer_picture {
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
                   double now, struct error *error);
 void viewer_end(struct viewer *viewer);
-/* Opens it before the first picture, with the probable size of that picture; it shows how long the script has run. */
+/* Opens it before the first picture, with the probable size of that picture. */
 bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
                  uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */
@@ -278,6 +284,8 @@ bool viewer_has_tiles(const struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* Whether a changed file must wait until the user wants the picture to be made again: it has taken long. */
+bool viewer_delays_change(struct viewer *viewer, double now);
 /* Nothing happens before the user does something. */
 bool viewer_rests(const struct viewer *viewer);
 /* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;

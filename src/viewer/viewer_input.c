@@ -1,11 +1,26 @@
-/* Keys and the mouse. */
+/* Actions, keys and the mouse. */
 #include "viewer/viewer_internal.h"
 
+#include "light/light_edit.h"
+#include "math/elementary.h"
+#include "session/options_table.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-void viewer_change_view(struct viewer *viewer) {
-    viewer->pass.outdated = viewer->camera_moved = true;
+static void show_view(struct viewer *viewer) {
+    const struct pose *pose = &viewer->fly_camera.pose, *home = &viewer->fly_camera.home;
+    viewer_outdate(viewer);
+    viewer->camera_moved = memcmp(pose, home, sizeof *pose) != 0;
     viewer_halt(viewer, false);
+}
+
+void viewer_change_view(struct viewer *viewer) {
+    fly_camera_note(&viewer->fly_camera, viewer->stepped);
+    show_view(viewer);
 }
 
 void viewer_halt(struct viewer *viewer, bool on) {
@@ -22,224 +37,105 @@ void viewer_halt(struct viewer *viewer, bool on) {
     viewer->display.figures_at = 0;
 }
 
-void viewer_render(struct viewer *viewer) {
+/* From coarse to fine; a script that has ended runs again. */
+static void render_again(struct viewer *viewer) {
+    if (viewer->window.changed || (!viewer->block && viewer->window.waits))
+        viewer->action = VIEWER_RUN_AGAIN;
+    viewer->window.changed = false;
     if (!viewer->block)
         return;
     viewer->pass.from_coarse = viewer->pass.outdated = true;
     viewer_halt(viewer, false);
 }
 
-static void grab(struct viewer *viewer, bool on) {
-    viewer->input.grabbed = on;
+static void release_keys(struct viewer *viewer) {
     memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
-    viewer->window.driver->grab(viewer->window.driver->context, on);
 }
 
-/* Keys with an effect while they are pressed. True: it was one. */
-static bool handle_held_key(struct viewer *viewer, int key, bool down) {
-    static const struct {
-        int key;
-        enum fly_camera_key fly_camera;
-        bool only_grabbed; /* otherwise the letter is a command */
-    } keys[] = {{WINDOW_ARROW_UP, FLY_FORWARD, false},
-                {WINDOW_ARROW_DOWN, FLY_BACK, false},
-                {WINDOW_ARROW_LEFT, FLY_LEFT, false},
-                {WINDOW_ARROW_RIGHT, FLY_RIGHT, false},
-                {WINDOW_SHIFT, FLY_FAST, false},
-                {WINDOW_CONTROL, FLY_SLOW, false},
-                {'w', FLY_FORWARD, true},
-                {'s', FLY_BACK, true},
-                {'a', FLY_LEFT, true},
-                {'d', FLY_RIGHT, true},
-                {'e', FLY_UP, true},
-                {'q', FLY_DOWN, true}};
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
-        if (keys[i].key == key && (viewer->input.grabbed || !keys[i].only_grabbed)) {
-            viewer->fly_camera.down[keys[i].fly_camera] = down;
-            return true;
-        }
-    }
-    return false;
+static void fly(struct viewer *viewer, bool on) {
+    viewer->input.flies = on;
+    release_keys(viewer);
 }
 
-/* Views. */
-
-/* A digit stores a view, or returns to the one that is stored under it. */
-static void handle_digit(struct viewer *viewer, int digit, bool stores) {
-    if (stores)
-        fly_camera_save(&viewer->fly_camera, digit);
-    else if (fly_camera_recall(&viewer->fly_camera, digit))
-        viewer_change_view(viewer);
+static bool has_tool(const struct viewer *viewer) {
+    return viewer_can(viewer, viewer->edit.tool) && !viewer->input.flies;
 }
 
-static void go_home(struct viewer *viewer) {
-    fly_camera_home(&viewer->fly_camera);
-    viewer_change_view(viewer);
-    viewer->camera_moved = false;
-}
-
-static void do_view(struct viewer *viewer, enum window_action action) {
-    struct fly_camera *fly_camera = &viewer->fly_camera;
-    switch ((int)action) {
-    case DO_CAMERA:
-        go_home(viewer);
-        return;
-    case DO_FLY:
-        grab(viewer, !viewer->input.grabbed);
-        return;
-    case DO_LEVEL:
-        fly_camera_level(fly_camera);
-        break;
-    case DO_ROLL_LEFT:
-    case DO_ROLL_RIGHT:
-        fly_camera_roll(fly_camera, action == DO_ROLL_LEFT ? -5 : 5);
-        break;
-    case DO_VIEW_FRONT:
-        fly_camera_face(fly_camera, vec3_make(0, 0, -1));
-        break;
-    case DO_VIEW_RIGHT:
-        fly_camera_face(fly_camera, vec3_make(-1, 0, 0));
-        break;
-    case DO_VIEW_TOP:
-        fly_camera_face(fly_camera, vec3_make(0, -1, 0));
-        break;
-    case DO_FRAME:
-    case DO_FRAME_ALL:
-        viewer_frame(viewer, action == DO_FRAME);
-        break;
-    default:
-        return;
-    }
-    viewer_change_view(viewer);
-}
-
-void viewer_choose_tool(struct viewer *viewer, enum edit_tool tool) {
-    viewer->edit.tool = viewer->edit.tool == tool ? TOOL_NONE : tool;
-    viewer->edit.joins = false;
+/* Keeps what the tool has done, or takes it back. */
+static void end_tool(struct viewer *viewer, bool keeps) {
+    if (viewer->edit.joins && !keeps)
+        viewer_undo(viewer, false);
+    viewer->edit.tool = TOOL_NONE;
+    viewer->edit.axis = 0;
+    viewer->edit.handle = viewer->edit.joins = false;
+    viewer->edit.typed[0] = '\0';
     viewer->display.hud_dirty = true;
 }
 
-/* Esc, while the mouse is not grabbed: ends the selection; without a selection, stops the pass. */
-static void clear_selection(struct viewer *viewer) {
-    bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->edit.tool != TOOL_NONE ||
-                     viewer->trace.text[0] != '\0';
+/* Until a click the selection follows the mouse. */
+static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
+    bool other = viewer->edit.tool != tool;
+    end_tool(viewer, true);
+    if (other && viewer_can(viewer, tool))
+        viewer->edit.tool = tool;
+}
+
+/* What the typed number does, in place of what the tool has done so far. */
+static void apply_typed(struct viewer *viewer) {
+    char *end;
+    double value = strtod(viewer->edit.typed, &end), v[3] = {0, 0, 0};
+    int axis = viewer->edit.axis > 0 ? viewer->edit.axis - 1 : 0;
+    bool one = viewer->edit.tool == TOOL_SIZE && viewer->edit.axis > 0;
+    if (viewer->edit.joins)
+        viewer_undo(viewer, false);
+    if (end == viewer->edit.typed || !isfinite(value))
+        return;
+    v[axis] = viewer->edit.tool == TOOL_TURN ? 1 : value;
+    if (viewer->edit.tool == TOOL_MOVE)
+        viewer_move(viewer, vec3_make(v[0], v[1], v[2]));
+    else if (viewer->edit.tool == TOOL_TURN)
+        viewer_turn(viewer, vec3_make(v[0], v[1], v[2]), value);
+    else
+        viewer_scale(viewer, one ? vec3_make(axis == 0 ? value : 1, axis == 1 ? value : 1, axis == 2 ? value : 1)
+                                 : vec3_all(value));
+}
+
+/* As in "g x 2": an axis, or a part of a number. */
+static void type(struct viewer *viewer, char c) {
+    char *typed = viewer->edit.typed;
+    size_t length = strlen(typed);
+    if (!has_tool(viewer))
+        return;
+    if (c == '\r') {
+        end_tool(viewer, true);
+        return;
+    }
+    if (c >= 'x' && c <= 'z')
+        viewer->edit.axis = viewer->edit.axis == c - 'x' + 1 ? 0 : c - 'x' + 1;
+    else if (c == '\b' && length > 0)
+        typed[length - 1] = '\0';
+    else if (strchr("0123456789.-", c) && length + 1 < sizeof viewer->edit.typed)
+        (void)snprintf(typed + length, 2, "%c", c);
+    apply_typed(viewer);
+    viewer->display.hud_dirty = true;
+}
+
+/* Ends what is going on, from the inside out: flying, the selection and the trace, rendering. */
+static void escape(struct viewer *viewer) {
+    if (!viewer->block) {
+        viewer->action = viewer->window.waits ? VIEWER_NOTHING : VIEWER_END_SCRIPTS;
+        return;
+    }
+    bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->trace.text[0] != '\0';
+    if (viewer->input.flies || has_tool(viewer)) {
+        fly(viewer, false);
+        end_tool(viewer, false);
+        return;
+    }
     if (!something)
         viewer_halt(viewer, true);
     viewer->edit.selection.kind = SELECTED_NOTHING;
-    viewer->edit.tool = TOOL_NONE;
     viewer->trace.text[0] = '\0';
-    viewer->display.hud_dirty = true;
-}
-
-static void do_edit(struct viewer *viewer, enum window_action action) {
-    viewer->edit.joins = false;
-    switch ((int)action) {
-    case DO_UNDO:
-    case DO_REDO:
-        viewer_undo(viewer, action == DO_REDO);
-        return;
-    case DO_MOVE:
-        viewer_choose_tool(viewer, TOOL_MOVE);
-        return;
-    case DO_TURN:
-        viewer_choose_tool(viewer, TOOL_TURN);
-        return;
-    case DO_SIZE:
-        viewer_choose_tool(viewer, TOOL_SIZE);
-        return;
-    case DO_COPY:
-        viewer_add_node(viewer, ADDED_COPY);
-        return;
-    case DO_DELETE:
-        viewer_delete_selection(viewer);
-        return;
-    case DO_OWN_MATERIAL:
-        viewer_make_own_material(viewer);
-        return;
-    case DO_NEXT_LIGHT:
-    case DO_PREVIOUS_LIGHT:
-        viewer_next_light(viewer, action == DO_PREVIOUS_LIGHT);
-        return;
-    case DO_ADD_LIGHT:
-        viewer_add_light(viewer);
-        return;
-    /* The list of a pixel scrolls; without one the selection goes down. */
-    case DO_SELECT_OPERAND:
-        if (viewer->trace.text[0] == '\0')
-            viewer_select_up(viewer, true);
-        viewer->trace.line += 10;
-        viewer->display.hud_dirty = true;
-        return;
-    case DO_SELECT_PARENT:
-        viewer_select_up(viewer, false);
-        return;
-    case DO_ESCAPE:
-        if (viewer->input.grabbed)
-            grab(viewer, false);
-        else
-            clear_selection(viewer);
-        return;
-    default:
-        viewer_add_node(viewer, (enum added_kind)(ADDED_SPHERE + (action - DO_ADD_SPHERE)));
-    }
-}
-
-static void do_animation(struct viewer *viewer, enum window_action action) {
-    if (action == DO_PLAY)
-        viewer_play(viewer, !viewer->player.playing);
-    else if (action == DO_LOOP)
-        viewer_player_loop(viewer);
-    else
-        viewer_step_frames(viewer, action == DO_NEXT_FRAME ? 1 : -1);
-}
-
-static void do_picture(struct viewer *viewer, enum window_action action) {
-    switch ((int)action) {
-    case DO_RENDER:
-        if (!viewer->block && viewer->window.waits)
-            viewer->action = VIEWER_RUN_AGAIN;
-        viewer_render(viewer);
-        return;
-    case DO_STOP:
-        viewer_halt(viewer, !viewer->pass.halted);
-        return;
-    case DO_PIXEL_TRACE:
-        viewer_request_pixel_trace(viewer, viewer->window.panel.mouse_x, viewer->window.panel.mouse_y);
-        return;
-    default:
-        viewer_set_exposure(viewer, viewer->request.settings.tone.exposure + (action == DO_DARKER ? -0.25 : 0.25));
-    }
-}
-
-/* Files, the window, and what is drawn over the picture. */
-static void do_window(struct viewer *viewer, enum window_action action) {
-    switch ((int)action) {
-    case DO_SAVE_PICTURE:
-        viewer->action = VIEWER_SAVE_IMAGE;
-        return;
-    case DO_SAVE_VIEW:
-        viewer->action = VIEWER_SAVE_CAMERA;
-        return;
-    case DO_SAVE_CHANGES:
-        viewer->action = VIEWER_SAVE_EDITS;
-        return;
-    case DO_NEXT_PICTURE:
-        viewer->next = true;
-        return;
-    case DO_QUIT:
-        viewer->quit = true;
-        return;
-    case DO_BOXES:
-    case DO_GRID:
-        viewer_choose_overlay(viewer, action == DO_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
-        return;
-    case DO_FULL_SCREEN:
-        viewer->window.driver->full_screen(viewer->window.driver->context);
-        return;
-    default:
-        viewer->window.hides_hud = !viewer->window.hides_hud;
-        viewer->display.hud_dirty = true;
-    }
 }
 
 uint32_t viewer_needs_met(const struct viewer *viewer) {
@@ -254,128 +150,214 @@ uint32_t viewer_needs_met(const struct viewer *viewer) {
     return bits;
 }
 
-void viewer_do(struct viewer *viewer, enum window_action action) {
-    const struct window_action_row *row = &window_action_table[action];
-    /* What a selection must be is checked by each function: a tool may be chosen before. */
-    enum action_need need = row->need == NEEDS_SELECTION ? NEEDS_PICTURE : row->need;
-    if (!(viewer_needs_met(viewer) >> need & 1))
+static void do_action(struct viewer *viewer, enum window_action action) {
+    struct fly_camera *camera = &viewer->fly_camera;
+    switch (action) {
+    case DO_SAVE_PICTURE:
+    case DO_SAVE_VIEW:
+    case DO_SAVE_CHANGES:
+        viewer->action = (enum viewer_action)(VIEWER_SAVE_IMAGE + (action - DO_SAVE_PICTURE));
         return;
-    bool is_view = row->menu == MENU_VIEW && row->need != NEEDS_NOTHING && action != DO_BOXES && action != DO_GRID;
-    if (is_view)
-        do_view(viewer, action);
-    else if (row->menu == MENU_EDIT || row->menu == MENU_ADD)
-        do_edit(viewer, action);
-    else if (row->menu == MENU_ANIMATION)
-        do_animation(viewer, action);
-    else if (row->menu == MENU_PICTURE)
-        do_picture(viewer, action);
-    else
-        do_window(viewer, action);
+    case DO_NEXT_PICTURE: /* which comes after this one was written */
+        viewer->next = true;
+        if (viewer->window.mode.previews)
+            viewer_choose_mode(viewer, (struct view_mode){0});
+        return;
+    case DO_QUIT:
+        viewer->quit = true;
+        return;
+
+    case DO_UNDO:
+    case DO_REDO:
+        viewer_undo(viewer, action == DO_REDO);
+        return;
+    case DO_MOVE:
+    case DO_TURN:
+    case DO_SIZE:
+        choose_tool(viewer, (enum edit_tool)(TOOL_MOVE + (action - DO_MOVE)));
+        return;
+    case DO_COPY:
+        viewer_copy_selection(viewer);
+        return;
+    case DO_DELETE:
+        viewer_delete_selection(viewer);
+        return;
+    case DO_SOLO:
+        viewer_solo(viewer);
+        return;
+    case DO_OWN_MATERIAL:
+        viewer_make_own_material(viewer);
+        return;
+    case DO_SELECT_PARENT:
+    case DO_SELECT_OPERAND:
+        viewer_select_up(viewer, action == DO_SELECT_OPERAND);
+        return;
+    case DO_NEXT_LIGHT:
+    case DO_PREVIOUS_LIGHT:
+        viewer_next_light(viewer, action == DO_PREVIOUS_LIGHT);
+        return;
+    case DO_ESCAPE:
+        escape(viewer);
+        return;
+
+    case DO_ADD_SPHERE:
+    case DO_ADD_CUBE:
+    case DO_ADD_CYLINDER:
+    case DO_ADD_CONE:
+    case DO_ADD_TORUS:
+        viewer_add_shape(viewer, (enum added_kind)(ADDED_SPHERE + (action - DO_ADD_SPHERE)));
+        return;
+    case DO_ADD_LIGHT:
+        viewer_add_light(viewer);
+        return;
+
+    case DO_CAMERA:
+        fly_camera_home(camera);
+        viewer_change_view(viewer);
+        return;
+    case DO_FRAME_ALL:
+    case DO_FRAME:
+        viewer_frame(viewer, action == DO_FRAME);
+        viewer_change_view(viewer);
+        return;
+    case DO_VIEW_FRONT:
+    case DO_VIEW_RIGHT:
+    case DO_VIEW_TOP:
+        fly_camera_face(camera, vec3_make(action == DO_VIEW_RIGHT ? -1 : 0, action == DO_VIEW_TOP ? -1 : 0,
+                                          action == DO_VIEW_FRONT ? -1 : 0));
+        viewer_change_view(viewer);
+        return;
+    case DO_LEVEL:
+        fly_camera_level(camera);
+        viewer_change_view(viewer);
+        return;
+    case DO_ROLL_LEFT:
+    case DO_ROLL_RIGHT:
+        fly_camera_roll(camera, action == DO_ROLL_LEFT ? -5 : 5);
+        viewer_change_view(viewer);
+        return;
+    case DO_VIEW_BACK:
+    case DO_VIEW_FORWARD:
+        if (fly_camera_recall(camera, action == DO_VIEW_FORWARD))
+            show_view(viewer);
+        return;
+    case DO_FLY:
+        fly(viewer, !viewer->input.flies);
+        return;
+    case DO_SHOW_PICTURE:
+        viewer_choose_mode(viewer, (struct view_mode){0});
+        return;
+    case DO_SHOW_PREVIEW:
+    case DO_SHOW_NORMALS:
+    case DO_SHOW_DEPTH:
+    case DO_SHOW_COST:
+        viewer_choose_mode(viewer, (struct view_mode){true, (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
+        return;
+    case DO_BOXES:
+    case DO_GRID:
+        viewer_choose_overlay(viewer, action == DO_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
+        return;
+    case DO_HIDE:
+        viewer->window.hides_lines = !viewer->window.hides_lines;
+        return;
+    case DO_FULL_SCREEN:
+        viewer->window.driver->state->full_screen = !viewer->window.driver->state->full_screen;
+        return;
+
+    case DO_RENDER:
+        render_again(viewer);
+        return;
+    case DO_STOP:
+        viewer_halt(viewer, !viewer->pass.halted);
+        return;
+    case DO_BRIGHTER:
+    case DO_DARKER:
+        viewer_set_exposure(viewer, viewer->request.settings.tone.exposure + (action == DO_DARKER ? -0.25 : 0.25));
+        return;
+    case DO_PIXEL_TRACE:
+        viewer_request_pixel_trace(viewer, viewer->input.x, viewer->input.y);
+        return;
+
+    case DO_PLAY:
+        viewer_play(viewer, !viewer->player.playing);
+        return;
+    case DO_PREVIOUS_FRAME:
+    case DO_NEXT_FRAME:
+        viewer_step_frames(viewer, action == DO_NEXT_FRAME ? 1 : -1);
+        return;
+    case DO_LOOP:
+        viewer_player_loop(viewer);
+        return;
+    }
 }
 
-/* Keys of a window without widgets; with control first. */
-static const struct {
-    int key;
-    bool control;
-    enum window_action action;
-} action_keys[] = {{'z', true, DO_UNDO},
-                   {'y', true, DO_REDO},
-                   {'q', false, DO_QUIT},
-                   {'s', false, DO_SAVE_PICTURE},
-                   {'c', false, DO_SAVE_CHANGES},
-                   {'v', false, DO_SAVE_VIEW},
-                   {'n', false, DO_NEXT_PICTURE},
-                   {'+', false, DO_BRIGHTER},
-                   {'=', false, DO_BRIGHTER},
-                   {'-', false, DO_DARKER},
-                   {'f', false, DO_FULL_SCREEN},
-                   {'b', false, DO_BOXES},
-                   {'g', false, DO_GRID},
-                   {WINDOW_TAB, false, DO_HIDE},
-                   {'k', false, DO_PLAY},
-                   {'j', false, DO_NEXT_FRAME},
-                   {'h', false, DO_PREVIOUS_FRAME},
-                   {'o', false, DO_LOOP},
-                   {'z', false, DO_SIZE},
-                   {'m', false, DO_MOVE},
-                   {'t', false, DO_TURN},
-                   {'p', false, DO_PIXEL_TRACE},
-                   {'.', false, DO_NEXT_LIGHT},
-                   {',', false, DO_PREVIOUS_LIGHT},
-                   {WINDOW_PAGE_DOWN, false, DO_SELECT_OPERAND},
-                   {WINDOW_PAGE_UP, false, DO_SELECT_PARENT},
-                   {WINDOW_DELETE, false, DO_DELETE},
-                   {WINDOW_ESCAPE, false, DO_ESCAPE},
-                   {'r', false, DO_RENDER},
-                   {'x', false, DO_STOP},
-                   {'l', false, DO_LEVEL},
-                   {'[', false, DO_ROLL_LEFT},
-                   {']', false, DO_ROLL_RIGHT},
-                   {WINDOW_HOME, false, DO_CAMERA},
-                   {WINDOW_SPACE, false, DO_FLY}};
+void viewer_do(struct viewer *viewer, enum window_action action) {
+    if (!(viewer_needs_met(viewer) >> window_action_table[action].need & 1))
+        return;
+    if (action != DO_ESCAPE && action != DO_MOVE && action != DO_TURN && action != DO_SIZE)
+        end_tool(viewer, true);
+    viewer->display.hud_dirty = true;
+    do_action(viewer, action);
+    size_t used = strlen(viewer->note); /* what it did is noted first */
+    (void)snprintf(viewer->note + used, sizeof viewer->note - used, "%swindow: %s", used > 0 ? "; " : "",
+                   window_action_table[action].name);
+}
 
+/* The speed is that for what is in front. */
 static void handle_key(struct viewer *viewer, const struct window_event *event) {
-    /* Without a scene the camera does not move. */
-    if ((viewer->block && handle_held_key(viewer, event->key, event->down)) || !event->down)
+    const struct window_layout *layout = &viewer->window.layout;
+    if (!viewer->block) /* without a scene the camera does not move */
         return;
-    if (viewer->block && event->key >= '0' && event->key <= '9')
-        handle_digit(viewer, event->key - '0', event->control);
-    if (viewer->block && event->key == 'i') {
-        viewer->lights.listed = !viewer->lights.listed;
-        viewer->display.hud_dirty = true;
-    }
-    for (size_t i = 0; i < sizeof action_keys / sizeof *action_keys; i++) {
-        bool redoes = action_keys[i].action == DO_UNDO && event->shift;
-        if (action_keys[i].key != event->key || (action_keys[i].control && !event->control))
-            continue;
-        viewer_do(viewer, redoes ? DO_REDO : action_keys[i].action);
-        return;
-    }
+    if (event->down && !viewer->fly_camera.down[event->key])
+        viewer_probe(viewer, layout->left + layout->shown_width / 2, layout->top + layout->shown_height / 2);
+    viewer->fly_camera.down[event->key] = event->down;
+}
+
+/* The mouse. */
+
+static void take_position(struct viewer *viewer, const struct window_event *event) {
+    viewer->input.x = event->x;
+    viewer->input.y = event->y;
 }
 
 /* A movement over a short distance is still a click. */
 static bool is_drag(struct viewer *viewer) {
-    double x = viewer->window.panel.mouse_x - viewer->input.press_x,
-           y = viewer->window.panel.mouse_y - viewer->input.press_y;
-    double limit = 3 * viewer->window.layout.density;
-    viewer->input.dragged = viewer->input.dragged || x * x + y * y > limit * limit;
+    double x = viewer->input.x - viewer->input.press_x, y = viewer->input.y - viewer->input.press_y;
+    double limit = 4 * viewer->window.layout.density;
+    viewer->input.dragged = viewer->input.dragged || x * x + y * y >= limit * limit;
     return viewer->input.dragged;
-}
-
-/* The mouse turns the camera without a button. */
-static bool turns_freely(const struct viewer *viewer) {
-    return viewer->input.grabbed && !viewer_has_widgets(viewer);
 }
 
 static void handle_motion(struct viewer *viewer, const struct window_event *event) {
     double x = event->dx / viewer->window.layout.shown_height, y = event->dy / viewer->window.layout.shown_height;
-    viewer->window.panel.mouse_x = event->x;
-    viewer->window.panel.mouse_y = event->y;
-    viewer->display.hud_dirty = viewer->display.hud_dirty || !viewer->input.grabbed;
-    if (!viewer->block || !(viewer->input.pressed ? is_drag(viewer) : turns_freely(viewer)))
-        return;
-    bool edits = viewer->edit.tool != TOOL_NONE && viewer->edit.selection.kind != SELECTED_NOTHING;
-    if (viewer->input.pressed == WINDOW_LEFT && !viewer->input.grabbed && edits) {
+    take_position(viewer, event);
+    if (viewer->block && has_tool(viewer) && viewer->edit.typed[0] == '\0') {
         viewer_drag_selection(viewer, event->dx, event->dy);
         return;
     }
-    if (viewer->input.grabbed || viewer->input.pressed == WINDOW_RIGHT)
+    if (!viewer->block || !viewer->input.pressed || !is_drag(viewer))
+        return;
+    if (viewer->input.flies || viewer->input.pressed == WINDOW_RIGHT)
         fly_camera_turn(&viewer->fly_camera, x, y);
-    else if (viewer->input.shift && viewer_has_widgets(viewer))
+    else if (viewer->input.shift)
         fly_camera_pan(&viewer->fly_camera, x, y);
     else
         fly_camera_orbit(&viewer->fly_camera, x, y);
     viewer_change_view(viewer);
 }
 
-static void press_picture(struct viewer *viewer, const struct window_event *event) {
-    if (event->button == WINDOW_RIGHT && !viewer_has_widgets(viewer))
-        grab(viewer, !viewer->input.grabbed);
-    bool navigates = event->button != WINDOW_LEFT && viewer_has_widgets(viewer);
-    if (navigates)
-        viewer_probe(viewer, event->x, event->y);
-    if (!navigates && (event->button != WINDOW_LEFT || viewer->input.grabbed))
+static void handle_press(struct viewer *viewer, const struct window_event *event) {
+    take_position(viewer, event);
+    if (!viewer->block)
         return;
+    if (has_tool(viewer)) {
+        end_tool(viewer, event->button == WINDOW_LEFT);
+        return;
+    }
+    if (event->button == WINDOW_LEFT && !viewer->input.flies && viewer_take_handle(viewer, event->x, event->y))
+        return;
+    if (event->button != WINDOW_LEFT)
+        viewer_probe(viewer, event->x, event->y);
     viewer->input.pressed = event->button;
     viewer->input.shift = event->shift;
     viewer->input.dragged = viewer->edit.joins = false;
@@ -383,49 +365,80 @@ static void press_picture(struct viewer *viewer, const struct window_event *even
     viewer->input.press_y = event->y;
 }
 
-static void handle_button(struct viewer *viewer, const struct window_event *event, bool down) {
-    struct panel *panel = &viewer->window.panel;
-    bool covered = panel_covers(panel, event->x, event->y);
-    if (!viewer->input.grabbed) {
-        panel->mouse_x = event->x;
-        panel->mouse_y = event->y;
-    }
-    viewer->display.hud_dirty = true;
-    if (event->button == WINDOW_LEFT && !viewer->input.grabbed) {
-        panel->down = down;
-        panel->pressed = panel->pressed || (down && covered);
-        panel->released = panel->released || !down;
-    }
-    if (!down && event->button == viewer->input.pressed) {
-        viewer->input.pressed = 0;
-        if (viewer->block && event->button == WINDOW_LEFT && !is_drag(viewer))
-            viewer_click(viewer, event->x, event->y, event->control);
-    }
-    if (down && !covered && viewer->block)
-        press_picture(viewer, event);
+static void handle_release(struct viewer *viewer, const struct window_event *event) {
+    bool clicks = event->button == WINDOW_LEFT && event->button == viewer->input.pressed && !viewer->input.flies;
+    take_position(viewer, event);
+    viewer->input.pressed = 0;
+    if (viewer->edit.handle)
+        end_tool(viewer, true);
+    if (!viewer->block || !clicks || is_drag(viewer))
+        return;
+    if (viewer_click_cube(viewer, event->x, event->y))
+        viewer_change_view(viewer);
+    else
+        viewer_click(viewer, event->x, event->y, event->control);
 }
 
-/* Towards what is under the cursor, as far as it was probed; in a window without widgets, and with control, the wheel
- * changes the angle of view. */
+/* Towards what is under the cursor, as far as it was probed; with control the wheel changes the angle of view. */
 static void handle_wheel(struct viewer *viewer, const struct window_event *event) {
     const struct window_layout *layout = &viewer->window.layout;
-    double steps = event->y;
     if (!viewer->block)
         return;
-    if (viewer->edit.tool == TOOL_MOVE && viewer->edit.selection.kind != SELECTED_NOTHING && !viewer->input.grabbed) {
-        viewer_push_selection(viewer, steps);
+    if (viewer->edit.tool == TOOL_MOVE && has_tool(viewer)) {
+        viewer_push_selection(viewer, event->y);
         return;
     }
-    if (!viewer_has_widgets(viewer) || event->control) {
-        fly_camera_zoom(&viewer->fly_camera, steps);
+    if (event->control) {
+        fly_camera_zoom(&viewer->fly_camera, event->y);
     } else {
-        const struct panel *panel = &viewer->window.panel;
-        viewer_probe(viewer, panel->mouse_x, panel->mouse_y);
-        double x = (panel->mouse_x - layout->left - layout->shown_width / 2) / layout->shown_height;
-        double y = (panel->mouse_y - layout->top - layout->shown_height / 2) / layout->shown_height;
-        fly_camera_dolly(&viewer->fly_camera, x, y, steps);
+        viewer_probe(viewer, viewer->input.x, viewer->input.y);
+        double x = (viewer->input.x - layout->left - layout->shown_width / 2) / layout->shown_height;
+        double y = (viewer->input.y - layout->top - layout->shown_height / 2) / layout->shown_height;
+        fly_camera_dolly(&viewer->fly_camera, x, y, event->y);
     }
     viewer_change_view(viewer);
+}
+
+/* The tree: what the render process does not know. */
+
+static void want_rows(struct viewer *viewer, const struct node_query *query) {
+    struct node_rows rows = {0};
+    if (!viewer->block)
+        return;
+    if (query->depth == 0 || query->path[0] != SECTION_LIGHTS) {
+        if (viewer->nodes.count < NODE_QUERIES)
+            viewer->nodes.wanted[viewer->nodes.count++] = *query;
+        return;
+    }
+    for (uint32_t i = query->first; i < viewer->lights.known && rows.count < NODE_ROWS; i++) {
+        struct node_row *row = &rows.rows[rows.count++];
+        (void)snprintf(row->name, sizeof row->name, "%u", i + 1);
+        (void)snprintf(row->kind, sizeof row->kind, "%s",
+                       light_kind_name((enum light_kind)viewer->lights.items[i].kind));
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, &rows);
+}
+
+static void select_row(struct viewer *viewer, const struct node_query *query) {
+    bool light = query->depth == 2 && query->path[0] == SECTION_LIGHTS;
+    if (light && query->path[1] < viewer->lights.known)
+        viewer_select_light(viewer, query->path[1] + 1);
+    else if (query->serial != 0 || (query->depth > 0 && query->path[0] == SECTION_NODES) ||
+             (query->depth == 2 && query->path[0] == SECTION_MATERIALS))
+        viewer_select_node(viewer, query);
+    else
+        viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->display.hud_dirty = true;
+}
+
+/* Beside the root of the scene. */
+void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query, struct node_rows *rows) {
+    if (query->depth == 0 && query->search[0] == '\0' && rows->count == 1) {
+        rows->count = NODE_SECTIONS;
+        rows->rows[SECTION_LIGHTS] = (struct node_row){.children = viewer->lights.count, .name = "Lights", .kind = " "};
+        rows->rows[SECTION_CAMERA] = (struct node_row){.name = "Camera", .kind = " "};
+    }
+    viewer->window.driver->nodes(viewer->window.driver->context, query, rows);
 }
 
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
@@ -443,36 +456,325 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         handle_wheel(viewer, event);
         return;
     case WINDOW_PRESS:
+        handle_press(viewer, event);
+        return;
     case WINDOW_RELEASE:
-        handle_button(viewer, event, event->kind == WINDOW_PRESS);
+        handle_release(viewer, event);
         return;
     /* What happens outside is not reported: keys count as released. */
     case WINDOW_LEAVE:
-        memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
+        release_keys(viewer);
         viewer->input.pressed = 0;
-        viewer->window.panel.held = 0;
         return;
     case WINDOW_SIZE:
-        if (!viewer_resize(viewer, (int)event->x, (int)event->y, event->density))
-            viewer_show_message(viewer, "gray: out of memory for a window of this size");
+        viewer_resize(viewer, (int)event->x, (int)event->y, event->density);
         return;
     case WINDOW_ACTION:
-        viewer->window.panel.mouse_x = event->x;
-        viewer->window.panel.mouse_y = event->y;
+        take_position(viewer, event);
+        (void)snprintf(viewer->save_as, sizeof viewer->save_as, "%s", event->text);
         viewer_do(viewer, event->action);
         return;
     case WINDOW_NODES:
-        if (viewer->block && viewer->nodes.count < NODE_QUERIES)
-            viewer->nodes.wanted[viewer->nodes.count++] = event->node;
+        want_rows(viewer, &event->node);
         return;
     case WINDOW_SELECT:
-        viewer->edit.click = (struct selection){0};
-        viewer->edit.node = event->node;
-        viewer->edit.by_node = viewer->edit.click_waits = viewer->block != NULL;
-        viewer->edit.probes = false;
+        select_row(viewer, &event->node);
+        return;
+    case WINDOW_HIDE:
+        if (viewer->block)
+            viewer_hide(viewer, event->node.serial, event->text);
+        return;
+    case WINDOW_TYPE:
+        type(viewer, event->typed);
         return;
     case WINDOW_FIELD:
         viewer_set_field(viewer, event);
         return;
+    }
+}
+
+/* --- The form --- */
+
+/* Each field of the form has a number, by which its change comes back; the rows of materials and settings are those of
+ * their tables. */
+
+enum field_number {
+    FIELD_NONE,
+    FIELD_POSITION = WINDOW_FIELD_FRAME + 1,
+    FIELD_ROTATION,
+    FIELD_SCALE,
+    FIELD_LIGHT_STOPS,
+    FIELD_LIGHT_COLOUR,
+    FIELD_EXPOSURE,
+    FIELD_FOV,
+    FIELD_EYE,
+    FIELD_DIRECTION,
+    FIELD_MATERIAL, /* and the parts of a material */
+    FIELD_SETTING = FIELD_MATERIAL + MATERIAL_PART_PARTS,
+};
+
+static struct window_field *add(struct window_form *form, const char *group, const char *name,
+                                enum window_field_kind kind, uint32_t number) {
+    static struct window_field beyond; /* what has no room is not shown */
+    struct window_field *field = form->count < FORM_FIELDS ? &form->fields[form->count++] : &beyond;
+    *field = (struct window_field){.kind = kind, .number = number, .low = -HUGE_VAL, .high = HUGE_VAL};
+    (void)snprintf(field->group, sizeof field->group, "%s", group);
+    (void)snprintf(field->name, sizeof field->name, "%s", name);
+    return field;
+}
+
+static void __attribute__((format(printf, 4, 5)))
+add_text(struct window_form *form, const char *group, const char *name, const char *format, ...) {
+    struct window_field *field = add(form, group, name, FIELD_TEXT, FIELD_NONE);
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(field->text, sizeof field->text, format, arguments);
+    va_end(arguments);
+}
+
+static void set_range(struct window_field *field, double low, double high, const char *unit) {
+    field->low = low;
+    field->high = high;
+    (void)snprintf(field->unit, sizeof field->unit, "%s", unit);
+}
+
+static void set_help(struct window_field *field, const char *help) {
+    (void)snprintf(field->help, sizeof field->help, "%s", help ? help : "");
+}
+
+/* The fields that are not rows of other tables. Those that act rotate and scale, and are 0 and 1 again. */
+static const struct {
+    const char *group, *name, *unit, *help;
+    enum window_field_kind kind;
+    double low, high;
+    bool acts;
+} fields[] = {
+    [FIELD_POSITION] = {"Position", "centre", "", "Moves it there", FIELD_VECTOR, -HUGE_VAL, HUGE_VAL, false},
+    [FIELD_ROTATION] = {"Position", "rotate by", "degrees",
+                        "Rotates it by this angle about the x, y or z axis through its middle", FIELD_VECTOR, -360, 360,
+                        true},
+    [FIELD_SCALE] = {"Position", "scale by", "", "Scales it about its middle by this factor", FIELD_NUMBER, 0.001, 1000,
+                     true},
+    [FIELD_LIGHT_STOPS] = {"Light", "brightness", "stops", "Above the brightness that the script gives it",
+                           FIELD_NUMBER, -10, 10, false},
+    [FIELD_LIGHT_COLOUR] = {"Light", "colour", "", "Before it is brightened", FIELD_COLOUR, 0, HUGE_VAL, false},
+    [FIELD_EXPOSURE] = {"Picture", "exposure", "stops", "A stop doubles all light", FIELD_NUMBER, -100, 100, false},
+    [FIELD_FOV] = {"Picture", "angle of view", "degrees", "From the upper to the lower edge", FIELD_NUMBER, 0.01, 170,
+                   false},
+    [FIELD_EYE] = {"Picture", "eye", "", "Where the camera is", FIELD_VECTOR, -HUGE_VAL, HUGE_VAL, false},
+    [FIELD_DIRECTION] = {"Picture", "direction", "", "The direction in which the camera looks", FIELD_VECTOR, -HUGE_VAL,
+                         HUGE_VAL, false}};
+
+static void add_fixed(struct window_form *form, enum field_number number, double a, double b, double c) {
+    struct window_field *field = add(form, fields[number].group, fields[number].name, fields[number].kind, number);
+    field->acts = fields[number].acts;
+    field->numbers[0] = a;
+    field->numbers[1] = b;
+    field->numbers[2] = c;
+    set_range(field, fields[number].low, fields[number].high, fields[number].unit);
+    set_help(field, fields[number].help);
+}
+
+static void add_pose(const struct viewer *viewer, struct window_form *form) {
+    struct vec3 at = viewer_selection_position(viewer);
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    bool is_light = viewer->edit.selection.kind == SELECTED_LIGHT;
+    if (viewer_can(viewer, TOOL_MOVE) && (!is_light || light->has_position))
+        add_fixed(form, FIELD_POSITION, at.x, at.y, at.z);
+    if (viewer_can(viewer, TOOL_TURN))
+        add_fixed(form, FIELD_ROTATION, 0, 0, 0);
+    if (viewer_can(viewer, TOOL_SIZE))
+        add_fixed(form, FIELD_SCALE, 1, 0, 0);
+}
+
+static void add_material(const struct viewer *viewer, struct window_form *form) {
+    const struct picked *picked = &viewer->edit.selection.picked;
+    for (int i = 0; picked->material_serial != 0 && i < MATERIAL_PART_PARTS; i++) {
+        enum material_part part = (enum material_part)i;
+        bool colour = material_part_count(part) == 3, idle = picked->idle_parts >> i & 1;
+        struct window_field *field = add(form, "Material", material_part_name(part),
+                                         colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
+        double low, high;
+        struct change change = viewer_change(viewer, CHANGE_MATERIAL, part);
+        memcpy(field->numbers, change.numbers, sizeof field->numbers);
+        material_part_range(part, &low, &high);
+        set_range(field, low, high, "");
+        if (idle)
+            set_help(field, "No effect at the point that was clicked: a texture replaces it");
+    }
+}
+
+static void add_node(const struct viewer *viewer, struct window_form *form) {
+    const struct picked *picked = &viewer->edit.selection.picked;
+    (void)snprintf(form->title, sizeof form->title, "%.60s", picked->name);
+    add_text(form, "Object", "path", "%.190s", picked->node_path);
+    add_text(form, "Object", "shape", "%s", picked->shape);
+    add_text(form, "Object", "material", "%s", picked->material);
+    add_text(form, "Object", "distance", "%.5g", picked->distance);
+    add_pose(viewer, form);
+    add_material(viewer, form);
+}
+
+static void add_light(const struct viewer *viewer, struct window_form *form) {
+    const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
+    struct change change = viewer_change(viewer, CHANGE_LIGHT, 0);
+    if (!light)
+        return;
+    (void)snprintf(form->title, sizeof form->title, "Light %u of %u: %s", viewer->edit.selection.light,
+                   viewer->lights.count, light_kind_name((enum light_kind)light->kind));
+    add_pose(viewer, form);
+    add_fixed(form, FIELD_LIGHT_STOPS, el_log2(change.numbers[3]), 0, 0);
+    const double reported[3] = {light->colour.r, light->colour.g, light->colour.b};
+    double now[3];
+    for (int i = 0; i < 3; i++)
+        now[i] = change.colours              ? change.numbers[COLOUR_AT + i]
+                 : change.numbers[3 + i] > 0 ? reported[i] / change.numbers[3 + i]
+                                             : 0;
+    add_fixed(form, FIELD_LIGHT_COLOUR, now[0], now[1], now[2]);
+}
+
+/* As script and command line have set it. */
+static void describe_setting(const struct viewer *viewer, int index, struct window_field *field) {
+    const struct setting *row = &setting_table[index];
+    size_t dashes = strspn(row->option, "-");
+    bool flag = row->kind == SETTING_FLAG, number = row->kind == SETTING_NUMBER;
+    bool words = !flag && !number && row->words && row->words[0] != '\0';
+    uint64_t bits = setting_bits(row, &viewer->request.settings);
+    *field = (struct window_field){.kind = flag    ? FIELD_FLAG
+                                           : words ? FIELD_CHOICE
+                                                   : FIELD_NUMBER,
+                                   .number = FIELD_SETTING + (uint32_t)index,
+                                   .numbers[0] = (double)bits};
+    (void)snprintf(field->group, sizeof field->group, "%s", option_group_title(row->group));
+    (void)snprintf(field->name, sizeof field->name, "%.*s", (int)strcspn(row->option + dashes, "|"),
+                   row->option + dashes);
+    if (number)
+        memcpy(&field->numbers[0], &bits, sizeof bits);
+    set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    if (words)
+        (void)snprintf(field->text, sizeof field->text, "%s", row->words);
+    set_help(field, row->help);
+}
+
+/* Every setting of the picture that has an option, but those that have a field of their own or no single number. */
+static void add_settings(const struct viewer *viewer, struct window_form *form) {
+    for (int i = 0; i < setting_count; i++) {
+        const struct setting *row = &setting_table[i];
+        bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
+        if (row->option && row->kind != SETTING_LAYERS && row->kind != SETTING_CROP && !own)
+            describe_setting(viewer, i, add(form, "", "", FIELD_TEXT, FIELD_NONE));
+    }
+}
+
+/* The scripts run again, as with its option. */
+static void change_setting(struct viewer *viewer, int index, double number) {
+    const struct setting *row = &setting_table[index];
+    if (row->kind == SETTING_NUMBER || row->kind == SETTING_WHOLE || row->kind == SETTING_CAUSTICS)
+        number = fmin(fmax(number, row->low), row->high);
+    viewer->setting = (struct viewer_setting){index, number};
+    viewer->action = VIEWER_CHANGE_SETTING;
+}
+
+static void add_picture(const struct viewer *viewer, struct window_form *form) {
+    struct camera camera = fly_camera_current(&viewer->fly_camera);
+    add_fixed(form, FIELD_EXPOSURE, viewer->request.settings.tone.exposure, 0, 0);
+    if (!viewer->block)
+        return;
+    add_fixed(form, FIELD_FOV, camera.fov, 0, 0);
+    add_fixed(form, FIELD_EYE, camera.eye.x, camera.eye.y, camera.eye.z);
+    add_fixed(form, FIELD_DIRECTION, camera.view.x, camera.view.y, camera.view.z);
+}
+
+/* Another selection has other widgets. */
+static uint64_t subject_of(const struct viewer *viewer) {
+    const struct selection *selection = &viewer->edit.selection;
+    bool node = selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL;
+    uint64_t of = node ? selection->picked.serial : selection->light;
+    of = of << 24 ^ (node ? (uint64_t)selection->picked.material_serial : viewer->lights.known);
+    return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
+}
+
+void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
+    struct window_form *form = &state->form;
+    state->integrator.number = FIELD_NONE;
+    if (viewer->name[0] != '\0')
+        describe_setting(viewer, SETTING_INDEX(integrator), &state->integrator);
+    form->count = 0;
+    form->subject = subject_of(viewer);
+    form->title[0] = '\0';
+    if (viewer->block && viewer->edit.selection.kind == SELECTED_NODE)
+        add_node(viewer, form);
+    else if (viewer->block && viewer->edit.selection.kind == SELECTED_MATERIAL) {
+        const struct picked *picked = &viewer->edit.selection.picked;
+        (void)snprintf(form->title, sizeof form->title, "Material %u", picked->material_serial);
+        add_text(form, "Material", "kind", "%s", picked->material);
+        add_material(viewer, form);
+    } else if (viewer->block && viewer->edit.selection.kind == SELECTED_LIGHT)
+        add_light(viewer, form);
+    if (viewer->name[0] != '\0')
+        add_picture(viewer, form);
+    if (viewer->name[0] != '\0' && viewer->edit.selection.kind == SELECTED_NOTHING)
+        add_settings(viewer, form);
+}
+
+/* Fields of the selection. */
+static void set_selected(struct viewer *viewer, const struct window_event *event) {
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
+    viewer->edit.joins = event->joins;
+    switch (event->field) {
+    case FIELD_POSITION:
+        viewer_move(viewer, vec3_sub(vec3_make(numbers[0], numbers[1], numbers[2]), viewer_selection_position(viewer)));
+        return;
+    case FIELD_ROTATION:
+        for (int i = 0; i < 3; i++) {
+            if (numbers[i] < 0 || numbers[i] > 0)
+                viewer_turn(viewer, axes[i], numbers[i]);
+        }
+        return;
+    case FIELD_SCALE:
+        viewer_scale(viewer, vec3_all(numbers[0]));
+        return;
+    case FIELD_LIGHT_STOPS:
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, 3, factors);
+        return;
+    case FIELD_LIGHT_COLOUR:
+        viewer_set_numbers(viewer, CHANGE_LIGHT, 0, COLOUR_AT, numbers);
+        return;
+    default:
+        if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
+            viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0,
+                               numbers);
+    }
+}
+
+void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
+    double number = event->numbers[0];
+    viewer->display.hud_dirty = true;
+    switch (event->field) {
+    case FIELD_EXPOSURE:
+        viewer_set_exposure(viewer, number);
+        return;
+    case WINDOW_FIELD_FRAME:
+        if (viewer->player.count > 0)
+            viewer_go_to_frame(viewer, viewer_frame_number(viewer, number));
+        return;
+    case FIELD_FOV:
+        if (viewer->block && number > 0 && number < 180) {
+            viewer->fly_camera.pose.fov = number;
+            viewer_change_view(viewer);
+        }
+        return;
+    case FIELD_EYE:
+    case FIELD_DIRECTION:
+        if (viewer->block && fly_camera_put(&viewer->fly_camera, event->field == FIELD_EYE,
+                                            vec3_make(number, event->numbers[1], event->numbers[2])))
+            viewer_change_view(viewer);
+        return;
+    default:
+        if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)
+            change_setting(viewer, (int)(event->field - FIELD_SETTING), number);
+        else if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
+            set_selected(viewer, event);
     }
 }

@@ -4,22 +4,21 @@
 
 #include "viewer/viewer_draw_internal.h"
 #include "viewer/viewer_edit_internal.h"
-#include "viewer/viewer_form_internal.h"
 #include "viewer/viewer_input_internal.h"
 #include "viewer/viewer_large_internal.h"
-#include "viewer/viewer_lights_internal.h"
-#include "viewer/viewer_overlay_internal.h"
-#include "viewer/viewer_panel_internal.h"
 #include "viewer/viewer_player_internal.h"
 
-static inline bool viewer_has_widgets(const struct viewer *viewer) {
-    return viewer->window.driver->status != NULL;
-}
 /* The picture is complete, and there is nothing to do. */
 bool viewer_is_idle(const struct viewer *viewer);
 bool viewer_is_enlarging(const struct viewer *viewer); /* the same, but for the pixels of a larger window */
 /* Samples of paths are shown when they are denoised. */
 bool viewer_shows_denoised(const struct viewer *viewer);
+void viewer_choose_mode(struct viewer *viewer, struct view_mode mode);
+/* After a coarse pass: the resolution of the next one, which is to take that long. One slow pass may be the fault of
+ * another program, so it changes slowly; a margin prevents that it changes to and fro. */
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds);
+/* The view has changed: it is rendered again. */
+void viewer_outdate(struct viewer *viewer);
 void viewer_note_stop(struct viewer *viewer, double seconds);
 
 #endif

@@ -120,7 +120,6 @@ static void copy_picture(struct viewer *viewer) {
 }
 
 void viewer_draw_large(struct viewer *viewer) {
-    static const uint8_t marked_colour[3] = {255, 0, 0};
     struct viewer_large *large = &viewer->window.large;
     const struct film *film = &viewer->pass.film;
     struct tone tone = picture_tone(&viewer->request);
@@ -134,20 +133,13 @@ void viewer_draw_large(struct viewer *viewer) {
     for (uint32_t tile = 0; tile < large->tiles; tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool shows = viewer_shows_denoised(viewer) ? state == FILM_TILE_DONE : film_tile_shows(state);
-        bool in_progress = state == FILM_TILE_TAKEN && film->marked && !viewer_has_widgets(viewer);
-        if (shows ? large->drawn[tile] == state : !in_progress)
+        if (!shows || large->drawn[tile] == state)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
-        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
-            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
-                size_t at = (size_t)y * large->width + x;
-                if (shows)
-                    tone_large(viewer, &tone, x, y);
-                else if (film->marked[at] == FILM_MARK_WAITS)
-                    memcpy(large->image + 3 * at, marked_colour, 3);
-            }
-        }
-        large->drawn[tile] = shows ? state : large->drawn[tile];
+        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++)
+            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++)
+                tone_large(viewer, &tone, x, y);
+        large->drawn[tile] = state;
         viewer->window.dirty = true;
     }
 }

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PLAYED_DIVIDE_LIMIT = 32 };
 /* Seconds: the minimum duration of a pass, the interval between two checks of the clock, and a delay after which the
  * time starts again, because the machine did other work. */
 static const double pass_min = 0.004, clock_step = 0.004, delay_max = 1;
@@ -66,7 +65,6 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
     viewer->input = before->input;
     viewer->pass.divide = before->pass.divide;
     viewer->pass.from_coarse = false;
-    viewer->lights.listed = before->lights.listed;
     memcpy(viewer->fly_camera.down, before->fly_camera.down, sizeof viewer->fly_camera.down);
 }
 
@@ -153,18 +151,11 @@ uint32_t viewer_frame_number(const struct viewer *viewer, double index) {
 
 void viewer_player_end_pass(struct viewer *viewer, double now) {
     struct viewer_player *player = &viewer->player;
-    uint32_t divide = viewer->pass.divide;
     double took = now - viewer->pass.began, whole = now - player->requested_at;
-    if (player->requested_at <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != divide)
+    if (player->requested_at <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != viewer->pass.divide)
         return;
-    double beside = fmax(0, whole - took), left = fmax(pass_min, period_of(viewer) - beside - clock_step);
-    double needed = divide * sqrt(took / left);
-    needed = fmin(needed, 1.5 * divide); /* one slow pass may be the fault of another program */
-    if (needed > divide)
-        divide = needed < PLAYED_DIVIDE_LIMIT ? (uint32_t)ceil(needed) : PLAYED_DIVIDE_LIMIT;
-    else if (ceil(1.1 * needed) < divide) /* a margin, so that it does not change to and fro */
-        divide = (uint32_t)fmax(1, ceil(1.1 * needed));
-    viewer->pass.divide = divide;
+    double beside = fmax(0, whole - took);
+    viewer_fit_resolution(viewer, now, fmax(pass_min, period_of(viewer) - beside - clock_step));
     player->requested_at = 0;
 }
 

@@ -129,8 +129,12 @@ static bool has_holes(const struct surface_material *material) {
     return surface_has_holes(material);
 }
 
-static bool is_filled(const struct surface_material *material) {
-    return material->filled;
+static bool holds_medium(const struct surface_material *material) {
+    return material->holds_medium;
+}
+
+static bool hides_medium(const struct surface_material *material) {
+    return material->holds_medium && !surface_passes(material);
 }
 
 /* Whether one of the materials of a prototype is such; what clips it has none. */
@@ -268,8 +272,11 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
 static bool add_prototype(struct flattening *f, const struct node *node, struct prototype *prototype) {
     if (!find_walls(f, node->walls, prototype))
         return false;
-    if (prototype->is_thin && any_material(f, prototype, is_filled))
+    if (prototype->is_thin && any_material(f, prototype, holds_medium))
         return error_set(f->error, ERROR_SCENE, "node '%.100s' is open, so it holds no medium", node->name);
+    if (any_material(f, prototype, hides_medium))
+        return error_set(f->error, ERROR_SCENE, "node '%.100s': its material is opaque, so no light reaches its medium",
+                         node->name);
     struct world *world = f->world;
     uint32_t capacity = f->prototype_capacity;
     struct prototype *prototypes =

@@ -204,6 +204,7 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
             joint->ray.media = &joint->before;
             joint->before.media = &world->media;
             joint->before.count = 0;
+            joint->before.wavelength = 0;
             if (ray->media)
                 medium_stack_copy(&joint->before, ray->media);
             junction.ray = &joint->ray;

@@ -357,6 +357,13 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     return s.found;
 }
 
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing) {
+    struct ray ray_object = primitive_ray(world, primitive, ray);
+    scratch->rays++;
+    return !ray_skips(ray, primitive) && world_ask_nearest(world, primitive, &ray_object, scratch, crossing);
+}
+
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
     struct joint joint;
     return world_nearest_surface(world, ray, scratch, hit) &&
@@ -394,6 +401,7 @@ void world_medium_stack(const struct world *world, const struct inside_query *qu
     uint32_t count = world_containing(world, query, scratch, inside, MEDIUM_STACK_LIMIT);
     out->media = &world->media;
     out->count = 0;
+    out->wavelength = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
         uint32_t material = prototype->geometry.csg ? prototype->geometry.csg->leaves[0].material : prototype->material;
@@ -407,6 +415,15 @@ void world_medium_stack(const struct world *world, const struct inside_query *qu
 /* Such a solid contains the points outside its box. */
 static bool is_inside_out(const struct geometry *geometry) {
     return geometry->csg && geometry->csg->inside_out;
+}
+
+struct box world_finite_bounds(const struct world *world) {
+    struct box bounds = box_empty();
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        if (vec3_finite(world->boxes[i].min) && vec3_finite(world->boxes[i].max))
+            bounds = box_join(bounds, world->boxes[i]);
+    }
+    return bounds;
 }
 
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
@@ -660,8 +677,13 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 }
 
 static struct medium medium_of(const struct world *world, uint32_t material) {
-    const struct medium *filling = material_origin(world->authored.materials[material])->medium;
-    return filling ? *filling : surface_medium(&world->surfaces.materials[material]);
+    const struct medium *own = world->authored.materials[material]->medium;
+    if (own && own->fills)
+        return *own;
+    struct medium medium = surface_medium(&world->surfaces.materials[material]);
+    if (own)
+        medium_put_inside(&medium, own);
+    return medium;
 }
 
 void world_update_materials(struct world *world) {

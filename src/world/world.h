@@ -210,11 +210,16 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 /* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *primitive, struct crossing *crossing);
+/* The same with one primitive alone. */
+bool world_nearest_of(const struct world *world, uint32_t primitive, const struct ray *ray,
+                      struct world_scratch *scratch, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
 /* The occluder of the last ray of world_any; WORLD_NOTHING: none, or ACCEL_NONE. */
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
     return scratch->shadow_cache[scratch->light];
 }
+/* The box around all finite primitives. */
+struct box world_finite_bounds(const struct world *world);
 /* The closed primitives whose box meets `region`: all that can contain a point of it, in flattening order. `out` (or
  * NULL) has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);

@@ -33,6 +33,20 @@ static bool same_vector(const struct vec3 *a, const struct vec3 *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
 
+bool world_disperses(const struct world *world) {
+    bool disperses = false;
+    for (uint32_t i = 0; i < world->material_count; i++)
+        disperses = disperses || surface_disperses(&world->surfaces.materials[i]);
+    return disperses;
+}
+
+bool world_needs_wavelength(const struct world *world, const struct hit *hit, const struct medium_stack *media) {
+    if (media->wavelength > 0 || primitive_is_thin(world, hit->primitive))
+        return false;
+    return surface_disperses(&world->surfaces.materials[hit->material]) ||
+           medium_stack_current(media)->dispersion.amount > 0;
+}
+
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v) {
     return shape_native_uv(geometry_shape(primitive_geometry(world, hit->primitive), hit->leaf), hit, u, v);
 }

@@ -25,6 +25,10 @@ static inline bool world_is_filled(const struct world *world, const struct hit *
     *boundary = (struct medium_boundary){hit->solid, 1, {1, 1, 1}, hit->front, false};
     return hit->solid != SOLID_NONE && world->media.all[world->media.solids[hit->solid].medium].fills;
 }
+/* Whether some boundary refracts wavelengths by different indices. */
+bool world_disperses(const struct world *world);
+/* Whether the boundary at the hit does, for white light in these media. */
+bool world_needs_wavelength(const struct world *world, const struct hit *hit, const struct medium_stack *media);
 /* The u and v that the shape of a hit supplies. False: it has none. */
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
 /* What is the same for every hit of a triangle of a primitive whose space is the world's. */

@@ -268,8 +268,8 @@ TEST(a_gltf_mask_without_a_picture_shows_or_hides_the_whole_surface) {
 }
 
 TEST(pictures_of_gltf_extensions_that_are_not_read_have_one_warning_each) {
-    write_two_materials("{\"name\":\"a\",\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75,"
-                        "\"clearcoatNormalTexture\":{\"index\":0}},\"KHR_materials_volume\":{"
+    write_two_materials("{\"name\":\"a\",\"extensions\":{\"KHR_materials_sheen\":{"
+                        "\"sheenColorTexture\":{\"index\":0}},\"KHR_materials_volume\":{"
                         "\"thicknessTexture\":{\"index\":0}}}},{\"name\":\"b\"}");
     struct model model = {0};
     struct model_options options = {0};
@@ -277,8 +277,73 @@ TEST(pictures_of_gltf_extensions_that_are_not_read_have_one_warning_each) {
     CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
     CHECK_EQ_INT(model.warning_count, 2);
     CHECK(strstr(model.warnings[0], "the thicknessTexture of KHR_materials_volume is not read"));
-    CHECK(strstr(model.warnings[1], "the clearcoatNormalTexture of KHR_materials_clearcoat is not read"));
+    CHECK(strstr(model.warnings[1], "the sheenColorTexture of KHR_materials_sheen is not read"));
     model_destroy(&model);
+}
+
+TEST(diffuse_transmission_and_scattering_of_gltf_are_light_under_the_surface) {
+    write_two_materials(
+        "{\"name\":\"a\",\"extensions\":{\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":0.25,"
+        "\"diffuseTransmissionColorFactor\":[1,0.5,0.25]}}},"
+        "{\"name\":\"b\",\"extensions\":{\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":1},"
+        "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,\"attenuationColor\":[1,0.5,0.25]},"
+        "\"KHR_materials_volume_scatter\":{\"multiscatterColor\":[1,1,0.5],\"scatterAnisotropy\":0.5}}}");
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
+    CHECK_TEXT(error.text, "");
+    const struct model_material *m = model_materials(&model);
+    CHECK_NEAR(m[0].layers.subsurface_weight, 0.25, 0);
+    CHECK_NEAR(m[0].layers.subsurface_colour.g, 0.5, 0);
+    CHECK(m[0].layers.thin_walled && m[0].layers.subsurface_anisotropy == 1);
+    CHECK_NEAR(m[1].layers.subsurface_colour.b, 0.5, 0);
+    CHECK_NEAR(m[1].layers.subsurface_anisotropy, 0.5, 0);
+    CHECK_NEAR(m[1].layers.subsurface_radius_scale.g, 2 / log(2), 1e-12);
+    CHECK_NEAR(m[1].layers.transmission_scattering.g, log(2) / 2, 1e-12);
+    CHECK_NEAR(m[1].absorption.g, 0, 1e-12);
+    CHECK_NEAR(m[1].layers.transmission_scattering.b, subsurface_albedo(0.5, 0.5) * log(4) / 2, 1e-12);
+    model_destroy(&model);
+}
+
+TEST(iridescence_dispersion_and_normals_of_the_coat_are_those_of_gltf) {
+    write_even("colour 1.png", 51, 102, 255);
+    write_two_materials(
+        "{\"name\":\"a\",\"extensions\":{\"KHR_materials_iridescence\":{\"iridescenceFactor\":0.5,\"iridescenceIor\":1."
+        "5,"
+        "\"iridescenceThicknessMinimum\":200,\"iridescenceThicknessMaximum\":600,"
+        "\"iridescenceThicknessTexture\":{\"index\":0}},"
+        "\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatNormalTexture\":{\"index\":0,\"scale\":0.5}}}},"
+        "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{"
+        "\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_dispersion\":{\"dispersion\":0.5},"
+        "\"KHR_materials_iridescence\":{\"iridescenceFactor\":1},\"KHR_materials_volume\":{\"thicknessFactor\":1}}}");
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
+    CHECK_TEXT(error.text, "");
+    CHECK_EQ_INT(model.warning_count, 0);
+    const struct model_material *m = model_materials(&model);
+    CHECK_NEAR(m[0].layers.film_weight, 0.5, 0);
+    CHECK_NEAR(m[0].layers.film_ior, 1.5, 0);
+    CHECK_NEAR(m[0].layers.film_thickness, 0.6, 1e-15);
+    CHECK_EQ_INT(m[0].layer_map_count, 1);
+    CHECK_NEAR(m[0].layer_maps[0].factor, 0.6, 1e-15);
+    CHECK_NEAR(m[0].layer_maps[0].low, 0.2, 1e-15);
+    CHECK_NEAR(m[0].map_coat_normal.strength, 0.5, 0);
+    CHECK_NEAR(m[1].layers.film_thickness, 0.4, 1e-15);
+    CHECK_NEAR(m[1].layers.film_ior, 1.3, 0);
+    CHECK_NEAR(m[1].dispersion, 1 / 40.0, 1e-15); /* Abbe's number is 20 / .5 */
+    model_destroy(&model);
+    struct surface_inputs inputs = {0};
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
+        CHECK_NEAR(bsdf.film.weight, 0.5, 0);
+        CHECK_NEAR(bsdf.film.thickness, 0.2 + 0.4 * 0.4, 1e-12); /* by green */
+        CHECK(weight_of(&bsdf, LOBE_COAT).g > 0);
+    }
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf))
+        CHECK_NEAR(bsdf.film.thickness, 0.4, 1e-15);
 }
 
 TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {

@@ -42,6 +42,10 @@ static struct view view_make(double lean, double degrees, double alpha, double e
     return view;
 }
 
+static bool is_pane(enum lobe_kind kind) {
+    return kind == LOBE_PANE || kind == LOBE_FILM_PANE || kind == LOBE_DIFFUSE_THROUGH;
+}
+
 /* Facets that are wider along one tangent than along the other, as the kind of lobe needs them. */
 static void set_facets(struct bsdf *bsdf, enum lobe_kind kind, double alpha, double eta) {
     struct bsdf_facets *facets = &bsdf->facets[0];
@@ -50,14 +54,15 @@ static void set_facets(struct bsdf *bsdf, enum lobe_kind kind, double alpha, dou
     bsdf_facets_shape(facets, bsdf->side, vec3_make(1, 2, 0.5), sqrt(alpha), 0.4);
     if (kind == LOBE_METAL)
         bsdf_facets_metal(facets, colour_make(0.9, 0.7, 0.3), colour_make(0.9, 1, 0.8));
-    else if (kind == LOBE_PANE)
+    else if (is_pane(kind))
         bsdf_facets_pane(facets, eta);
     else
         bsdf_facets_glass(facets, eta);
+    bsdf->film = (struct thin_film){0.8, 0.4, 1.35, eta > 1 ? eta : 1, 0};
 }
 
 static void add(struct view *view, enum lobe_kind kind, struct colour weight, double exponent) {
-    set_facets(&view->bsdf, kind, view->bsdf.alpha, kind == LOBE_PANE ? 1 / 1.5 : view->bsdf.eta);
+    set_facets(&view->bsdf, kind, view->bsdf.alpha, is_pane(kind) ? 1 / 1.5 : view->bsdf.eta);
     view->bsdf.lobes[view->bsdf.count++] = (struct lobe){.kind = kind, .weight = weight, .exponent = exponent};
 }
 
@@ -397,7 +402,7 @@ static double f_of(enum lobe_kind kind, bool fresnel, double alpha, double n, st
  * have tests of their own. */
 TEST(every_lobe_but_classic_highlights_is_reciprocal_with_the_square_of_the_index) {
     for (int kind = 0; kind < LOBE_KINDS; kind++) {
-        double sum = 0, n = kind == LOBE_PANE ? 1 : 1.5; /* a thin wall has the same medium on both sides */
+        double sum = 0, n = is_pane((enum lobe_kind)kind) ? 1 : 1.5; /* a thin wall has the same medium on both sides */
         if (lobe_flags((enum lobe_kind)kind) & (BSDF_DELTA | BSDF_EXPONENT))
             continue;
         for (uint32_t k = 0; k < 4000; k++) {
@@ -564,7 +569,7 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }
-    for (int i = 0; i < 32; i++) {
+    for (int i = 0; i < 128; i++) {
         struct openpbr numbers = openpbr_defaults();
         struct material layered = {.kind = MATERIAL_OPENPBR, .depth = 1, .openpbr = &numbers};
         struct hit hit = hit_at(30, true);
@@ -575,7 +580,13 @@ TEST(every_kind_of_lobe_is_made_by_some_material) {
         numbers.thin_walled = i & 4;
         numbers.base_metalness = i & 8 ? 0.5 : 0;
         numbers.base_diffuse_roughness = numbers.fuzz_weight = i & 16 ? 0.5 : 0;
-        surface_eval(&layered, &hit, NULL, NULL, &bsdf);
+        numbers.film_weight = i & 32 ? 1 : 0;
+        numbers.coat_weight = i & 1;
+        struct texture flat = texture_constant(colour_make(0.5, 0.5, 1));
+        struct bump bump = {.kind = MATERIAL_NORMAL, .height = 1, .texture = &flat, .of_coat = true};
+        layered.bump = &bump;
+        numbers.subsurface_weight = i & 64 ? 0.5 : 0;
+        surface_eval(&layered, &hit, NULL, &(struct material_context){.walks = true}, &bsdf);
         for (int k = 0; k < bsdf.count; k++)
             made[bsdf.lobes[k].kind]++;
     }

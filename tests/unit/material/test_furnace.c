@@ -179,6 +179,13 @@ static void random_material(struct ball *ball, struct test_random *random) {
     v->specular_weight = v->base_metalness > 0 ? 1 : random_share(random);
     v->specular_ior = test_uniform(random, 1.05, 2.5);
     v->coat_ior = test_uniform(random, 1.05, 2.5);
+    v->film_weight = test_uniform(random, 0, 1) < 0.5 ? random_share(random) : 0;
+    v->film_thickness = test_uniform(random, 0, 1.5);
+    v->film_ior = test_uniform(random, 1.05, 2.5);
+    v->subsurface_weight = test_uniform(random, 0, 1) < 0.5 ? random_share(random) : 0;
+    v->subsurface_colour = colour_all(1);
+    v->subsurface_radius = test_uniform(random, 0, 0.5);
+    v->subsurface_anisotropy = test_uniform(random, -0.5, 0.8);
 }
 
 TEST_TIMES(balls_of_random_white_materials_are_invisible_in_uniform_light, 20) {

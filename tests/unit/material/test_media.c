@@ -5,6 +5,10 @@
 
 #include <math.h>
 
+static struct medium inside_of(double ior, struct colour tint, struct colour absorption) {
+    return medium_inside(ior, tint, &(struct medium_input){.absorption = absorption});
+}
+
 static const struct fog fogs[] = {
     {.kind = FOG_EXPONENTIAL, .density = 0.3, .colour = {0.5, 0.6, 0.7}},
     {.kind = FOG_LINEAR, .near = 1, .far = 6, .colour = {1, 0, 0.25}, .clear_sky = true},
@@ -23,8 +27,8 @@ static bool is_nothing(const struct medium_effect *effect) {
 /* Glass in a fog, or in nothing. */
 static const struct solid solids[] = {{1, 0}, {2, 1}};
 static struct media media_in(const struct fog *fog, struct medium all[3]) {
-    all[0] = medium_inside(1.3, colour_all(1), colour_all(9));
-    all[1] = medium_inside(1.5, colour_all(1), colour_make(0.1, 0, 2));
+    all[0] = inside_of(1.3, colour_all(1), colour_all(9));
+    all[1] = inside_of(1.5, colour_all(1), colour_make(0.1, 0, 2));
     all[2] = medium_outside(fog);
     return (struct media){solids, all, 2};
 }
@@ -85,7 +89,7 @@ TEST(media_without_effect_affect_no_ray) {
     for (int inside = 0; inside < 2; inside++) {
         CHECK(!medium_transmittance(MEDIUM_RAY_SIGHT, &ray, 4, &effect) && is_nothing(&effect));
         CHECK(!medium_transmittance(MEDIUM_RAY_PHOTON, &ray, INFINITY, &effect) && is_nothing(&effect));
-        all[1] = medium_inside(1.5, colour_make(1, 0, 0), colour_all(0));
+        all[1] = inside_of(1.5, colour_make(1, 0, 0), colour_all(0));
         medium_stack_enter(&stack, 1);
     }
 }
@@ -97,7 +101,7 @@ TEST(fog_around_a_solid_is_another_medium_than_nothing_inside) {
         struct medium_stack inside = {.media = &media}, outside = inside;
         medium_stack_enter(&inside, 1);
         CHECK(!medium_stacks_equal(&inside, &outside));
-        all[1] = medium_inside(1, colour_all(1), colour_all(0));
+        all[1] = inside_of(1, colour_all(1), colour_all(0));
         CHECK(medium_stacks_equal(&inside, &outside) == !fog);
     }
 }

@@ -344,6 +344,67 @@ TEST(rough_glass_of_the_index_of_air_is_invisible) {
     }
 }
 
+/* --- the normal of the coat --- */
+
+static void make_metal_below_a_coat(struct layers *l) {
+    l->numbers.coat_weight = l->numbers.base_metalness = 1;
+    l->material.phong.roughness = 0.3;
+}
+
+/* Seen with a normal map for the coat, of this colour everywhere. */
+static struct bsdf coated(struct layers *layers, struct colour map) {
+    struct texture texture = texture_constant(map);
+    struct bump bump = {.kind = MATERIAL_NORMAL, .height = 1, .texture = &texture, .of_coat = true};
+    struct hit hit = {.view = view_of(0.8, true), .front = true, .primitive = 4, .dpdu = {1, 0, 0}, .dpdv = {0, 1, 0}};
+    const struct material_context context = {.total_reflection = true};
+    struct bsdf bsdf;
+    hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
+    layers->material.bump = &bump;
+    surface_eval(&layers->material, &hit, NULL, &context, &bsdf);
+    layers->material.bump = NULL;
+    return bsdf;
+}
+
+TEST(a_coat_reflects_about_its_own_normal_and_its_base_about_that_of_the_surface) {
+    struct layers layers;
+    layers_init(&layers);
+    layers.numbers.coat_weight = 1;
+    const struct vec3 wo = view_of(0.8, true), tilted = vec3_normalize(vec3_make(0.2, 0, 1));
+    struct bsdf bsdf = coated(&layers, colour_make(0.6, 0.5, 1));
+    int found = 0;
+    for (int i = 0; i < bsdf.count; i++) {
+        struct bsdf_sample sample;
+        bool is_coat = bsdf.lobes[i].kind == LOBE_COAT;
+        if (!is_coat && bsdf.lobes[i].kind != LOBE_MIRROR)
+            continue;
+        CHECK(bsdf_sample(&bsdf, 1U << i, BSDF_RADIANCE, wo, (struct sample2){0.5, 0.5}, &sample));
+        struct vec3 expected = dielectric_mirror(is_coat ? tilted : vec3_make(0, 0, 1), wo);
+        CHECK_NEAR(vec3_length(vec3_sub(sample.direction, expected)), 0, 1e-12);
+        if (is_coat)
+            CHECK_NEAR(sample.weight.g, dielectric_fresnel(vec3_dot(tilted, wo), 1 / 1.6), 1e-12);
+        found++;
+    }
+    CHECK_EQ_INT(found, 2);
+    layers.numbers.coat_roughness = layers.material.phong.roughness = 0.4;
+    bsdf = coated(&layers, colour_make(0.6, 0.5, 1));
+    CHECK_NEAR(bsdf.facets[0].distribution.normal.x, tilted.x, 1e-12);
+    CHECK_NEAR(bsdf.facets[1].distribution.normal.x, 0, 0);
+}
+
+TEST(a_flat_normal_map_of_the_coat_changes_no_light) {
+    struct layers layers;
+    layers_init(&layers);
+    make_metal_below_a_coat(&layers);
+    for (int rough = 0; rough < 2; rough++) {
+        layers.numbers.coat_roughness = rough ? 0.3 : 0;
+        struct bsdf with = coated(&layers, colour_make(0.5, 0.5, 1)), without = seen(&layers, 0.8, true);
+        struct colour mirror = colour_add(weight_of(&with, LOBE_MIRROR), weight_of(&with, LOBE_COAT));
+        CHECK_NEAR(mirror.g, weight_of(&without, LOBE_MIRROR).g, 1e-15);
+        CHECK_NEAR(weight_of(&with, LOBE_METAL).g, weight_of(&without, LOBE_METAL).g, 1e-15);
+        CHECK_NEAR(weight_of(&with, LOBE_GLOSS).g, weight_of(&without, LOBE_GLOSS).g, 1e-15);
+    }
+}
+
 /* --- the furnace --- */
 
 struct furnace {
@@ -384,6 +445,25 @@ static void make_wall(struct layers *l) {
     l->numbers.thin_walled = true;
     l->material.phong.refract = 1;
 }
+static void add_film(struct layers *l) {
+    l->numbers.film_weight = 0.9;
+    l->numbers.film_thickness = 0.45;
+}
+static void make_filmed_plastic(struct layers *l) {
+    add_film(l);
+}
+static void make_filmed_metal(struct layers *l) {
+    add_film(l);
+    make_metal(l);
+}
+static void make_filmed_glass(struct layers *l) {
+    add_film(l);
+    make_glass(l);
+}
+static void make_filmed_wall(struct layers *l) {
+    add_film(l);
+    make_wall(l);
+}
 static void make_all(struct layers *l) {
     l->numbers.coat_weight = l->numbers.fuzz_weight = 0.5;
     l->numbers.base_metalness = 0.4;
@@ -391,12 +471,26 @@ static void make_all(struct layers *l) {
     l->numbers.coat_roughness = 0.2;
     l->material.phong.refract = 0.5;
 }
+static void make_all_filmed(struct layers *l) {
+    add_film(l);
+    make_all(l);
+}
 static const struct furnace furnaces[] = {
-    {"Lambert", make_lambert, false, 0}, {"rough diffuse", make_oren_nayar, false, 0},
-    {"metal", make_metal, false, 0},     {"plastic", make_plastic, false, 0},
-    {"glass", make_glass, true, 0},      {"half of it glass", make_half_glass, true, 0},
-    {"coat", make_coat, false, 0},       {"fuzz", make_fuzz, false, 0},
-    {"thin wall", make_wall, false, 0},  {"all together", make_all, true, 0},
+    {"Lambert", make_lambert, false, 0},
+    {"rough diffuse", make_oren_nayar, false, 0},
+    {"metal", make_metal, false, 0},
+    {"plastic", make_plastic, false, 0},
+    {"glass", make_glass, true, 0},
+    {"half of it glass", make_half_glass, true, 0},
+    {"coat", make_coat, false, 0},
+    {"fuzz", make_fuzz, false, 0},
+    {"thin wall", make_wall, false, 0},
+    {"all together", make_all, true, 0},
+    {"film on plastic", make_filmed_plastic, false, 0},
+    {"film on metal", make_filmed_metal, false, 0},
+    {"film on glass", make_filmed_glass, true, 0},
+    {"film on a thin wall", make_filmed_wall, false, 0},
+    {"all with a film", make_all_filmed, true, 0},
 };
 
 /* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
@@ -557,12 +651,13 @@ TEST(a_texture_replaces_every_number_of_a_layered_material) {
         INPUT_BASE_WEIGHT,         INPUT_DIFFUSE_ROUGHNESS, INPUT_METALNESS,           INPUT_SPECULAR_WEIGHT,
         INPUT_SPECULAR_ANISOTROPY, INPUT_SPECULAR_IOR,      INPUT_TRANSMISSION_COLOUR, INPUT_COAT_WEIGHT,
         INPUT_COAT_COLOUR,         INPUT_COAT_ROUGHNESS,    INPUT_COAT_ANISOTROPY,     INPUT_COAT_IOR,
-        INPUT_COAT_DARKENING,      INPUT_FUZZ_WEIGHT,       INPUT_FUZZ_COLOUR,         INPUT_FUZZ_ROUGHNESS};
+        INPUT_COAT_DARKENING,      INPUT_FUZZ_WEIGHT,       INPUT_FUZZ_COLOUR,         INPUT_FUZZ_ROUGHNESS,
+        INPUT_FILM_WEIGHT,         INPUT_FILM_THICKNESS};
     struct texture value = texture_number(0.7);
     for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
         struct layers with, without;
         layers_init(&without);
-        make_all(&without);
+        make_all_filmed(&without);
         without.material.phong.kd = colour_make(0.5, 0.6, 0.7);
         without.material.phong.roughness = 0.4;
         without.numbers.specular_anisotropy = without.numbers.coat_anisotropy = 0.2;

@@ -337,7 +337,12 @@ static void *field_of(struct surface_inputs *inputs, enum material_input input, 
     case INPUT_SPECULAR_ANISOTROPY:
     case INPUT_SPECULAR_IOR:
     case INPUT_TRANSMISSION_COLOUR:
+    case INPUT_SUBSURFACE_WEIGHT:
+    case INPUT_SUBSURFACE_COLOUR:
+    case INPUT_SUBSURFACE_RADIUS:
     case INPUT_COAT_WEIGHT:
+    case INPUT_FILM_WEIGHT:
+    case INPUT_FILM_THICKNESS:
     case INPUT_COAT_COLOUR:
     case INPUT_COAT_ROUGHNESS:
     case INPUT_COAT_ANISOTROPY:

@@ -36,7 +36,7 @@ static void make_machine(void) {
 }
 
 #define NEEDED "lua5.4\\nlibpng\\nzlib\\n"
-#define ALL NEEDED "sdl2\\nlibjpeg\\njansson\\nfreetype2\\nOpenEXR\\nlibwebpmux\\n"
+#define ALL NEEDED "libjpeg\\njansson\\nfreetype2\\nOpenEXR\\nlibwebpmux\\n"
 
 /* The status; standard error is in the file err. */
 static int set_up(const char *have, const char *environment, const char *option) {
@@ -64,19 +64,23 @@ static void check_file(const char *name, const char *text) {
 TEST(the_set_up_installs_the_optional_libraries_too) {
     make_machine();
     CHECK_EQ_INT(set_up(NEEDED, "uid=0", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
+    check_file("installed", "libjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
     CHECK_EQ_INT(set_up(NEEDED, "uid=7 sudo=yes", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
+    check_file("installed", "libjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
     CHECK_EQ_INT(set_up(ALL, "uid=0", ""), 0);
     check_file("err", "");
     check_file("log", NULL);
 }
 
-/* On request, or where there is a display and apt-get names fewer than 100 packages. */
+/* On request, or where there is a display and apt-get names fewer than 100 packages; then its tests have tools. */
 TEST(the_set_up_installs_gtk_where_it_is_wanted) {
     make_machine();
     CHECK_EQ_INT(set_up(ALL, "uid=0", "--window"), 0);
     check_file("installed", "libgtk-4-dev\n");
+    CHECK_EQ_INT(set_up(ALL, "uid=0", "--tests --window"), 0);
+    char *said = test_read_file(test_path("err"), NULL);
+    CHECK(said && strstr(said, "installing with apt-get (window): libgtk-4-dev"));
+    free(said);
     for (int large = 0; large < 2; large++) {
         test_write_text(test_path("bin/plan"), large ? "0 upgraded, 310 newly installed, 0 to remove.\n"
                                                      : "0 upgraded, 44 newly installed, 0 to remove.\n"
@@ -97,9 +101,8 @@ TEST(the_set_up_installs_gtk_where_it_is_wanted) {
 TEST(a_library_that_cannot_be_had_is_named_and_left_out) {
     make_machine();
     CHECK_EQ_INT(set_up(NEEDED, "uid=0 refuse='libjansson-dev libopenexr-dev'", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibfreetype-dev\nlibwebp-dev\n");
-    check_file("err", "installing with apt-get (window): libsdl2-dev\n"
-                      "installing with apt-get (libraries): libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev "
+    check_file("installed", "libjpeg-dev\nlibfreetype-dev\nlibwebp-dev\n");
+    check_file("err", "installing with apt-get (libraries): libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev "
                       "libwebp-dev\n"
                       "libjansson-dev could not be installed: it is left out\n"
                       "libopenexr-dev could not be installed: it is left out\n");
@@ -122,12 +125,12 @@ TEST(a_user_who_may_not_install_gets_one_line_with_the_command) {
     CHECK_EQ_INT(set_up("lua5.4\\n", "uid=7", ""), 1);
     check_file("err",
                "gray needs packages; to install them: sudo apt-get install -y --no-install-recommends libpng-dev "
-               "zlib1g-dev libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
+               "zlib1g-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
     CHECK_EQ_INT(set_up(ALL "no", "uid=7", ""), 0);
     check_file("err", "");
     CHECK_EQ_INT(set_up(NEEDED, "uid=7", ""), 0);
     check_file("err", "optional packages are missing; to install them: sudo apt-get install -y --no-install-recommends "
-                      "libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
+                      "libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
     check_file("log", NULL);
 }
 
@@ -139,7 +142,7 @@ TEST(the_set_up_prints_one_line_for_each_group) {
     CHECK(said && strncmp(said, "installing with apt-get (build): libpng-dev\n", 44) == 0);
     CHECK(said && strstr(said, "installing with apt-get (libraries): libjpeg-dev libjansson-dev libfreetype-dev "
                                "libopenexr-dev libwebp-dev\n"));
-    CHECK(said && strstr(said, "installing with apt-get (window): libsdl2-dev"));
+    CHECK(said && !strstr(said, "(window)"));
     CHECK(said && strstr(said, "installing with apt-get (machines): libopenmpi-dev"));
     for (const char *line = said; line && line[0] != '\0'; line = strchr(line, '\n') + 1)
         CHECK(strncmp(line, "installing with apt-get (", 25) == 0);

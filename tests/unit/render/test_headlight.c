@@ -20,7 +20,7 @@ static void begin(struct stage *s) {
 }
 
 /* The film of the stage, by the headlight. */
-static void light_up(struct stage *s) {
+static void show(struct stage *s, enum headlight_shows shows) {
     struct render_statistics statistics = {0};
     CHECK(stage_render(s, SIZE, SIZE));
     for (uint32_t i = 0; i < film_tile_count(&s->film); i++)
@@ -28,9 +28,13 @@ static void light_up(struct stage *s) {
     memset(s->film.pixels, 0, sizeof *s->film.pixels * SIZE * SIZE);
     struct render_job job = stage_job(s, SIZE, SIZE);
     job.film = &s->film;
-    CHECK(render_headlight(&job, s->pool, &statistics, &s->error));
+    CHECK(render_headlight(&job, shows, s->pool, &statistics, &s->error));
     CHECK_EQ_INT(film_tiles_in(&s->film, FILM_TILE_DONE), film_tile_count(&s->film));
     CHECK(statistics.camera_rays == SIZE * SIZE);
+}
+
+static void light_up(struct stage *s) {
+    show(s, HEADLIGHT_SURFACES);
 }
 
 /* The cosine at the nearest point of the sphere: a ray that passes its centre at the distance d has cosine sqrt(1 -
@@ -54,6 +58,39 @@ TEST(headlight_shades_a_sphere_by_the_cosine_to_the_eye) {
             CHECK(colour_max_abs(colour_sub(got, want)) < 1e-5);
         }
     }
+    stage_end(&s);
+}
+
+/* The eye is at a distance of 10: the nearest point of the sphere at 9, seen along its normal. */
+TEST(headlight_shows_normals_and_depth_of_a_sphere_by_their_formulas) {
+    struct stage s;
+    begin(&s);
+    s.settings.tone.exposure = 1;
+    show(&s, HEADLIGHT_NORMALS);
+    struct vec3 view = vec3_normalize(s.camera.view);
+    struct colour want = colour_make(0.5 - 0.5 * view.x, 0.5 - 0.5 * view.y, 0.5 - 0.5 * view.z);
+    CHECK(colour_max_abs(colour_sub(colour_scale(stage_pixel(&s, SIZE / 2, SIZE / 2), 2), want)) < 1e-4);
+    CHECK(colour_max_abs(stage_pixel(&s, 0, 0)) == 0);
+    show(&s, HEADLIGHT_DEPTH);
+    /* A ray that meets the sphere with the cosine c is sqrt(99 + c^2) - c long; the box ends at its far corners. */
+    double farthest = sqrt(11 * 11 + 2);
+    for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+        double c = cosine_at(i % SIZE, i / SIZE), got = stage_pixel(&s, i % SIZE, i / SIZE).r;
+        CHECK_NEAR(2 * got, c < 0 ? 0 : (farthest - (sqrt(99 + c * c) - c)) / (farthest - 9), 1e-4);
+    }
+    stage_end(&s);
+}
+
+/* Blue and green and red add up to one until the colour is red. */
+TEST(headlight_shows_more_cost_in_front_of_more_shapes) {
+    struct stage s;
+    begin(&s);
+    for (int i = 0; i < 40; i++)
+        stage_move(&s, stage_cube(&s, s.root, stage_phong(&s, kd, colour_all(0), 1)), 0, 0, -0.01 * i);
+    show(&s, HEADLIGHT_COST);
+    struct colour middle = stage_pixel(&s, SIZE / 2, SIZE / 2), corner = stage_pixel(&s, 0, 0);
+    CHECK(middle.b < corner.b && middle.g + middle.r > corner.g + corner.r);
+    CHECK(fabs(middle.r + middle.g + middle.b - 1) < 1e-5 && fabs(corner.r + corner.g + corner.b - 1) < 1e-5);
     stage_end(&s);
 }
 

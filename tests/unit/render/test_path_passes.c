@@ -58,6 +58,31 @@ TEST(a_picture_of_passes_has_the_bytes_of_one_whose_tiles_get_all_samples_in_one
     stage_end(&s);
 }
 
+TEST(a_picture_that_goes_on_with_the_samples_of_a_film_has_the_bytes_of_one_go) {
+    struct stage s;
+    begin(&s, 3);
+    s.settings.passes = true;
+    s.settings.path_samples = 32;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    void *whole = film_copy(&s);
+    s.settings.path_samples = 8;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    for (uint32_t samples = 16; samples <= 32; samples *= 2) {
+        struct render_statistics statistics = {0};
+        struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+        job.film = &s.film;
+        job.kept_samples = samples / 2;
+        job.settings.path_samples = (int)samples;
+        for (uint32_t i = 0; i < film_tile_count(&s.film); i++)
+            atomic_store(&s.film.tiles[i], FILM_TILE_WANTED);
+        CHECK(render_run(&job, s.pool, &statistics, &s.error));
+        CHECK_EQ_INT(statistics.samples, WIDTH * HEIGHT * samples / 2);
+    }
+    CHECK(memcmp(whole, s.film.pixels, film_bytes(&s.film)) == 0);
+    free(whole);
+    stage_end(&s);
+}
+
 TEST(a_picture_that_is_looked_at_is_shown_denoised_when_it_has_all_samples) {
     struct stage s;
     struct error error = {0};

@@ -1,6 +1,7 @@
 /* Light that a medium scatters, along paths: against closed forms and integrals. */
 #include "tests/harness.h"
 
+#include "material/density.h"
 #include "tests/stage.h"
 
 #include <math.h>
@@ -138,9 +139,9 @@ TEST(the_emission_of_a_medium_is_seen_by_both_integrators) {
 /* --- media that fill solids --- */
 
 static struct medium filling_of(double absorption, double scattering, double g) {
-    struct medium medium = medium_of(colour_all(absorption), colour_all(scattering), g);
-    medium.fills = true;
-    return medium;
+    return medium_filling(&(struct medium_input){.absorption = colour_all(absorption),
+                                                 .scattering = colour_all(scattering),
+                                                 .phase = {PHASE_HENYEY_GREENSTEIN, g}});
 }
 
 static struct material *filled(struct stage *s, const struct medium *medium) {
@@ -177,7 +178,7 @@ TEST(white_media_in_solids_are_invisible_in_uniform_light) {
 }
 
 /* Slabs in a row before a glowing wall: what is left is the product, by both integrators; their invisible surfaces
- * count neither as depth nor as refraction. A slab inside another one takes its place. */
+ * count neither as depth nor as refraction. A slab inside another one adds to it. */
 TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     const struct medium thin = filling_of(0.3, 0, 0), dense = filling_of(1.1, 0, 0);
     struct stage s;
@@ -192,7 +193,7 @@ TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     s.camera.fov = 0.01;
     for (int inside = 0; inside < 2; inside++) {
         s.camera.eye = vec3_make(0, 0, inside ? 0 : 10);
-        double depth = inside ? 1.1 * 0.25 + 0.3 * 0.75 : 1.1 * (0.5 + 0.5) + 0.3 * (1 + 1.5);
+        double depth = inside ? 1.1 * 0.25 + 0.3 : 1.1 * (0.5 + 0.5) + 0.3 * (1 + 2);
         for (int i = 0; i < 2; i++) {
             s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
             s.settings.reflect_limit = s.settings.refract_limit = 0;
@@ -269,4 +270,83 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
             stage_end(&s);
         }
     }
+}
+
+/* Fog around a lamp, a spot and a floor; and smoke in a ball: Whitted's strata against paths cut to one scattering. */
+TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
+    struct arena arena = {0};
+    struct error error = {0};
+    const struct box box = {{-5, -0.5, -5}, {5, 1.2, 5}};
+    const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
+    const struct density_grid grid = {{{-1, 0, -1}, {1, 1.5, 1}}, {2, 2, 2}, values, 1};
+    for (int i = 0; i < 4; i++) {
+        const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
+                                        .scattering = colour_make(0.2, 0.3, 0.1),
+                                        .emission = colour_make(0, 0.01, 0.02),
+                                        .phase = {PHASE_HENYEY_GREENSTEIN, 0.3},
+                                        .density = i == 1   ? density_of_box(&arena, &box, &error)
+                                                   : i == 2 ? density_of_grid(&arena, &grid, &error)
+                                                            : NULL};
+        const struct medium outside = medium_scattering(&in), inside = medium_filling(&in);
+        struct colour means[2];
+        for (int path = 0; path < 2; path++) {
+            struct stage s;
+            stage_floor(&s);
+            s.lights[0] = (struct light){.kind = LIGHT_POINT,
+                                         .position = {0.5, 1.6, -0.5},
+                                         .colour = {1, 1, 1},
+                                         .attenuation = ATTENUATION_INVERSE_SQUARE,
+                                         .intensity = 1};
+            s.camera.eye = vec3_make(0, 1, 4);
+            s.camera.view = vec3_make(0, -0.1, -1);
+            s.camera.fov = 60;
+            s.medium = i < 3 ? &outside : NULL;
+            if (i == 3)
+                stage_move(&s, stage_sphere(&s, s.root, filled(&s, &inside)), 0, 1, 0);
+            s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+            s.settings.medium_samples = 16;
+            s.settings.full = true;
+            s.settings.samples = 4;
+            means[path] = mean_of(&s, 16, 64 * times, 1);
+            stage_end(&s);
+        }
+        CHECK_NEAR(means[0].r, means[1].r, 0.05 * means[1].r);
+        CHECK_NEAR(means[0].g, means[1].g, 0.05 * means[1].g);
+        CHECK_NEAR(means[0].b, means[1].b, 0.05 * means[1].b);
+    }
+    arena_destroy(&arena);
+}
+
+/* Lamps that are sampled at distances of their own: the same light as by brute force, where only scattered rays find
+ * the lamp. */
+TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16) {
+    struct arena arena = {0};
+    struct error error = {0};
+    const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1};
+    const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
+                                    .scattering = colour_make(0.2, 0.6, 1),
+                                    .phase = {PHASE_HENYEY_GREENSTEIN, 0.3}};
+    for (int i = 0; i < 2; i++) {
+        struct medium_input own = in;
+        own.density = i ? density_of_grid(&arena, &grid, &error) : NULL;
+        const struct medium medium = medium_scattering(&own);
+        struct colour means[2];
+        for (int brute = 0; brute < 2; brute++) {
+            struct stage s;
+            (void)begin_room(&s, &medium);
+            s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
+                                                       .position = {0.3, 0.2, -0.4},
+                                                       .radius = 0.25,
+                                                       .colour = {1, 1, 1},
+                                                       .intensity = 1};
+            s.settings.path_strategy = brute ? PATH_STRATEGY_BSDF : PATH_STRATEGY_MIS;
+            means[brute] = mean_of(&s, 8, 1024 * times, 2);
+            stage_end(&s);
+        }
+        CHECK(means[1].g > 1e-3);
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(colour_get(means[0], k), colour_get(means[1], k), 0.04 * colour_get(means[1], k));
+    }
+    arena_destroy(&arena);
 }

@@ -70,6 +70,14 @@ TEST(an_open_transparent_surface_has_one_notice_for_its_node_unless_the_node_dec
     test_free_result(&result);
 }
 
+#define WAX(fields)                                                                                                    \
+    "local s = gr.node('s') s:add_child(gr.sphere(gr.openpbr_material{subsurface_weight = 1" fields "}))\n"
+TEST(light_under_a_surface_has_a_notice_of_whitteds_integrator_alone) {
+    prints("", WAX("") PICTURE "}", "shown as diffuse light of subsurface_color; --integrator path follows it");
+    prints("", WAX(", subsurface_radius = 0") PICTURE "}", NULL);
+    prints("--integrator path --spp 1", WAX("") PICTURE "}", NULL);
+}
+
 TEST(a_field_without_effect_has_one_notice_for_its_line) {
     prints("", BALL PICTURE ", spp = 4}", "scene.lua:2: gr.render: spp has no effect: it is for integrator path");
     prints("", BALL PICTURE ", blades = 5}", "blades has no effect without aperture");

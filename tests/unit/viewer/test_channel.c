@@ -1,8 +1,8 @@
 /* The channel between supervisor and child: messages arrive complete, and invalid ones are refused. */
 #include "base/share.h"
+#include "preview/preview_messages.h"
 #include "session/messages.h"
 #include "tests/harness.h"
-#include "viewer/preview_messages.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,9 +3,9 @@
 #include "inspect/pick.h"
 #include "material/material_inputs.h"
 #include "render/camera.h"
+#include "scene/edits.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "viewer/edits.h"
 
 #include <math.h>
 #include <stdio.h>

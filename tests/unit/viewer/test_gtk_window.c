@@ -2,6 +2,8 @@
  * what it does. */
 #include "tests/harness.h"
 
+#include "window/actions.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,23 +25,53 @@ static void drive(const char *options, const char *commands, int status) {
     (void)snprintf(script, size, frame, options, commands);
     (void)snprintf(path, sizeof path, "%s/drive.sh", test_folder());
     test_write_text(path, script);
-    int got = test_run_shell("timeout 100 xvfb-run -a -s '-screen 0 1400x900x24' sh drive.sh", ">out.txt 2>err.txt");
+    int got = test_run_shell("timeout 300 xvfb-run -a -s '-screen 0 1400x900x24' sh drive.sh", ">out.txt 2>err.txt");
     char *said = test_read_file(test_path("err.txt"), NULL);
     if (got != status)
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d:\n%s", commands, got, status, said ? said : "");
+        test_fail(__FILE__, __LINE__, "%.600s\nstatus %d, not %d:\n%s", commands, got, status,
+                  said && strlen(said) > 1500 ? said + strlen(said) - 1500
+                  : said                      ? said
+                                              : "");
     free(said);
     free(script);
 }
 
 static void need_display(void) {
     char path[4096];
-    test_need_gtk_window();
+    test_need_window();
     (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
     test_write_text(path,
                     "local r = gr.node('root')\n"
                     "r:add_child(gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20))))\n"
                     "gr.render(r, 'out.png', 200, 150, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"
                     "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n");
+}
+
+/* Names of actions that change what the next ones need are done last. */
+static bool ends_scene(enum window_action action) {
+    return action == DO_QUIT || action == DO_NEXT_PICTURE;
+}
+
+/* The same key again takes it back; what was deleted is undone. */
+static bool repeats(enum window_action action) {
+    return action == DO_DELETE || action == DO_FULL_SCREEN || action == DO_HIDE || action == DO_PLAY ||
+           action == DO_STOP || action == DO_SOLO;
+}
+
+/* A key as xdotool writes it: "<Control><Shift>s" is ctrl+shift+s. */
+static void key_for_tool(const char *key, size_t length, char *out, size_t size) {
+    static const char *const modifiers[][2] = {{"<Control>", "ctrl+"}, {"<Shift>", "shift+"}, {"<Alt>", "alt+"}};
+    out[0] = '\0';
+    for (size_t i = 0; i < 6; i++) {
+        const char *const *modifier = modifiers[i % 3];
+        size_t words = strlen(modifier[0]);
+        if (strncmp(key, modifier[0], words) != 0)
+            continue;
+        (void)snprintf(out + strlen(out), size - strlen(out), "%s", modifier[1]);
+        key += words;
+        length -= words;
+    }
+    (void)snprintf(out + strlen(out), size - strlen(out), "%.*s", (int)length, key);
 }
 
 static void gives(const char *line, int status) {
@@ -50,7 +82,7 @@ static void gives(const char *line, int status) {
 
 TEST(gtk_window_makes_the_picture_of_the_program_without) {
     need_display();
-    gives("GRAY_WINDOW= $gray scene.lua -o whole.png", 0);
+    gives("$gray scene.lua -o whole.png", 0);
     drive("scene.lua", "titled 'out.png - ready'; until_file out.png; xdotool key ctrl+q", 0);
     gives("cmp out.png whole.png", 0);
 }
@@ -67,13 +99,13 @@ static void edit_in_locale(const char *name) {
     drive("scene.lua --exposure 0.5",
           "titled 'out.png - ready'\n"
           "xdotool mousemove 600 460 click 1 sleep 0.5 key g\n"
-          "xdotool mousemove 600 460 mousedown 1 mousemove 620 460 sleep 0.1 mousemove 700 460 sleep 0.3 mouseup 1\n"
+          "xdotool mousemove 620 460 sleep 0.1 mousemove 700 460 sleep 0.3 click 1\n"
           "sleep 0.3; titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua\n"
           "xdotool key ctrl+z sleep 0.3 key ctrl+s; until_file out-changes2.lua; xdotool key ctrl+q",
           0);
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
     gives("! grep -q change_node out-changes2.lua", 0);
-    gives("{ echo \"require 'out-changes1'\"; cat scene.lua; } >again.lua; GRAY_WINDOW= $gray again.lua", 0);
+    gives("{ echo \"require 'out-changes1'\"; cat scene.lua; } >again.lua; $gray again.lua", 0);
 }
 
 /* Numbers have a comma in Germany, and the small letter of I is another one in Turkey. */
@@ -88,7 +120,7 @@ TEST(gtk_window_selects_moves_undoes_and_saves_in_turkish) {
 TEST(gtk_window_opens_without_a_scene_and_quits) {
     need_display();
     drive("", "titled gray; sleep 0.3; xdotool key ctrl+q", 0);
-    test_run_shell("GRAY_WINDOW= $gray", ">out.txt 2>err.txt");
+    test_run_shell("$gray", ">out.txt 2>err.txt");
     char *said = test_read_file(test_path("err.txt"), NULL);
     CHECK(said && strstr(said, "no scene script was given"));
     free(said);
@@ -113,7 +145,7 @@ TEST(gtk_window_shows_an_error_and_renders_the_mended_script) {
 TEST(gtk_window_that_is_closed_early_leaves_no_picture) {
     need_display();
     gives("sed -i 's/200, 150/1200, 900/; 1i for i = 1, 1e7 do local a = math.sin(i) end' scene.lua", 0);
-    drive("scene.lua", "titled 'scene.lua - '; xdotool key ctrl+q", 130);
+    drive("-full -ss 40 scene.lua", "titled '(scene.lua|out.png) - '; xdotool key ctrl+q", 130);
     gives("test ! -e out.png", 0);
 }
 
@@ -154,5 +186,193 @@ TEST(gtk_window_opens_under_wayland) {
           "pid=$!; "
           "await 'test -s out.png'; kill -TERM $pid; wait $pid; status=$?; kill $weston; wait $weston; exit $status; }",
           130);
-    gives("! grep 'is not written' err.txt && GRAY_WINDOW= $gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+    gives("! grep 'is not written' err.txt && $gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+}
+
+/* A dot of the desktop has two pixels of the screen, and the picture all of them. */
+TEST(gtk_window_draws_at_scale_2) {
+    need_display();
+    CHECK(setenv("GDK_SCALE", "2", 1) == 0);
+    drive("--verbose scene.lua", "titled 'out.png - ready'; xdotool key ctrl+q", 0);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "pixels, density 2"));
+    free(said);
+}
+
+static const char animation[] =
+    "local r = gr.node('root')\n"
+    "r:add_child(gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20))))\n"
+    "gr.frames{count = 5, loop = true, draw = function(t) return {node = r, file = 'out.png', width = 200, height = "
+    "150, "
+    "eye = {0, 0, 6}, view = {0, 0, -1}, fov = 40} end}\n";
+
+/* Every action, by each of its keys in a set: the program reports what it does. Before each, the ball is selected at
+ * the camera of the script; after it Esc ends what it began, and what it has changed is undone. */
+static void press_every_key(enum window_key_set set) {
+    enum { SIZE = 1 << 16 };
+    static char commands[SIZE];
+    char key[64], path[4096];
+    size_t used = 0;
+    need_display();
+    (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
+    test_write_text(path, animation);
+    test_write_text(test_path("keys.ini"), set == KEYS_OPENSCAD ? "[window]\nkeys=OpenSCAD\n" : "");
+    gives("mkdir -p gray && mv keys.ini gray/window.ini", 0);
+    used += (size_t)snprintf(
+        commands + used, SIZE - used,
+        "did() { for i in $(seq 60); do [ $(grep -c \"window: $1\\$\" err.txt) -gt $2 ] && return 0; sleep 0.05; "
+        "done; return 1; }\n"
+        "press() { for try in 1 2 3 4; do titled ' - (ready|stopped|waiting)'\n"
+        "xdotool mousemove 600 460 click 1 sleep $((try / 2)).5; n=$(grep -c \"window: $2\\$\" err.txt)\n"
+        "xdotool key $1; did $2 $n && { xdotool key Escape; return 0; }; done\n"
+        "echo \"no $2 by $1\" >&2; kill $pid; exit 97; }\n"
+        "titled ' - playing'; xdotool key space; titled ' - ready'\n");
+    for (int last = 0; last < 2; last++) {
+        for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
+            const struct window_action_row *row = &window_action_table[i];
+            for (const char *at = row->keys[set]; *at && ends_scene((enum window_action)i) == last;) {
+                size_t length = strcspn(at, " ");
+                key_for_tool(at, length, key, sizeof key);
+                used += (size_t)snprintf(commands + used, SIZE - used, "press %s %s\n", key, row->name);
+                if (row->menu == MENU_VIEW)
+                    used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s\n",
+                                             set == KEYS_BLENDER ? "0" : "ctrl+0");
+                if (repeats((enum window_action)i))
+                    used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s sleep 0.5\n",
+                                             i == DO_DELETE ? "ctrl+z"
+                                             : i == DO_PLAY ? "Escape"
+                                                            : key);
+                at += length + strspn(at + length, " ");
+            }
+        }
+    }
+    (void)used;
+    /* It is asked whether edits are to be lost. */
+    drive("--verbose scene.lua", strcat(commands, "sleep 0.5; xdotool key alt+d"), 0);
+}
+
+TEST_LONG(gtk_window_does_every_action_by_its_keys) {
+    press_every_key(KEYS_BLENDER);
+}
+
+TEST_LONG(gtk_window_does_every_action_by_the_keys_of_openscad) {
+    press_every_key(KEYS_OPENSCAD);
+}
+
+/* What a screen reader finds: every widget with a role for input has a name of its own, not that of its class; and
+ * every action of the menus can be done without a key or a mouse. */
+static const char reader[] =
+    "import pyatspi, sys, time\n"
+    "roles = {'push button', 'toggle button', 'spin button', 'slider', 'check box', 'combo box', 'text', 'entry', "
+    "'list',\n"
+    "         'image', 'menu item', 'table', 'tree'}\n"
+    "def walk(node):\n"
+    "    yield node\n"
+    "    for i in range(node.childCount):\n"
+    "        child = node.getChildAtIndex(i)\n"
+    "        if child: yield from walk(child)\n"
+    "def frames():\n"
+    "    return [f for app in pyatspi.Registry.getDesktop(0) if app for f in app if f and "
+    "f.name.startswith('out.png')]\n"
+    "for attempt in range(200):\n"
+    "    if frames(): break\n"
+    "    time.sleep(0.1)\n"
+    "frame = frames()[0]\n"
+    "named = [n for n in walk(frame) if n.getRoleName() in roles]\n"
+    "for n in named:\n"
+    "    if not n.name or n.name.startswith('Gtk'): sys.exit('no name: %s %s' % (n.getRoleName(), n.name))\n"
+    "if len(named) < 60: sys.exit('only %d widgets' % len(named))\n"
+    "if len(sys.argv) == 1: sys.exit(0)\n"
+    "for name in sys.argv[1:]:\n"
+    "    action = frame.queryAction()\n"
+    "    names = [action.getName(i) for i in range(action.nActions)]\n"
+    "    action.doAction(names.index('win.' + name))\n"
+    "    time.sleep(0.4)\n";
+
+static void need_reader(void) {
+    need_display();
+    test_need_tools("dbus-run-session");
+    if (test_run_shell("/usr/bin/python3 -c 'import pyatspi' && test -x /usr/libexec/at-spi-bus-launcher",
+                       ">/dev/null 2>&1") != 0)
+        test_lacks("there is no at-spi2-core with python3-pyatspi");
+    test_write_text(test_path("reader.py"), reader);
+}
+
+TEST(gtk_window_has_names_for_screen_readers_on_all_widgets) {
+    need_reader();
+    gives("cat >names.sh <<'END'\n"
+          "openbox >/dev/null 2>&1 & manager=$!\n$gray -gui --progress=none scene.lua & pid=$!\n"
+          "/usr/bin/python3 reader.py; status=$?; kill $pid; wait $pid; kill $manager; exit $status\nEND\n"
+          "timeout 100 xvfb-run -a -s '-screen 0 1400x900x24' dbus-run-session -- sh names.sh",
+          0);
+}
+
+/* Those that need a selection or an animation are not there. */
+TEST_LONG(gtk_window_does_every_action_of_its_menus) {
+    enum { SIZE = 8192 };
+    static char line[SIZE];
+    char pattern[64];
+    need_reader();
+    size_t used = (size_t)snprintf(
+        line, SIZE,
+        "cat >menus.sh <<'END'\n"
+        "openbox >/dev/null 2>&1 & manager=$!\n$gray -gui --verbose --progress=none scene.lua 2>said.txt & pid=$!\n"
+        "/usr/bin/python3 reader.py");
+    for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
+        enum action_need need = window_action_table[i].need;
+        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i))
+            used += (size_t)snprintf(line + used, SIZE - used, " %s", window_action_table[i].name);
+    }
+    (void)snprintf(line + used, SIZE - used,
+                   "; status=$?; kill $pid; wait $pid; kill $manager; exit $status\nEND\n"
+                   "timeout 200 xvfb-run -a -s '-screen 0 1400x900x24' dbus-run-session -- sh menus.sh");
+    gives(line, 0);
+    char *said = test_read_file(test_path("said.txt"), NULL);
+    for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
+        enum action_need need = window_action_table[i].need;
+        (void)snprintf(pattern, sizeof pattern, "window: %s\n", window_action_table[i].name);
+        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i) &&
+            (!said || !strstr(said, pattern)))
+            test_fail(__FILE__, __LINE__, "%s was not done", window_action_table[i].name);
+    }
+    free(said);
+}
+
+TEST_LONG(gtk_window_survives_a_hundred_killed_render_processes) {
+    need_display();
+    drive("scene.lua",
+          "for k in $(seq 100); do titled 'out.png - ready'; rm -f out.png; kill -9 $(pgrep -n -P $pid)\n"
+          "titled 'waiting for a change'; xdotool key F5; until_file out.png; done; xdotool key ctrl+q",
+          0);
+}
+
+/* g x 1 Return. */
+TEST(gtk_window_moves_by_typed_numbers) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1 key g key x key 1 key Return sleep 0.5\n"
+          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          0);
+    gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0})\" out-changes1.lua", 0);
+}
+
+/* The sizes of the panels and the keys of one run are those of the next. */
+TEST(gtk_window_keeps_its_choices) {
+    need_display();
+    gives("mkdir -p gray && printf '[window]\\nwidth=1100\\nheight=700\\ntree=260\\nkeys=OpenSCAD\\ndark=true\\n' "
+          ">gray/window.ini",
+          0);
+    drive("scene.lua", "titled 'out.png - ready'; xdotool key ctrl+q", 0);
+    gives("grep -q ^width=1100 gray/window.ini && grep -q ^tree=260 gray/window.ini && grep -q ^keys=OpenSCAD "
+          "gray/window.ini && grep -q ^dark=true gray/window.ini",
+          0);
+}
+
+/* As where GTK was not there when gray was built: its program for the window is not beside it. */
+TEST(gray_without_a_window_says_what_to_install) {
+    gives("cp $gray ./alone && ./alone -gui scene.lua", 2);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "alone-gui does not exist; it is built if pkg-config finds gtk4 (Debian: libgtk-4-dev; "
+                               "tools/setup.sh --window)"));
+    free(said);
 }

@@ -1,9 +1,9 @@
 /* Which pixels show a node. */
 #include "inspect/pick.h"
+#include "preview/view_overlay_internal.h"
 #include "render/camera.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "viewer/view_overlay_internal.h"
 
 #include <math.h>
 #include <string.h>

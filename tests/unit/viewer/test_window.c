@@ -1,8 +1,6 @@
-/* The window: camera flights by quaternions, the choice of the next pass, and the program itself if a virtual display
- * (Xvfb) and a tool that presses keys (xdotool) are installed. */
-#define _GNU_SOURCE
+/* The viewer with a window that the test plays: camera flights by quaternions, the choice of the next pass, edits. */
 #include "base/mem.h"
-#include "render/render.h"
+#include "render/integrator.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "viewer/viewer_internal.h"
@@ -11,8 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 static struct fly_camera some_traversal(void) {
     struct fly_camera fly_camera;
@@ -75,6 +71,17 @@ TEST(fly_camera_goes_as_far_in_a_hundred_steps_as_in_one) {
     CHECK_NEAR(apart(fast.pose.position, vec3_make(1, 2, 3)), 0, 0);
 }
 
+TEST(fly_camera_is_slower_near_what_is_in_front) {
+    struct fly_camera fly_camera = some_traversal();
+    double usual = fly_camera.speed;
+    fly_camera_near(&fly_camera, 1e-9);
+    CHECK_NEAR(fly_camera.speed, 0.01 * usual, 1e-12);
+    fly_camera_near(&fly_camera, usual);
+    CHECK_NEAR(fly_camera.speed, 0.7 * usual, 1e-12);
+    fly_camera_near(&fly_camera, HUGE_VAL);
+    CHECK_NEAR(fly_camera.speed, usual, 1e-12);
+}
+
 TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_picture) {
     struct fly_camera fly_camera = some_traversal();
     struct camera before = fly_camera_current(&fly_camera);
@@ -97,31 +104,54 @@ TEST(fly_camera_levels_the_horizon_and_keeps_its_direction) {
     fly_camera_level(&fly_camera);
     CHECK_NEAR(vec3_cross(fly_camera_current(&fly_camera).view, fly_camera_current(&fly_camera).up).y, 0, 1e-12);
     CHECK_NEAR(apart(fly_camera_current(&fly_camera).view, view), 0, 1e-12);
-    fly_camera_save(&fly_camera, 3);
-    struct vec3 layout = fly_camera.pose.position;
-    fly_camera.down[FLY_BACK] = true;
-    CHECK(fly_camera_step(&fly_camera, 2));
-    CHECK(!fly_camera_recall(&fly_camera, 4) && fly_camera_recall(&fly_camera, 3));
-    CHECK_NEAR(apart(fly_camera.pose.position, layout), 0, 0);
+}
+
+/* A movement is one view, however many steps it has. */
+TEST(fly_camera_goes_back_over_its_views_and_forth) {
+    struct fly_camera fly_camera = some_traversal();
+    struct vec3 positions[4] = {fly_camera.pose.position};
+    for (int view = 1; view < 4; view++) {
+        for (int step = 0; step < 5; step++) {
+            fly_camera.pose.position.x += 1;
+            fly_camera_note(&fly_camera, 10 * view + 0.1 * step);
+        }
+        positions[view] = fly_camera.pose.position;
+    }
+    CHECK(!fly_camera_recall(&fly_camera, true));
+    for (int view = 2; view >= 0; view--)
+        CHECK(fly_camera_recall(&fly_camera, false) && apart(fly_camera.pose.position, positions[view]) == 0);
+    CHECK(!fly_camera_recall(&fly_camera, false));
+    CHECK(fly_camera_recall(&fly_camera, true) && apart(fly_camera.pose.position, positions[1]) == 0);
+    /* A movement from there forgets what came after it; of many views the last ones stay. */
+    fly_camera.pose.position.y = 7;
+    fly_camera_note(&fly_camera, 60);
+    CHECK(!fly_camera_recall(&fly_camera, true) && fly_camera_recall(&fly_camera, false));
+    CHECK_NEAR(apart(fly_camera.pose.position, positions[1]), 0, 0);
+    for (int view = 0; view < 3 * FLY_VIEWS; view++) {
+        fly_camera.pose.position.z = view;
+        fly_camera_note(&fly_camera, 100 + view);
+    }
+    for (int view = 3 * FLY_VIEWS - 2; view > 2 * FLY_VIEWS; view--)
+        CHECK(fly_camera_recall(&fly_camera, false) && fly_camera.pose.position.z == view);
 }
 
 /* A window without a screen: the test supplies the user's input. */
 struct fake {
     struct window_event queue[16];
     int count, shown;
-    bool open, grabbed;
-    char title[1024];
+    bool open, flies;
+    struct window_state state;
 };
 
-static bool fake_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+static bool fake_open(void *context, struct error *error) {
     struct fake *fake = context;
     (void)error;
-    CHECK(width == 100 && height == 70 && title);
+    CHECK(fake->state.has_scene);
     return fake->open = true;
 }
-static void fake_show(void *context, const struct window_content *frame) {
+static void fake_show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct fake *fake = context;
-    CHECK(frame->picture && frame->width == 100 && frame->height == 70);
+    CHECK(picture && width == 100 && height == 70 && fake->state.form.count < FORM_FIELDS);
     fake->shown++;
 }
 static bool fake_poll(void *context, struct window_event *event) {
@@ -132,22 +162,24 @@ static bool fake_poll(void *context, struct window_event *event) {
     memmove(fake->queue, fake->queue + 1, (size_t)--fake->count * sizeof *event);
     return true;
 }
-static void fake_title(void *context, const char *text) {
-    struct fake *fake = context;
-    CHECK(text[0] != '\0');
-    (void)snprintf(fake->title, sizeof fake->title, "%s", text);
+static int fake_descriptor(void *context) {
+    (void)context;
+    return -1;
 }
-static void fake_grab(void *context, bool on) {
-    struct fake *fake = context;
-    fake->grabbed = on;
+static void fake_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
+    (void)context, (void)query, (void)rows;
 }
-static void fake_nothing(void *context) {
+static void fake_close(void *context) {
     struct fake *fake = context;
     fake->open = false;
 }
 
-static void key(struct fake *fake, int code, bool down) {
+static void key(struct fake *fake, enum fly_camera_key code, bool down) {
     fake->queue[fake->count++] = (struct window_event){.kind = WINDOW_KEY, .key = code, .down = down};
+}
+
+static void do_action(struct fake *fake, enum window_action action) {
+    fake->queue[fake->count++] = (struct window_event){.kind = WINDOW_ACTION, .action = action};
 }
 
 struct table {
@@ -178,32 +210,38 @@ static void build(struct table *t) {
     print_news(t, &reply);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
-    CHECK(t->viewer.pass.view.divide == 16 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
+    CHECK(t->viewer.pass.view.divide > 4 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
 }
 
-static void begin(struct table *t) {
+static void begin_with(struct table *t, struct film_record record, int samples) {
     struct error error;
     size_t bytes;
     *t = (struct table){.now = 100,
-                        .request = {.full_width = 100,
+                        .request = {.record = record,
+                                    .settings.path_samples = samples,
+                                    .full_width = 100,
                                     .full_height = 70,
                                     .width = 100,
                                     .height = 70,
                                     .camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40}}};
     t->driver = (struct window_driver){.context = &t->fake,
+                                       .state = &t->fake.state,
                                        .open = fake_open,
-                                       .show = fake_show,
+                                       .close = fake_close,
                                        .poll = fake_poll,
-                                       .title = fake_title,
-                                       .grab = fake_grab,
-                                       .full_screen = fake_nothing,
-                                       .close = fake_nothing};
-    CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+                                       .descriptor = fake_descriptor,
+                                       .show = fake_show,
+                                       .nodes = fake_nodes};
+    CHECK(film_size(100, 70, record, &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(
         viewer_begin(&t->viewer, &t->driver, &(struct viewer_picture){&t->request, t->block, "x.png"}, t->now, &error));
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 400, .y = 280, .density = 1};
     build(t);
+}
+
+static void begin(struct table *t) {
+    begin_with(t, stage_record(INTEGRATOR_WHITTED), 0);
 }
 
 /* The window of a script that has not rendered yet, and then a picture of its size. */
@@ -216,7 +254,6 @@ TEST(window_that_waits_for_a_picture_of_its_size_has_room_for_all_tiles_of_it) {
     CHECK(viewer_open(&t.viewer, &t.driver, "slow.lua", request.width, request.height, &error));
     CHECK(viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&request, t.block, "x.png"}, t.now, &error));
     CHECK_EQ_INT(t.viewer.display.tiles, 4 * 3);
-    CHECK(t.viewer.display.fits_window); /* its images are new */
     viewer_end(&t.viewer);
     mem_free(t.block);
 }
@@ -236,15 +273,22 @@ static void finish_pass(struct table *t, double seconds, bool stopped) {
     print_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
 }
 
+/* Coarse passes, each finer than the one before, up to the first fine one. */
+static void go_to_the_fine_pass(struct table *t) {
+    while (t->viewer.pass.view.plain) {
+        uint32_t divide = t->viewer.pass.view.divide;
+        finish_pass(t, 0.02, false);
+        CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+        CHECK(!t->viewer.pass.view.plain || t->viewer.pass.view.divide < divide);
+    }
+    CHECK(t->viewer.pass.view.divide == 1);
+}
+
 /* Up to the script's complete picture. */
 static void go_to_the_end(struct table *t) {
-    finish_pass(t, 0.02, false);
-    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
-    CHECK(t->viewer.pass.view.plain && t->viewer.pass.view.divide == 4 && t->viewer.pass.view.own);
+    go_to_the_fine_pass(t);
+    CHECK(t->viewer.pass.view.own);
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
-    finish_pass(t, 0.1, false);
-    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
-    CHECK(!t->viewer.pass.view.plain && t->viewer.pass.view.divide == 1 && t->viewer.pass.view.own);
     finish_pass(t, 1, false);
     CHECK_EQ_INT(step(t), VIEWER_WRITE_PICTURE);
     CHECK_EQ_INT(step(t), VIEWER_NOTHING);
@@ -253,29 +297,32 @@ static void go_to_the_end(struct table *t) {
 TEST(window_shows_coarse_passes_first_and_writes_the_picture_of_the_script_once) {
     struct table t;
     begin(&t);
-    CHECK_EQ_INT(t.viewer.pass.film.width, 7);
-    CHECK_EQ_INT(t.viewer.pass.film.height, 5);
+    CHECK(t.viewer.pass.film.width < 20 && t.viewer.pass.film.height < 14);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     go_to_the_end(&t);
     CHECK(t.fake.shown >= 3);
-    key(&t.fake, 'r', true);
+    do_action(&t.fake, DO_RENDER);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.pass.view.divide == 16 && t.viewer.pass.view.own);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.own);
+    go_to_the_fine_pass(&t);
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     end(&t);
+}
+
+/* Presses the key: the viewer asks what is in front, and nothing is. */
+static void begin_flight(struct table *t, enum fly_camera_key code) {
+    key(&t->fake, code, true);
+    CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
+    CHECK(t->viewer.command.kind == COMMAND_PICK && t->viewer.command.x == 50.5);
+    print_news(t, &(struct preview_reply){.kind = REPLY_PICKED});
 }
 
 TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, WINDOW_ARROW_UP, true);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has passed yet */
+    begin_flight(&t, FLY_FORWARD);
     for (int i = 0; i < 5; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.divide > 1 && !t.viewer.pass.view.own);
@@ -283,7 +330,7 @@ TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
         CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* a coarse pass is worth its end */
         finish_pass(&t, 0.03, false);
     }
-    key(&t.fake, WINDOW_ARROW_UP, false);
+    key(&t.fake, FLY_FORWARD, false);
     while (t.viewer.pass.view.plain) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         finish_pass(&t, 0.03, false);
@@ -295,12 +342,8 @@ TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
 TEST(window_stops_a_fine_pass_when_the_camera_moves) {
     struct table t;
     begin(&t);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.1, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(!t.viewer.pass.view.plain);
-    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
+    go_to_the_fine_pass(&t);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2, .control = true};
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     finish_pass(&t, 0.001, true);
@@ -313,8 +356,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, WINDOW_ARROW_LEFT, true);
-    (void)step(&t);
+    begin_flight(&t, FLY_LEFT);
     uint32_t divide = 0;
     for (int i = 0; i < 12; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
@@ -346,11 +388,7 @@ static int pixels_with(const struct table *t, uint8_t level) {
 TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) {
     struct table t;
     begin(&t);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(!t.viewer.pass.view.plain);
+    go_to_the_fine_pass(&t);
     /* A tile is shown again after each pass. */
     render_tile(&t, 0, 1, FILM_TILE_PASSED + 1);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
@@ -360,7 +398,7 @@ TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) 
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(pixels_with(&t, 255) == 0 && pixels_with(&t, 51) == whole);
     /* The view changes: tiles that are finished until the pass has stopped are not shown. */
-    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2, .control = true};
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     render_tile(&t, 0, 1, FILM_TILE_PASSED + 3);
     render_tile(&t, 1, 1, FILM_TILE_PASSED + 3);
@@ -373,6 +411,65 @@ TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) 
         render_tile(&t, tile, 0.6f, FILM_TILE_DONE);
     finish_pass(&t, 0.01, false);
     CHECK_EQ_INT(pixels_with(&t, 153), 100 * 70);
+    end(&t);
+}
+
+static const uint8_t *middle_of(const struct table *t) {
+    return t->viewer.window.image + (size_t)3 * (35 * 100 + 50);
+}
+
+/* A scene without `denoise`: its film has features, and passes whose tiles are not denoised are not shown. */
+TEST(window_shows_samples_of_paths_only_denoised_and_doubles_them) {
+    static const struct {
+        uint32_t divide, samples, kept;
+    } want[] = {{3, 4, 0}, {2, 8, 0}, {1, 16, 0}, {1, 32, 16}, {1, 0, 32}};
+    struct table t;
+    const struct settings settings = {.integrator = INTEGRATOR_PATH, .denoise = DENOISER_GRAY};
+    begin_with(&t, render_record(&settings), 64);
+    while (t.viewer.pass.view.plain) {
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        const struct pass_view *view = &t.viewer.command.view;
+        CHECK_EQ_INT(view->divide, want[i].divide);
+        CHECK_EQ_INT(view->samples, want[i].samples);
+        CHECK_EQ_INT(view->kept, want[i].kept);
+        /* In progress: nothing of it is shown. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 1, FILM_TILE_PASSED + 1);
+        uint8_t before = middle_of(&t)[0];
+        CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+        CHECK_EQ_INT(middle_of(&t)[0], before);
+        /* Denoised: all of it. */
+        for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+            render_tile(&t, tile, 0.2f * (float)(i % 2 + 1), FILM_TILE_DONE);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(middle_of(&t)[0], i % 2 ? 102 : 51);
+        CHECK_EQ_INT(step(&t), want[i].samples ? VIEWER_SEND_COMMAND : VIEWER_WRITE_PICTURE);
+    }
+    end(&t);
+}
+
+TEST(window_that_shows_normals_ends_with_their_preview_and_writes_no_picture) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    do_action(&t.fake, DO_SHOW_NORMALS);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    t.viewer.written = false;
+    while (t.viewer.pass.view.divide > 1) {
+        CHECK(t.viewer.pass.view.headlight && t.viewer.pass.view.shows == HEADLIGHT_NORMALS);
+        finish_pass(&t, 0.02, false);
+        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    }
+    CHECK(t.viewer.pass.view.headlight);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(viewer_is_idle(&t.viewer));
+    do_action(&t.fake, DO_SHOW_PICTURE);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    go_to_the_end(&t);
     end(&t);
 }
 
@@ -426,99 +523,44 @@ TEST(window_plays_frames_when_they_are_due_by_passes_as_coarse_as_necessary) {
     end(&t);
 }
 
-TEST(window_keys_fly_only_while_the_mouse_turns_the_camera) {
+TEST(window_keys_fly_and_escape_ends_it) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
-    key(&t.fake, 's', true);
+    do_action(&t.fake, DO_SAVE_PICTURE);
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_IMAGE);
-    key(&t.fake, 'v', true);
+    do_action(&t.fake, DO_SAVE_VIEW);
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_CAMERA);
-    key(&t.fake, WINDOW_SPACE, true);
-    key(&t.fake, 's', true);
-    (void)step(&t);
-    CHECK(t.fake.grabbed);
+    do_action(&t.fake, DO_FLY);
+    begin_flight(&t, FLY_BACK);
+    CHECK(t.fake.state.flies);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.pass.view.camera.eye.z > 5);
-    key(&t.fake, WINDOW_ESCAPE, true);
+    do_action(&t.fake, DO_ESCAPE);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(!t.fake.grabbed && !t.viewer.fly_camera.down[FLY_BACK]);
-    key(&t.fake, 'q', true);
+    CHECK(!t.fake.state.flies && !t.viewer.fly_camera.down[FLY_BACK]);
+    do_action(&t.fake, DO_QUIT);
     CHECK_EQ_INT(step(&t), VIEWER_QUIT);
     end(&t);
 }
 
-/* The program in a real window. */
-
-static int shell(const char *line) {
-    return test_run_shell(line, ">out.txt 2>err.txt");
-}
-
-static void need_display(void) {
-    test_need_window();
-    char path[4096];
-    (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
-    test_write_text(path,
-                    "local r = gr.node('root')\n"
-                    "r:add_child(gr.geometry('b', gr.sphere(gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20))))\n"
-                    "gr.render(r, 'out.png', 200, 150, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"
-                    "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n");
-    (void)snprintf(path, sizeof path, "%s/wait.sh", test_folder());
-    test_write_text(path, "for i in $(seq 3000); do eval \"$1\" && exit 0; sleep 0.05; done; exit 1\n");
-}
-
-static void gives(const char *line, int status) {
-    int got = shell(line);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    if (got != status)
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d:\n%s", line, got, status, said ? said : "");
-    free(said);
-}
-
-TEST(window_of_the_program_makes_the_picture_of_the_program_without) {
-    need_display();
-    gives("$gray scene.lua -o whole.png; "
-          "xvfb-run -a sh -c '$gray -gui scene.lua & pid=$!; sh wait.sh \"test -s out.png\" || exit 9; sleep 0.2; "
-          "xdotool key v; sh wait.sh \"test -s out-view1.lua\" || exit 8; "
-          "xdotool keydown Right sleep 0.3 keyup Right; sleep 0.5; "
-          "sh wait.sh \"xdotool search --name ready\" || exit 6; xdotool key s key v; "
-          "sh wait.sh \"test -s out-view1.png -a -s out-view2.lua\" || exit 7; xdotool key q; wait $pid' && "
-          "cmp out.png whole.png && ! cmp -s out-view1.png whole.png",
-          0);
-    /* A file saved at another position: required by the scene, it gives the picture that was saved there. */
-    gives("{ echo \"require 'out-view2'\"; cat scene.lua; } >again.lua; $gray again.lua -o again.png && "
-          "cmp again.png out-view1.png",
-          0);
-    /* A camera saved before any movement is the script's, in every digit. */
-    gives("sed -e \"s/{0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40/c.eye, c.view, c.up, c.fov/\" -e \"1i local c = "
-          "dofile('out-view1.lua')\" scene.lua >again.lua; $gray again.lua -o again.png && cmp again.png whole.png",
-          0);
-}
-
-TEST(window_that_is_closed_early_leaves_no_picture) {
-    need_display();
-    gives(
-        "xvfb-run -a sh -c '$gray -gui -full -ss 40 scene.lua & pid=$!; "
-        "sh wait.sh \"xdotool search --name scene\\|out >/dev/null\" || exit 9; sleep 0.3; xdotool key q; wait $pid'; "
-        "status=$?; test -e out.png && exit 1; exit $status",
-        130);
-}
-
-TEST(window_that_watches_shows_errors_keeps_the_camera_and_recovers) {
-    need_display();
-    gives("cp scene.lua keep.lua; xvfb-run -a sh -c '$gray -gui --watch scene.lua 2>said.txt & pid=$!; "
-          "sh wait.sh \"test -s out.png\" || exit 9; cp out.png first.png; "
-          "xdotool keydown Right sleep 0.2 keyup Right; sleep 0.2; xdotool key v; "
-          "sh wait.sh \"test -s out-view1.lua\" || exit 8; "
-          "echo \"gr.no_such_thing()\" >new.lua; mv new.lua scene.lua; "
-          "sh wait.sh \"grep -q no_such_thing said.txt\" || exit 7; "
-          "sh wait.sh \"xdotool search --name no_such_thing\" || exit 6; cmp out.png first.png || exit 5; "
-          "sed s/0.8,/0.1,/ keep.lua >new.lua; mv new.lua scene.lua; "
-          "sh wait.sh \"xdotool search --name out.png.*ready\" || exit 4; xdotool key v; "
-          "sh wait.sh \"test -s out-view2.lua\" || exit 3; cmp out-view1.lua out-view2.lua || exit 2; "
-          "xdotool key Home; sh wait.sh \"! cmp -s out.png first.png\" || exit 1; xdotool key q; wait $pid'",
-          0);
-    gives("$gray scene.lua -o whole.png && cmp out.png whole.png", 0);
+/* The camera of the script, and its picture, are there again to the bit. */
+TEST(window_returns_to_views_before) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    do_action(&t.fake, DO_VIEW_TOP);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.camera_moved && t.viewer.pass.view.camera.eye.y > 4);
+    finish_pass(&t, 0.02, false);
+    do_action(&t.fake, DO_VIEW_BACK);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.camera_moved && t.viewer.pass.view.own);
+    finish_pass(&t, 0.02, false);
+    do_action(&t.fake, DO_VIEW_FORWARD);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.camera_moved && t.viewer.pass.view.camera.eye.y > 4);
+    end(&t);
 }
 
 /* Overlays on the picture. */
@@ -533,25 +575,6 @@ static void click(struct table *t, double x, double y) {
     t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, x, y);
 }
 
-TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) {
-    struct table t;
-    begin(&t);
-    go_to_the_end(&t);
-    click(&t, 10, 6); /* Render */
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.pass.view.divide == 16 && t.viewer.pass.view.own && !t.viewer.input.pressed);
-    /* Pressed on a button and released elsewhere: no click. */
-    t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 200, 200);
-    t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 200, 200);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(!t.viewer.camera_moved);
-    click(&t, 60, 6); /* Quit */
-    CHECK_EQ_INT(step(&t), VIEWER_QUIT);
-    end(&t);
-}
-
 TEST(window_centres_the_picture_for_any_size_and_density) {
     struct table t;
     begin(&t);
@@ -561,8 +584,6 @@ TEST(window_centres_the_picture_for_any_size_and_density) {
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 300 && layout->top == 0 && layout->shown_width == 1000 && layout->shown_height == 700);
-    CHECK_EQ_INT(t.viewer.window.panel.canvas.scale, 2); /* letters of the same visible size as before */
-    CHECK(t.viewer.window.panel.canvas.width == 1600 && t.viewer.window.panel.canvas.height == 700);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 0 && layout->top == 27 && layout->shown_width == 50 && layout->shown_height == 35);
@@ -583,16 +604,13 @@ TEST(window_shows_how_long_the_picture_will_take) {
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.pass.view.plain && strstr(t.fake.title, "(coarse)") && !strstr(t.fake.title, "left"));
-    for (int i = 0; i < 9 && t.viewer.pass.view.plain; i++) {
-        finish_pass(&t, 1, false);
-        CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    }
+    CHECK(t.viewer.pass.view.plain && strstr(t.fake.state.state, "(coarse)") && !strstr(t.fake.state.state, "left"));
+    go_to_the_fine_pass(&t);
     control.progress_estimate.begun = t.now - 30;
     progress_estimate_report(&control.progress_estimate, 1, 3, t.now);
     t.now += 10;
     (void)step(&t);
-    CHECK(strstr(t.fake.title, "25 %, 1 min 20 s left"));
+    CHECK(strstr(t.fake.state.state, "25 %, 1 min 20 s left"));
     end(&t);
 }
 
@@ -603,78 +621,22 @@ TEST(window_shows_how_far_building_is_and_errors) {
     t.viewer.window.control = &control;
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(strstr(t.fake.title, "building, step 3: 25 %") != NULL);
+    CHECK(strstr(t.fake.state.state, "building, step 3: 25 %") != NULL);
     control.build_step = 0;
     finish_pass(&t, 1, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(strstr(t.fake.title, "triangles") && strstr(t.fake.title, "rays/s") && strstr(t.fake.title, "frames/s"));
+    const char *figures = t.fake.state.figures;
+    CHECK(strstr(figures, "triangles") && strstr(figures, "rays/s") && strstr(figures, "frames/s"));
     viewer_show_message(&t.viewer, "scene.lua:3: no such thing\nstack traceback");
     (void)step(&t);
-    CHECK_TEXT(t.fake.title, "scene.lua:3: no such thing");
+    CHECK_TEXT(t.fake.state.message, "scene.lua:3: no such thing");
     viewer_detach(&t.viewer);
     (void)step(&t);
-    key(&t.fake, 'r', true); /* there is nothing to render */
+    do_action(&t.fake, DO_RENDER); /* there is nothing to render */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    key(&t.fake, 's', true); /* but the displayed picture can be saved */
+    do_action(&t.fake, DO_SAVE_PICTURE); /* but the displayed picture can be saved */
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_IMAGE);
     end(&t);
-}
-
-TEST(canvas_letters_stay_inside_their_cell_and_the_canvas) {
-    enum { W = 40, H = 30 };
-    static uint8_t rgba[4 * W * H];
-    const struct canvas canvas = {rgba, W, H, 1};
-    const struct canvas_colour colour = {1, 2, 3, 255};
-    for (int c = 33; c < 127; c++) {
-        const char text[2] = {(char)c, '\0'};
-        int dots = 0;
-        canvas_clear(&canvas);
-        canvas_text(&canvas, 10, 10, text, colour);
-        for (int i = 0; i < W * H; i++) {
-            bool set = rgba[4 * i + 3] != 0;
-            dots += set;
-            CHECK(!set || (i % W >= 10 && i % W < 15 && i / W >= 10 && i / W < 17));
-        }
-        CHECK(dots >= 2 && dots < 30);
-    }
-    CHECK_EQ_INT(canvas_text_width(&canvas, "a\xc3\xa4?"), 18); /* one cell for each character */
-    canvas_text(&canvas, -3, -3, "ends", colour);
-    canvas_text(&canvas, W - 2, H - 2, "ends", colour);
-    canvas_line(&canvas, -1e9, 5, 1e9, 5, colour);
-    canvas_line(&canvas, -50, -50, 90, 90, colour);
-    CHECK_EQ_INT(rgba[4 * (20 * W + 20) + 3], 255);
-}
-
-TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
-    static uint8_t rgba[4 * 100 * 20];
-    struct panel panel = {.canvas = {rgba, 100, 20, 1}};
-    const struct panel_slider slider = {10, 2, 80, 0, 1, {9, 9, 9, 255}};
-    double value = 0.5;
-    panel.mouse_x = 30;
-    panel.mouse_y = 5;
-    panel_begin(&panel);
-    CHECK(!panel_slider(&panel, &slider, &value)); /* the mouse is over it, no button is pressed */
-    panel_end(&panel);
-    panel.down = panel.pressed = true;
-    panel_begin(&panel);
-    CHECK(panel_slider(&panel, &slider, &value));
-    panel_end(&panel);
-    CHECK_NEAR(value, 0.25, 1e-12);
-    panel.mouse_x = 500;
-    panel.mouse_y = 19;
-    panel_begin(&panel);
-    CHECK(panel_slider(&panel, &slider, &value));
-    panel_end(&panel);
-    CHECK_NEAR(value, 1, 0);
-    panel.down = false;
-    panel.released = true;
-    panel_begin(&panel);
-    CHECK(!panel_slider(&panel, &slider, &value));
-    panel_end(&panel);
-    panel.mouse_x = 30;
-    panel_begin(&panel);
-    CHECK(!panel_slider(&panel, &slider, &value));
-    panel_end(&panel);
 }
 
 /* Editing. */
@@ -712,6 +674,7 @@ static void pick_ball(struct table *t) {
     CHECK(t->viewer.edit.selection.kind == SELECTED_NODE && t->viewer.pass.result == RESULT_COMPLETE);
 }
 
+/* From the middle of the picture with the left button, or with a tool without one; then a click ends the tool. */
 static void drag(struct table *t, double dx, double dy) {
     t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, 400, 280);
     for (int i = 1; i <= 2; i++) {
@@ -720,6 +683,18 @@ static void drag(struct table *t, double dx, double dy) {
         event.dy = dy / 2;
         t->fake.queue[t->fake.count++] = event;
     }
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, 400 + dx, 280 + dy);
+}
+
+static void use_tool(struct table *t, enum window_action tool, double dx, double dy) {
+    do_action(&t->fake, tool);
+    for (int i = 1; i <= 2; i++) {
+        struct window_event event = mouse(WINDOW_MOVE, 400 + dx * i / 2, 280 + dy * i / 2);
+        event.dx = dx / 2;
+        event.dy = dy / 2;
+        t->fake.queue[t->fake.count++] = event;
+    }
+    t->fake.queue[t->fake.count++] = mouse(WINDOW_PRESS, 400 + dx, 280 + dy);
     t->fake.queue[t->fake.count++] = mouse(WINDOW_RELEASE, 400 + dx, 280 + dy);
 }
 
@@ -761,11 +736,7 @@ TEST(window_that_gets_a_request_during_a_fine_pass_goes_on_with_it) {
     struct table t;
     begin(&t);
     enlarge(&t);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(!t.viewer.pass.view.plain);
+    go_to_the_fine_pass(&t);
     atomic_store(&t.viewer.pass.film.tiles[1], FILM_TILE_DONE);
     atomic_store(&t.viewer.pass.film.tiles[2], FILM_TILE_TAKEN);
     click(&t, 400, 280);
@@ -787,8 +758,7 @@ TEST(window_moves_what_is_picked_with_the_mouse_and_undoes_it) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    key(&t.fake, 'm', true);
-    drag(&t, 40, -20);
+    use_tool(&t, DO_MOVE, 40, -20);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_TRANSFORM && change->serial == 2 && t.viewer.command.present);
@@ -801,11 +771,11 @@ TEST(window_moves_what_is_picked_with_the_mouse_and_undoes_it) {
     CHECK(change->numbers[0] == 1 && t.viewer.edit.steps.count == 1);
     refine(&t);
     CHECK(t.viewer.pass.edited && !t.viewer.camera_moved);
-    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'z', .down = true, .control = true};
+    do_action(&t.fake, DO_UNDO);
     take_change(&t);
     CHECK(!t.viewer.command.present && t.viewer.edit.steps.now.count == 0);
     refine(&t);
-    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_KEY, .key = 'y', .down = true, .control = true};
+    do_action(&t.fake, DO_REDO);
     take_change(&t);
     CHECK(t.viewer.command.present && t.viewer.command.change.numbers[3] > 0);
     end(&t);
@@ -817,16 +787,14 @@ TEST(window_turns_and_sizes_about_the_middle_of_what_is_picked) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    key(&t.fake, 't', true);
-    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    use_tool(&t, DO_TURN, 560, 0); /* the height of the picture: half a turn */
     take_change(&t);
     const double *m = t.viewer.command.change.numbers;
     const double half_turn[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
     for (int i = 0; i < 12; i++)
         CHECK_NEAR(m[i], half_turn[i], 1e-9);
     refine(&t);
-    key(&t.fake, 'z', true);
-    drag(&t, 0, -280);
+    use_tool(&t, DO_SIZE, 0, -280);
     take_change(&t);
     CHECK_NEAR(t.viewer.command.change.numbers[0], -exp(1), 1e-9);
     CHECK_NEAR(t.viewer.command.change.numbers[5], exp(1), 1e-9);
@@ -840,11 +808,11 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    key(&t.fake, WINDOW_DELETE, true);
+    do_action(&t.fake, DO_DELETE);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_GONE && t.viewer.edit.selection.kind == SELECTED_NOTHING);
     refine(&t);
-    click(&t, 101, 20); /* Sphere */
+    do_action(&t.fake, DO_ADD_SPHERE);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_CHANGE && t.viewer.command.change.kind == CHANGE_ADD &&
           t.viewer.command.more);
@@ -853,18 +821,23 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     take_change(&t); /* and its position */
     CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
-    CHECK(t.viewer.edit.tool == TOOL_MOVE && t.viewer.edit.selection.picked.serial == UINT32_MAX);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NOTHING);
+    /* It is selected when the render process has it. */
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.node.serial == UINT32_MAX);
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NODE);
     refine(&t);
     click(&t, 400, 280 - 560 * 1 / (2 * 5 * tan(20 * M_PI / 180))); /* the light at {0, 1, 0} */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 1);
-    drag(&t, 28, 0);
+    use_tool(&t, DO_MOVE, 28, 0);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_LIGHT && t.viewer.command.change.serial == 1);
     CHECK_NEAR(t.viewer.command.change.numbers[0], 28 * 2 * 5 * tan(20 * M_PI / 180) / 560, 1e-9);
     CHECK(t.viewer.command.change.numbers[3] == 1);
     refine(&t);
-    key(&t.fake, WINDOW_DELETE, true);
+    do_action(&t.fake, DO_DELETE);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_DARK);
     end(&t);
@@ -873,14 +846,13 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
 TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     struct table t;
     const double half[3] = {0.5, 0, 0};
-    double now[3];
     begin(&t);
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    viewer_material_now(&t.viewer, MATERIAL_PART_KD, now);
-    CHECK(now[0] == 0.5 && now[2] == 0.5);
-    viewer_set_material(&t.viewer, MATERIAL_PART_REFLECT, half);
+    struct change now = viewer_change(&t.viewer, CHANGE_MATERIAL, MATERIAL_PART_KD);
+    CHECK(now.numbers[0] == 0.5 && now.numbers[2] == 0.5);
+    viewer_set_numbers(&t.viewer, CHANGE_MATERIAL, MATERIAL_PART_REFLECT, 0, half);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == 1 && change->part == MATERIAL_PART_REFLECT);
@@ -913,8 +885,8 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     reply.picked.up = -1;
     reply.picked.levels = 2;
     print_news(&t, &reply);
-    key(&t.fake, WINDOW_PAGE_DOWN, true); /* there are no lines below */
-    key(&t.fake, WINDOW_PAGE_UP, true);
+    do_action(&t.fake, DO_SELECT_OPERAND); /* there are no lines below */
+    do_action(&t.fake, DO_SELECT_PARENT);
     do
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     while (t.viewer.command.kind == COMMAND_OVERLAY);
@@ -923,7 +895,7 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     reply.picked.levels = 1;
     reply.picked.below = 1;
     print_news(&t, &reply);
-    key(&t.fake, WINDOW_PAGE_DOWN, true);
+    do_action(&t.fake, DO_SELECT_OPERAND);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up == -1);
     end(&t);
@@ -954,25 +926,21 @@ TEST(window_requests_lights_until_it_has_them_all_and_selects_them_by_keys) {
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
     CHECK_EQ_INT(t.viewer.lights.known, 70);
-    key(&t.fake, 'i', true);
-    key(&t.fake, ',', true);
+    do_action(&t.fake, DO_PREVIOUS_LIGHT);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 70 &&
-          t.viewer.lights.listed);
-    key(&t.fake, '.', true);
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 70);
+    do_action(&t.fake, DO_NEXT_LIGHT);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_EQ_INT(t.viewer.edit.selection.light, 1);
-    key(&t.fake, ',', true);
-    key(&t.fake, 't', true);
-    drag(&t, 560, 0); /* the height of the picture: half a turn */
+    do_action(&t.fake, DO_PREVIOUS_LIGHT);
+    use_tool(&t, DO_TURN, 560, 0); /* the height of the picture: half a turn */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     const struct change *change = &t.viewer.command.change;
     CHECK(change->kind == CHANGE_LIGHT && change->serial == 70 && change->turns && t.viewer.command.first_light == 69);
     CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
-    CHECK_NEAR(viewer_light(&t.viewer, 70)->direction.z, 1, 1e-9);
-    viewer_add_node(&t.viewer, ADDED_COPY); /* with its changed numbers */
-    CHECK(t.viewer.edit.selection.light == 71 && t.viewer.lights.count == 71 && t.viewer.edit.tool == TOOL_TURN);
+    viewer_copy_selection(&t.viewer); /* with its changed numbers */
+    CHECK(t.viewer.edit.selection.kind == SELECTED_LIGHT && t.viewer.edit.selection.light == 71);
     const struct change *copy = &t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 2].after;
     CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
     CHECK(copy[0].number == 0 && t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 1].after.serial == 71);
@@ -984,8 +952,8 @@ TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     begin(&t);
     enlarge(&t);
     go_to_the_end(&t);
-    t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 8 * 12 + 3, 8 * 60 + 7);
-    key(&t.fake, 'p', true);
+    t.fake.queue[t.fake.count++] =
+        (struct window_event){.kind = WINDOW_ACTION, .action = DO_PIXEL_TRACE, .x = 8 * 12 + 3, .y = 8 * 60 + 7};
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t.viewer.command.kind, COMMAND_PIXEL_TRACE);
     CHECK(t.viewer.command.x == 12 && t.viewer.command.y == 60 && t.viewer.command.view.own);
@@ -994,13 +962,10 @@ TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     print_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_TEXT(t.viewer.trace.text, "one line\nanother\n");
-    key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: it starts again */
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    CHECK_EQ_INT(t.viewer.trace.line, 0);
     for (int i = 0; i < 5000; i++) /* more than fits */
         viewer_add_pixel_trace(&t.viewer, "a line of some length\n");
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    key(&t.fake, WINDOW_ESCAPE, true);
+    do_action(&t.fake, DO_ESCAPE);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_TEXT(t.viewer.trace.text, "");
     end(&t);
@@ -1013,10 +978,7 @@ TEST(window_shows_light_through_the_tone_function_of_the_script) {
     request->settings.tone.curve = TONE_FUNCTION;
     for (int i = 0; i < TONE_ENTRIES; i++)
         request->tone_table.values[i] = (float)fmin(1, tone_table_light(i) / 2);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    go_to_the_fine_pass(&t);
     CHECK(pixels_with(&t, 51) == 0);
     render_tile(&t, 0, 0.4f, FILM_TILE_PASSED + 1);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
@@ -1028,18 +990,15 @@ TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_
     struct table t;
     begin(&t);
     enlarge(&t);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    finish_pass(&t, 0.02, false);
-    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    key(&t.fake, '=', true);
+    go_to_the_fine_pass(&t);
+    do_action(&t.fake, DO_BRIGHTER);
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     finish_pass(&t, 0.001, true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.view.exposure == 0.25 && !t.viewer.command.view.plain); /* no coarse pass in between */
     finish_pass(&t, 1, false);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    key(&t.fake, '-', true);
+    do_action(&t.fake, DO_DARKER);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     finish_pass(&t, 1, false);
     CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
@@ -1053,8 +1012,7 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     enlarge(&t);
     go_to_the_end(&t);
     pick_ball(&t);
-    key(&t.fake, 'm', true);
-    drag(&t, 40, 0);
+    use_tool(&t, DO_MOVE, 40, 0);
     take_change(&t);
     viewer_keep(&t.viewer);
     viewer_detach(&t.viewer);
@@ -1070,74 +1028,144 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     end(&t);
 }
 
-static const char editing[] =
-    "xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui --size 320x240 scene.lua & pid=$!; "
-    "sh wait.sh \"test -s out.png\" || exit 20; cp out.png first.png; sh wait.sh \"xdotool search --name ready\" || "
-    "exit 19; xdotool mousemove 450 350 click 1 sleep 0.3 key m mousemove 450 350 mousedown 1 mousemove 460 340 sleep "
-    "0.1 mousemove 480 330 sleep 0.1 mouseup 1 sleep 0.2 key s; sh wait.sh \"test -s out-view1.png\" || exit 18; "
-    "cmp -s out-view1.png first.png && exit 17; "
-    "xdotool key ctrl+z sleep 0.3; sh wait.sh \"xdotool search --name ready\" || exit 16; "
-    "xdotool key s; sh wait.sh \"test -s out-view2.png\" || exit 15; cmp out-view2.png first.png || exit 14; "
-    "xdotool key ctrl+y sleep 0.3 key equal sleep 0.1 key Escape keydown Up sleep 0.2 keyup Up sleep 0.3; "
-    "sh wait.sh \"xdotool search --name ready\" || exit 13; "
-    "xdotool key s key c; sh wait.sh \"test -s out-changes1.lua\" || exit 12; "
-    "sh wait.sh \"test -s out-view3.png\" || exit 11; xdotool key q; wait $pid'";
-
-TEST(window_that_moves_a_node_saves_changes_that_give_the_same_bytes) {
-    need_display();
-    gives(editing, 0);
-    gives("{ echo \"require \\\"out-changes1\\\"\"; cat scene.lua; } >again.lua; $gray --size 320x240 again.lua -o "
-          "again.png && cmp again.png out-view3.png && ! cmp -s again.png first.png",
-          0);
-    gives("cat out-changes1.lua >&2; grep change_node out-changes1.lua && grep change_view out-changes1.lua && grep "
-          "change_exposure "
-          "out-changes1.lua",
-          0);
+static void type(struct fake *fake, const char *text) {
+    for (; *text; text++)
+        fake->queue[fake->count++] = (struct window_event){.kind = WINDOW_TYPE, .typed = *text};
 }
 
-TEST(window_that_is_resized_and_looked_about_in_shows_the_same_picture_at_home) {
-    need_display();
-    gives("xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui scene.lua & pid=$!; "
-          "sh wait.sh \"test -s out.png\" || exit 20; cp out.png first.png; "
-          "xdotool search --name out.png windowsize 520 300 sleep 0.2 windowsize 170 400 sleep 0.2 windowsize 700 500; "
-          "xdotool sleep 0.2 key Tab key f sleep 0.3 key f sleep 0.2 key ctrl+1 click 4 click 4 sleep 0.2 key "
-          "bracketright "
-          "sleep 0.1 key l sleep 0.1 key 1 sleep 0.3 click 5 sleep 0.2; "
-          "sh wait.sh \"xdotool search --name ready\" || exit 19; xdotool key s; "
-          "sh wait.sh \"test -s out-view1.png\" || exit 18; cmp -s out-view1.png first.png && exit 17; "
-          "xdotool key Home sleep 0.3; sh wait.sh \"xdotool search --name ready\" || exit 16; xdotool key s; "
-          "sh wait.sh \"test -s out-view2.png\" || exit 15; cmp out-view2.png first.png || exit 14; "
-          "xdotool key q; wait $pid'",
-          0);
+/* The change that the render process gets, once it has answered. */
+static const double *changed(struct table *t) {
+    take_change(t);
+    return t->viewer.command.change.numbers;
 }
 
-/* The only unit of X11 is the pixel. */
-TEST(window_on_a_screen_of_high_density_has_larger_letters) {
-    need_display();
-    gives("xvfb-run -a -s '-screen 0 900x700x24' sh -c 'for density in 1 2; do rm -f out.png; "
-          "GDK_SCALE=$density $gray -gui --verbose --progress=none scene.lua 2>said.txt & pid=$!; "
-          "sh wait.sh \"test -s out.png && grep -q density.$density, said.txt\" || exit 9; "
-          "sh wait.sh \"xdotool search --name ready\" || exit 8; xdotool search --name ready windowsize 600 450; "
-          "sh wait.sh \"grep -q 600x450.pixels,.density.$density,.letters.of.$density said.txt\" || exit 7; "
-          "xdotool key q; wait $pid; done'",
-          0);
+TEST(window_tools_take_typed_numbers_along_an_axis) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    do_action(&t.fake, DO_MOVE);
+    type(&t.fake, "x2.5\r"); /* g x 2.5 Return */
+    const double *m = changed(&t);
+    CHECK(m[3] == 2.5 && m[7] == 0 && m[11] == 0 && m[0] == 1 && t.viewer.edit.tool == TOOL_NONE);
+    refine(&t);
+    do_action(&t.fake, DO_SIZE);
+    type(&t.fake, "3\b2y"); /* 2 along y: the axis may come later */
+    m = changed(&t);
+    CHECK(m[0] == 1 && m[5] == 2 && m[10] == 1);
+    CHECK(strstr(t.fake.state.tool, "Size along y 2") && t.fake.state.types);
+    refine(&t);
+    do_action(&t.fake, DO_ESCAPE); /* takes it back, and keeps the selection */
+    m = changed(&t);
+    CHECK(m[5] == 1 && m[3] == 2.5 && t.viewer.edit.selection.kind == SELECTED_NODE);
+    refine(&t);
+    do_action(&t.fake, DO_TURN);
+    type(&t.fake, "z-90\r");
+    m = changed(&t);
+    CHECK_NEAR(m[1], 1, 1e-12);
+    CHECK_NEAR(m[4], -1, 1e-12);
+    CHECK_EQ_INT(t.viewer.edit.steps.at, 2);
+    end(&t);
 }
 
-TEST(window_of_the_program_plays_pauses_and_grows) {
-    need_display();
-    gives("{ sed /gr.render/,\\$d scene.lua; echo \"gr.frames{count = 9, loop = true, pure = true, draw = function(t) "
-          "return "
-          "{node = r, file = 'f.##.png', width = 200, height = 150, eye = {t, 0, 6}, view = {0, 0, -1}} end}\"; } "
-          ">anim.lua; "
-          "xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui --progress=none anim.lua & pid=$!; "
-          "sh wait.sh \"xdotool search --name playing\" || exit 20; xdotool key k; "
-          "sh wait.sh \"xdotool search --name ready..frame\" || exit 19; xdotool key h; "
-          "sh wait.sh \"xdotool search --name ready..frame\" || exit 18; "
-          "xdotool search --name ready windowsize 600 450; sh wait.sh \"xdotool search --name enlarging\\\\|ready\" || "
-          "exit 17; "
-          "xdotool key s; sh wait.sh \"ls f.*-view1.png\" || exit 16; xdotool key q; wait $pid'",
-          0);
-    gives("name=$(ls f.*-view1.png) && number=${name#f.} && number=${number%-view1.png} && "
-          "$gray -q anim.lua --frames $number-$number -o whole.png && cmp whole.png $name && ! ls f.??.png",
-          0);
+/* The picture shows 2 x 5 x tan 20 degrees in 560 pixels at the middle of the ball; a handle is 90 pixels long. */
+TEST(window_handles_move_turn_and_scale_along_their_axis_only) {
+    struct table t;
+    const double pixel = 2 * 5 * tan(20 * M_PI / 180) / 560;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    pick_ball(&t);
+    uint32_t colours = 0;
+    for (uint32_t i = 0; i < t.fake.state.line_count; i++)
+        colours |= 1u << t.fake.state.lines[i].colour;
+    CHECK((colours >> LINE_COLOUR_X & 7) == 7);
+    struct window_event events[] = {mouse(WINDOW_PRESS, 400 + 60, 280), mouse(WINDOW_MOVE, 400 + 100, 280 + 30),
+                                    mouse(WINDOW_RELEASE, 400 + 100, 280 + 30)};
+    events[1].dx = 40;
+    events[1].dy = 30; /* which has no effect */
+    memcpy(t.fake.queue, events, sizeof events);
+    t.fake.count = 3;
+    const double *m = changed(&t);
+    CHECK_NEAR(m[3], 40 * pixel, 1e-9);
+    CHECK(m[7] == 0 && m[11] == 0 && t.viewer.edit.tool == TOOL_NONE && !t.viewer.camera_moved);
+    refine(&t);
+    do_action(&t.fake, DO_UNDO);
+    (void)changed(&t);
+    refine(&t);
+    /* Beyond the arrow upwards: scales along y. */
+    struct window_event size[] = {mouse(WINDOW_PRESS, 400, 280 - 105), mouse(WINDOW_MOVE, 400, 280 - 155),
+                                  mouse(WINDOW_RELEASE, 400, 280 - 155)};
+    size[1].dy = -50;
+    memcpy(t.fake.queue, size, sizeof size);
+    t.fake.count = 3;
+    m = changed(&t);
+    CHECK_NEAR(m[5], exp(1), 1e-6);
+    CHECK(m[0] == 1 && m[10] == 1);
+    refine(&t);
+    do_action(&t.fake, DO_UNDO);
+    (void)changed(&t);
+    refine(&t);
+    /* A quarter about z lies between x and y: an eighth of a turn along it. */
+    double r = 0.6 * 90, s = r * sqrt(0.5);
+    struct window_event turn[] = {mouse(WINDOW_PRESS, 400 + s, 280 - s), mouse(WINDOW_MOVE, 400, 280 - r),
+                                  mouse(WINDOW_RELEASE, 400, 280 - r)};
+    turn[1].dx = -s;
+    turn[1].dy = s - r;
+    memcpy(t.fake.queue, turn, sizeof turn);
+    t.fake.count = 3;
+    m = changed(&t);
+    CHECK_NEAR(m[0], cos(M_PI / 4), 1e-9);
+    CHECK_NEAR(m[4], sin(M_PI / 4), 1e-9);
+    end(&t);
+}
+
+/* The cube is in the upper right corner; the middle of a face looks along its axis. */
+TEST(window_turns_to_the_face_of_the_view_cube_that_is_clicked) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    viewer_turn(&t.viewer, vec3_make(0, 1, 0), 90); /* nothing is selected: it does nothing */
+    CHECK_EQ_INT(t.viewer.edit.steps.count, 0);
+    fly_camera_orbit(&t.viewer.fly_camera, 0.2, 0.1);
+    viewer_change_view(&t.viewer);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    finish_pass(&t, 0.02, false);
+    struct camera_frame frame;
+    CHECK(viewer_camera_frame(&t.viewer, &frame));
+    for (int axis = 0; axis < 3; axis++) {
+        struct vec3 a = {axis == 0, axis == 1, axis == 2}, toward = vec3_negate(frame.forward);
+        double sign = vec3_dot(a, toward) > 0 ? 1 : -1;
+        double x = 800 - 46 + 22 * sign * vec3_dot(a, frame.unit_right),
+               y = 46 + 22 * sign * vec3_dot(a, frame.unit_down);
+        CHECK(viewer_click_cube(&t.viewer, x, y));
+        struct camera camera = fly_camera_current(&t.viewer.fly_camera);
+        CHECK_NEAR(apart(camera.view, vec3_scale(a, -sign)), 0, 1e-9);
+    }
+    CHECK(!viewer_click_cube(&t.viewer, 800 - 46, 120) && !viewer_click_cube(&t.viewer, 400, 280));
+    end(&t);
+}
+
+TEST(window_offers_a_changed_file_when_the_picture_has_taken_long) {
+    struct table t;
+    begin(&t);
+    go_to_the_end(&t);
+    CHECK(!viewer_delays_change(&t.viewer, t.now) && !viewer_delays_change(&t.viewer, t.now + 1000));
+    viewer_end(&t.viewer);
+    mem_free(t.block);
+    begin(&t);
+    go_to_the_fine_pass(&t);
+    finish_pass(&t, 60, false);
+    CHECK_EQ_INT(step(&t), VIEWER_WRITE_PICTURE);
+    CHECK(viewer_delays_change(&t.viewer, t.now + 1));
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    t.now += 0.3;
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(t.fake.state.changed);
+    do_action(&t.fake, DO_RENDER);
+    CHECK_EQ_INT(step(&t), VIEWER_RUN_AGAIN);
+    CHECK(!t.viewer.window.changed);
+    end(&t);
 }

@@ -1,10 +1,11 @@
 /* What goes between the viewer and the process of its window, with a simulated process; the rows of actions and keys.
  */
 #include "tests/harness.h"
-#include "viewer/window_channel.h"
+#include "window/window_channel.h"
 
 #include <poll.h>
 #include <string.h>
+#include <unistd.h>
 
 /* The next order, or false: there is none. */
 static bool next_order(struct channel *channel, struct window_order *order, int *descriptor) {
@@ -17,74 +18,63 @@ static bool next_order(struct channel *channel, struct window_order *order, int 
     return true;
 }
 
-static int count_orders(struct channel *channel, enum window_order_kind kind) {
-    static struct window_order order;
-    int count = 0, descriptor;
-    while (next_order(channel, &order, &descriptor)) {
-        count += order.kind == kind;
-        if (descriptor >= 0) {
-            struct window_layer none = {.bytes = 4};
-            (void)window_layer_attach(&none, 1, 1, descriptor);
-            share_destroy(&none.memory);
-        }
-    }
-    return count;
-}
-
 TEST(window_channel_changes_the_numbers_of_changed_tiles_only) {
     enum { WIDE = 300, HIGH = 200, TILES = 3 * 2 };
     static uint8_t picture[3 * WIDE * HIGH];
     static struct window_channel window;
     static struct window_order order;
-    struct window_layer seen = {.bytes = 3};
+    struct window_picture seen = {0};
     struct channel ends[2];
     struct error error;
     int descriptor = -1;
     CHECK(channel_pair(ends, &error));
     window = (struct window_channel){.channel = ends[0]};
     struct window_driver driver = window_channel_driver(&window);
-    struct window_content frame = {.picture = picture, .width = WIDE, .height = HIGH, .shown_width = WIDE};
-    driver.show(driver.context, &frame);
+    driver.show(driver.context, picture, WIDE, HIGH);
     CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_PICTURE && descriptor >= 0);
-    CHECK(window_layer_attach(&seen, order.width, order.height, descriptor));
-    CHECK_EQ_INT(window_layer_tiles(&seen), TILES);
-    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_DRAW && order.shown_width == WIDE);
+    CHECK(window_picture_attach(&seen, order.width, order.height, descriptor));
+    CHECK_EQ_INT(window_picture_tiles(&seen), TILES);
     /* The last pixel is in the last tile. */
     picture[sizeof picture - 1] = 7;
-    driver.show(driver.context, &frame);
+    driver.show(driver.context, picture, WIDE, HIGH);
+    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_SHOW);
     for (uint32_t i = 0; i < TILES; i++)
-        CHECK_EQ_INT(atomic_load(&window_layer_numbers(&seen)[i]), i == TILES - 1);
-    CHECK(memcmp(window_layer_pixels(&seen), picture, sizeof picture) == 0);
+        CHECK_EQ_INT(atomic_load(&window_picture_numbers(&seen)[i]), i == TILES - 1);
+    CHECK(memcmp(window_picture_pixels(&seen), picture, sizeof picture) == 0);
     share_destroy(&seen.memory);
     window_channel_destroy(&window);
     channel_close(&ends[1]);
 }
 
-TEST(window_channel_sends_what_has_changed_and_nothing_twice) {
+TEST(window_channel_shows_what_has_changed_and_nothing_twice) {
     static struct window_channel window;
-    static struct window_form form;
-    struct window_status status;
+    static struct window_order order;
+    static struct window_state state;
+    static const uint8_t picture[3];
+    struct share memory = {0};
     struct channel ends[2];
     struct error error;
+    int descriptor = -1;
     CHECK(channel_pair(ends, &error));
     window = (struct window_channel){.channel = ends[0]};
     struct window_driver driver = window_channel_driver(&window);
-    memset(&status, 0, sizeof status);
-    status.share = 0.5;
-    form.count = 3;
-    form.subject = 1;
-    for (int i = 0; i < 2; i++)
-        driver.status(driver.context, &status);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_STATUS), 1);
-    for (int i = 0; i < 2; i++)
-        driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 3);
-    form.fields[1].numbers[0] = 2;
-    driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 1);
-    form.subject = 2; /* all of them again */
-    driver.form(driver.context, &form);
-    CHECK_EQ_INT(count_orders(&ends[1], ORDER_FIELD), 3);
+    CHECK(driver.open(driver.context, &error));
+    CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_STATE);
+    CHECK(share_attach(&memory, descriptor, sizeof(struct window_shared), &error));
+    driver.show(driver.context, picture, 1, 1);
+    while (next_order(&ends[1], &order, &descriptor))
+        CHECK(order.kind == ORDER_PICTURE && close(descriptor) == 0);
+    for (int i = 1; i < 4; i++) {
+        driver.state->share = 0.25 * i;
+        driver.state->lines[WINDOW_LINES - 1].x1 = (float)i;
+        driver.show(driver.context, picture, 1, 1);
+        CHECK(next_order(&ends[1], &order, &descriptor) && order.kind == ORDER_SHOW);
+        window_shared_read(memory.block, &state);
+        CHECK(memcmp(&state, driver.state, sizeof state) == 0);
+        driver.show(driver.context, picture, 1, 1);
+        CHECK(!next_order(&ends[1], &order, &descriptor));
+    }
+    share_destroy(&memory);
     channel_close(&ends[1]);
     window_channel_destroy(&window);
 }

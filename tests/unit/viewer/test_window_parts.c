@@ -1,69 +1,16 @@
-/* Corner cases of the window's parts that need no window: drawing beyond the edges of a canvas, cameras in any
- * direction, edit steps and watched files without memory. */
+/* Corner cases of the window's parts that need no window: cameras in any direction, edit steps and watched files
+ * without memory. */
 #include "base/fault.h"
 #include "host/file_watch.h"
+#include "scene/edits.h"
 #include "tests/harness.h"
-#include "viewer/canvas.h"
-#include "viewer/edits.h"
-#include "viewer/fly_camera.h"
+#include "render/fly_camera.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static int inked(const struct canvas *canvas) {
-    int count = 0;
-    for (int i = 0; i < canvas->width * canvas->height; i++)
-        count += canvas->rgba[4 * i + 3] != 0;
-    return count;
-}
-
-TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
-    enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, MARGIN = 4096 };
-    static uint8_t block[MARGIN + ROOM + MARGIN];
-    const struct canvas canvas = {block + MARGIN, WIDTH, HEIGHT, 1};
-    const struct canvas_colour colour = {255, 200, 100, 255};
-    struct test_random random = {4};
-    memset(block, 77, sizeof block);
-    canvas_clear(&canvas);
-    CHECK_EQ_INT(inked(&canvas), 0);
-    for (int i = 0; i < 3000; i++) {
-        double v[4];
-        int at[4];
-        for (int k = 0; k < 4; k++) {
-            v[k] = test_uniform(&random, 0, 1) < 0.1 ? 1e9 : test_uniform(&random, -60, 90);
-            at[k] = (int)test_uniform(&random, -50, 60);
-        }
-        canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
-        canvas_ring(&canvas, v[0], v[1], fabs(v[2]), colour);
-        canvas_box(&canvas, at[0], at[1], at[2], at[3], colour);
-        canvas_text(&canvas, at[0], at[1], "Text \xC3\xA4 \x7f~!", colour);
-    }
-    for (int i = 0; i < MARGIN; i++)
-        CHECK(block[i] == 77 && block[MARGIN + ROOM + i] == 77);
-    /* An invalid position draws nothing, a line of length 0 draws a dot. */
-    canvas_clear(&canvas);
-    for (int k = 0; k < 4; k++)
-        for (int bad = 0; bad < 3; bad++) {
-            double v[4] = {5, 5, 9, 9};
-            v[k] = bad == 0 ? NAN : bad == 1 ? INFINITY : -1e300;
-            canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
-        }
-    CHECK_EQ_INT(inked(&canvas), 0);
-    canvas_line(&canvas, 7, 8, 7, 8, colour);
-    CHECK(inked(&canvas) >= 1 && inked(&canvas) <= 9);
-    /* Unknown characters look like question marks, one for each character. */
-    CHECK_EQ_INT(canvas_text_width(&canvas, "\xC3\xA4\xE2\x82\xAC\x7f"), canvas_text_width(&canvas, "???"));
-    static uint8_t other[ROOM];
-    const struct canvas second = {other, WIDTH, HEIGHT, 1};
-    canvas_clear(&canvas);
-    canvas_clear(&second);
-    canvas_text(&canvas, 1, 1, "\xC3\xA4\x7f", colour);
-    canvas_text(&second, 1, 1, "\?\?", colour);
-    CHECK(memcmp(canvas.rgba, other, ROOM) == 0);
-}
 
 /* For any view direction, also straight up and with an up vector parallel to it. */
 TEST(the_fly_camera_begins_in_the_direction_of_the_camera) {

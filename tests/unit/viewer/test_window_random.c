@@ -1,11 +1,12 @@
 /* Random users: the whole program, supervisor and confined child, under a simulated window that sends random events
- * (keys, tools, overlays, stops, sizes) while the scene's file changes. GRAY_RANDOM_SECONDS is the duration of the long
+ * (actions, keys, mouse, fields, sizes) while the scene's file changes. GRAY_RANDOM_SECONDS is the duration of the long
  * test (default: an hour); GRAY_RANDOM_SEED repeats one. The program must not crash, leak, hang or report a broken
  * protocol. */
 #define _GNU_SOURCE
 #include "host/supervisor.h"
 #include "tests/harness.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,8 @@ struct crowd {
     bool open, mutates;
     int width, height;
     double x, y;
-    int titles, frames;
+    int frames;
+    struct window_state state;
 };
 
 static int below(struct crowd *crowd, int limit) {
@@ -57,86 +59,66 @@ static void write_scene(struct crowd *crowd) {
     CHECK(rename("new.lua", "scene.lua") == 0);
 }
 
-static bool crowd_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
+static bool crowd_open(void *context, struct error *error) {
     struct crowd *crowd = context;
     (void)error;
-    CHECK(!crowd->open && width > 0 && height > 0 && title);
+    CHECK(!crowd->open);
     crowd->width = crowd->height = 0;
     return crowd->open = true;
 }
 
-/* Every byte to be displayed is readable. */
-static void crowd_show(void *context, const struct window_content *frame) {
+/* Every byte to be displayed is readable, every line a number. */
+static void crowd_show(void *context, const uint8_t *picture, uint32_t width, uint32_t height) {
     struct crowd *crowd = context;
+    const struct window_state *state = &crowd->state;
     unsigned sum = 0;
-    for (size_t i = 0; i < 3 * (size_t)frame->width * frame->height; i += 97)
-        sum += frame->picture[i];
-    for (size_t i = 0; i < 4 * (size_t)frame->window_width * frame->window_height; i += 97)
-        sum += frame->overlay[i];
+    for (size_t i = 0; i < 3 * (size_t)width * height; i += 97)
+        sum += picture[i];
+    CHECK(state->line_count <= WINDOW_LINES);
+    for (uint32_t i = 0; i < state->line_count; i++)
+        CHECK(state->lines[i].x0 + state->lines[i].y0 + state->lines[i].x1 + state->lines[i].y1 < INFINITY);
     crowd->frames += sum > 0;
-    CHECK(crowd->open && (int)frame->window_width == crowd->width && (int)frame->window_height == crowd->height);
-    CHECK(frame->shown_width >= 1 && frame->shown_height >= 1);
+    CHECK(crowd->open && state->shown_width >= 1 && state->shown_height >= 1);
 }
 
-static struct window_event random_key(struct crowd *crowd) {
-    static const int keys[] = {'r',
-                               'l',
-                               '[',
-                               ']',
-                               '1',
-                               '2',
-                               'm',
-                               't',
-                               'z',
-                               'z',
-                               'y',
-                               'y',
-                               'w',
-                               'a',
-                               'd',
-                               'e',
-                               '+',
-                               '-',
-                               'f',
-                               'x',
-                               'b',
-                               'g',
-                               WINDOW_SPACE,
-                               WINDOW_ESCAPE,
-                               WINDOW_SHIFT,
-                               WINDOW_CONTROL,
-                               WINDOW_ARROW_UP,
-                               WINDOW_ARROW_DOWN,
-                               WINDOW_ARROW_LEFT,
-                               WINDOW_ARROW_RIGHT,
-                               WINDOW_HOME,
-                               WINDOW_DELETE,
-                               WINDOW_PAGE_UP,
-                               WINDOW_PAGE_DOWN,
-                               WINDOW_TAB,
-                               ',',
-                               '.',
-                               'i',
-                               'h',
-                               'j',
-                               'k',
-                               'o'};
-    static const int rare[] = {'s', 'v', 'c', 'n', 'p'};
-    int count = (int)(sizeof keys / sizeof *keys), key = keys[below(crowd, count)];
-    if (below(crowd, 60) == 0)
-        key = rare[below(crowd, 5)];
-    return (struct window_event){.kind = WINDOW_KEY,
-                                 .key = key,
-                                 .down = below(crowd, 3) > 0,
-                                 .control = below(crowd, 3) == 0,
-                                 .shift = below(crowd, 4) == 0};
+/* Quitting, saving, the next picture and traces are rare. */
+static struct window_event random_action(struct crowd *crowd) {
+    struct window_event event = {.kind = WINDOW_ACTION, .x = crowd->x, .y = crowd->y};
+    bool rare;
+    do {
+        event.action = (enum window_action)below(crowd, WINDOW_ACTION_COUNT);
+        rare = window_action_table[event.action].menu == MENU_FILE || event.action == DO_PIXEL_TRACE;
+    } while (event.action == DO_QUIT || (rare && below(crowd, 10) > 0));
+    return event;
+}
+
+/* A field of the form that is shown, but no setting, which runs the scripts again; or any other. */
+static struct window_event random_field(struct crowd *crowd) {
+    struct window_event event = {.kind = WINDOW_FIELD, .field = (uint32_t)below(crowd, 60), .joins = below(crowd, 2)};
+    uint32_t count = crowd->state.form.count, at = count > 0 ? (uint32_t)below(crowd, (int)count) : 0;
+    if (count > 0 && below(crowd, 4) > 0 && crowd->state.form.fields[at].number < 60)
+        event.field = crowd->state.form.fields[at].number;
+    for (int i = 0; i < 3; i++)
+        event.numbers[i] = below(crowd, 4) ? test_uniform(&crowd->random, -1, 2) : (double)below(crowd, 4);
+    return event;
 }
 
 static struct window_event random_event(struct crowd *crowd) {
     int what = below(crowd, 100);
     struct window_event event = {.kind = WINDOW_MOVE, .x = crowd->x, .y = crowd->y};
-    if (what < 30)
-        return random_key(crowd);
+    if (what < 20)
+        return random_action(crowd);
+    if (what < 26)
+        return random_field(crowd);
+    if (what < 28)
+        return (struct window_event){.kind = WINDOW_TYPE, .typed = "xyz0123.-\b\r"[below(crowd, 11)]};
+    if (what < 32)
+        return (struct window_event){
+            .kind = WINDOW_KEY, .key = (enum fly_camera_key)below(crowd, FLY_KEYS), .down = below(crowd, 3) > 0};
+    if (what < 34)
+        return (struct window_event){
+            .kind = below(crowd, 2) ? WINDOW_SELECT : WINDOW_NODES,
+            .node = {.depth = (uint32_t)below(crowd, 4), .path = {0, (uint32_t)below(crowd, 5)}}};
     if (what < 65) {
         bool far = below(crowd, 5) == 0;
         event.dx = test_uniform(&crowd->random, -20, 20);
@@ -145,10 +127,12 @@ static struct window_event random_event(struct crowd *crowd) {
         event.y = far ? test_uniform(&crowd->random, -5, crowd->height + 5) : crowd->y + event.dy;
     } else if (what < 92) {
         event.kind = below(crowd, 2) ? WINDOW_PRESS : WINDOW_RELEASE;
-        event.button = below(crowd, 12) == 0 ? WINDOW_RIGHT : WINDOW_LEFT;
+        event.button = below(crowd, 12) == 0 ? WINDOW_RIGHT : below(crowd, 6) == 0 ? WINDOW_MIDDLE : WINDOW_LEFT;
+        event.shift = below(crowd, 3) == 0;
         event.control = below(crowd, 3) == 0;
     } else if (what < 96) {
-        event = (struct window_event){.kind = WINDOW_WHEEL, .y = test_uniform(&crowd->random, -3, 3)};
+        event = (struct window_event){
+            .kind = WINDOW_WHEEL, .y = test_uniform(&crowd->random, -3, 3), .control = below(crowd, 3) == 0};
     } else if (what < 98) {
         event = (struct window_event){.kind = WINDOW_LEAVE};
     } else {
@@ -185,15 +169,13 @@ static bool crowd_poll(void *context, struct window_event *event) {
     return true;
 }
 
-static void crowd_title(void *context, const char *text) {
-    struct crowd *crowd = context;
-    crowd->titles += text[0] != '\0';
-}
-static void crowd_grab(void *context, bool on) {
-    (void)context, (void)on;
-}
-static void crowd_nothing(void *context) {
+static int crowd_descriptor(void *context) {
     (void)context;
+    return -1;
+}
+static void crowd_nodes(void *context, const struct node_query *query, const struct node_rows *rows) {
+    (void)context;
+    CHECK(!query || rows->count <= NODE_ROWS);
 }
 static void crowd_close(void *context) {
     struct crowd *crowd = context;
@@ -203,15 +185,16 @@ static void crowd_close(void *context) {
 
 /* One session with this many polls for events. Returns the number of displayed frames. */
 static int sit(uint64_t seed, int polls) {
-    struct crowd crowd = {.random = {seed}, .polls_left = polls};
+    static struct crowd crowd;
+    crowd = (struct crowd){.random = {seed}, .polls_left = polls};
     const struct window_driver driver = {.context = &crowd,
+                                         .state = &crowd.state,
                                          .open = crowd_open,
-                                         .show = crowd_show,
+                                         .close = crowd_close,
                                          .poll = crowd_poll,
-                                         .title = crowd_title,
-                                         .grab = crowd_grab,
-                                         .full_screen = crowd_nothing,
-                                         .close = crowd_close};
+                                         .descriptor = crowd_descriptor,
+                                         .show = crowd_show,
+                                         .nodes = crowd_nodes};
     struct arena arena = {0};
     struct options options;
     struct error error;

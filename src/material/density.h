@@ -1,0 +1,51 @@
+/* The density of a medium: 1 in a box, which may be infinite; a recorded function of the point in a box; or a
+ * grid over a box, trilinear between the centres of its voxels. Cells of the box have bounds of the density, which say
+ * how long steps along a line may be (medium_mix.h). A density above the bound of its cell counts as the bound; the
+ * first such point is noted. */
+#ifndef GRAY_MATERIAL_DENSITY_H
+#define GRAY_MATERIAL_DENSITY_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "material/fog_field.h"
+#include "math/box.h"
+
+struct density;
+
+/* A line through media, from `origin` along the unit `direction`. */
+struct medium_line {
+    struct vec3 origin, direction;
+    double distance, time; /* the distance may be infinite */
+};
+
+/* Errors: no memory. */
+const struct density *density_of_box(struct arena *arena, const struct box *box, struct error *error);
+
+/* field: a fog_field without colour. bound: of the density, for functions whose intervals have none; INFINITY: not
+ * given. looseness: the factor of the bounds, 1; for tests. Errors: no memory, a cell without a bound. */
+struct density_function {
+    const struct fog_field_input *field;
+    double bound, looseness;
+};
+const struct density *density_of_function(struct arena *arena, const struct density_function *in, struct error *error);
+
+/* Values of at least 0, x fastest, which must outlive the density. Errors: no memory. */
+struct density_grid {
+    struct box box;
+    uint32_t count[3];
+    const float *values;
+    double looseness;
+};
+const struct density *density_of_grid(struct arena *arena, const struct density_grid *in, struct error *error);
+
+/* The box outside of which the density is 0. */
+struct box density_box(const struct density *density);
+/* The recorded function, or NULL. */
+const struct expr_program *density_program(const struct density *density);
+/* The first point where the density was above its bound, and the density there. False: none. */
+bool density_excess(const struct density *density, struct vec3 *point, double *value);
+
+/* The integral of the density along the line, by quadrature. */
+double density_depth(const struct density *density, const struct medium_line *line);
+
+#endif

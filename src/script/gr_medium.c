@@ -1,0 +1,257 @@
+/* See gr_medium_internal.h. Media: what absorbs, scatters and emits light, and its density by place. */
+#include "script/gr_medium_internal.h"
+
+#include "call/context.h"
+#include "formats/voxels.h"
+#include "material/density.h"
+#include "material/medium.h"
+#include "record/record_bounds.h"
+#include "script/rows_internal.h"
+
+#include <float.h>
+
+#define VOXEL_WORD(type, word, more, bytes) " " word
+enum {
+    MEDIUM_ABSORPTION,
+    MEDIUM_SCATTERING,
+    MEDIUM_ALBEDO,
+    MEDIUM_DISTANCE,
+    MEDIUM_EMISSION,
+    MEDIUM_G,
+    MEDIUM_PHASE,
+    MEDIUM_DENSITY,
+    MEDIUM_BOUND,
+    MEDIUM_CORNER,
+    MEDIUM_SIZE,
+    MEDIUM_TOP,
+    MEDIUM_CELLS,
+    MEDIUM_TYPE,
+};
+static const struct script_parameter medium_parameters[] = {
+    [MEDIUM_ABSORPTION] = {"absorption", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
+                           "Light absorbed, per unit of length."},
+    [MEDIUM_SCATTERING] = {"scattering", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
+                           "Light scattered, per unit of length."},
+    [MEDIUM_ALBEDO] = {"albedo", KIND_COLOUR, OPTIONAL, IN_RANGE(0, 1), NULL, "{1, 1, 1}",
+                       "With distance, instead of absorption and scattering: the share that is scattered."},
+    [MEDIUM_DISTANCE] = {"distance", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
+                         "The mean free path: what light travels between two events, on average."},
+    [MEDIUM_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
+                         "Light that the medium adds, per unit of length."},
+    [MEDIUM_G] = {"g", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",
+                  "Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward."},
+    [MEDIUM_PHASE] = {"phase", KIND_CHOICE, OPTIONAL, 0, 0, "rayleigh", NULL, NULL,
+                      "Rayleigh's phase function, of very small particles, instead of g."},
+    [MEDIUM_DENSITY] = {"density", KIND_NUMBERS, OPTIONAL | OR_FUNCTION | OR_FILE, ABOVE(0), NULL, "1",
+                        "The factor of absorption, scattering and emission: a number, a function f(p, s) of the point "
+                        "and s.time, or a grid: numbers, or the name of an NRRD file or of a file of plain values."},
+    [MEDIUM_BOUND] = {"bound", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "found by gray",
+                      "A bound of a density function; where the function is larger, it counts as the bound."},
+    [MEDIUM_CORNER] = {"corner", KIND_POINT, OPTIONAL, ANY, NULL, NULL,
+                       "With size, the box of the medium or of its grid: the corner with the smallest coordinates."},
+    [MEDIUM_SIZE] = {"size", KIND_SIZE, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,
+                     "Length of the edges of that box, one number or three."},
+    [MEDIUM_TOP] = {"top", KIND_NUMBER, OPTIONAL, ANY, NULL, "none", "The medium ends at this height y."},
+    [MEDIUM_CELLS] = {"cells", KIND_TRIPLE, OPTIONAL, 1, VOXELS_LIMIT, NULL, NULL, NULL,
+                      "Of a grid of numbers or plain values: how many there are along x, y and z; x varies fastest."},
+    [MEDIUM_TYPE] = {"type", KIND_CHOICE, OPTIONAL, 0, 0, VOXEL_TYPES(VOXEL_WORD), NULL, "'float'",
+                     "Type of the values of a plain file, little-endian."},
+};
+
+/* The material of solids that it fills: their surface is a hole everywhere. */
+static struct material *keep_medium(struct script_context *context, const struct medium *medium, struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct material *material = scene_material(&context->scene, MATERIAL_PHONG, NULL, error);
+    struct medium *kept = arena_alloc(arena, sizeof *kept);
+    if (!material || !kept) {
+        error_no_memory(error, "a medium");
+        return NULL;
+    }
+    *kept = *medium;
+    material->medium = kept;
+    material->inputs[INPUT_OPACITY] = texture_keep(arena, texture_number(0), error);
+    return material->inputs[INPUT_OPACITY] ? material : NULL;
+}
+
+/* A copy of the material with the medium behind its surface. */
+static const struct material *put_behind(struct script_context *context, const struct material *material,
+                                         const struct medium *medium, struct error *error) {
+    struct medium *kept = arena_alloc(&context->scene.arena, sizeof *kept);
+    struct material *copy = scene_material(&context->scene, material->kind, material, error);
+    if (!kept || !copy) {
+        error_no_memory(error, "a medium");
+        return NULL;
+    }
+    *kept = *medium;
+    kept->fills = false;
+    copy->base = material->base;
+    copy->origin = material->origin;
+    copy->depth = material->depth;
+    copy->name = material->name;
+    copy->medium = kept;
+    return copy;
+}
+
+bool choose_material(struct script_context *context, const struct script_value *material,
+                     const struct script_value *medium, const struct material **out, struct error *error) {
+    *out = medium->given ? medium->material : material->material;
+    if (medium->given && material->given)
+        *out = put_behind(context, material->material, medium->material->medium, error);
+    return *out || !(medium->given && material->given);
+}
+
+/* --- density --- */
+
+/* The box of corner and size, and below the top. False: only one of them is given. */
+static bool read_box(const struct script_value *args, struct box *box, struct error *error) {
+    *box = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
+    if (args[MEDIUM_CORNER].given != args[MEDIUM_SIZE].given)
+        return error_set(error, ERROR_SCENE, "corner and size belong together; %s is missing",
+                         args[MEDIUM_CORNER].given ? "size" : "corner");
+    if (args[MEDIUM_CORNER].given) {
+        box->min = args[MEDIUM_CORNER].vector;
+        box->max = vec3_add(box->min, args[MEDIUM_SIZE].vector);
+    }
+    if (args[MEDIUM_TOP].given && !(args[MEDIUM_TOP].number > box->min.y))
+        return error_set(error, ERROR_SCENE, "top is below the box, so nothing is left of the medium");
+    box->max.y = args[MEDIUM_TOP].given ? fmin(box->max.y, args[MEDIUM_TOP].number) : box->max.y;
+    return true;
+}
+
+static bool read_cells(const struct script_value *args, struct voxels *out, struct error *error) {
+    if (!args[MEDIUM_CELLS].given)
+        return error_set(error, ERROR_SCENE, "cells is missing: how many values the grid has along x, y and z");
+    for (int axis = 0; axis < 3; axis++) {
+        double n = vec3_get(args[MEDIUM_CELLS].vector, axis);
+        if (n != (double)(uint32_t)n)
+            return error_set(error, ERROR_SCENE, "cells[%d] must be a whole number", axis + 1);
+        out->count[axis] = (uint32_t)n;
+    }
+    return true;
+}
+
+/* The numbers of a table. */
+static bool read_numbers(struct script_context *context, const struct script_value *args, struct voxels *out,
+                         struct error *error) {
+    const struct script_value *numbers = &args[MEDIUM_DENSITY];
+    if (!read_cells(args, out, error))
+        return false;
+    uint64_t count = (uint64_t)out->count[0] * out->count[1] * out->count[2];
+    if (numbers->count != count)
+        return error_set(error, ERROR_SCENE, "density must have %llu numbers, one for each of the cells, not %u",
+                         (unsigned long long)count, numbers->count);
+    float *values = arena_alloc_array(&context->scene.arena, count, sizeof *values);
+    if (!values)
+        return error_no_memory(error, "a medium");
+    for (uint64_t i = 0; i < count; i++) {
+        if (!(numbers->numbers[i] <= (double)FLT_MAX))
+            return error_set(error, ERROR_SCENE, "density[%llu] is too large", (unsigned long long)i + 1);
+        values[i] = (float)numbers->numbers[i];
+    }
+    out->values = values;
+    return true;
+}
+
+static bool read_file(struct script_context *context, const struct script_value *args, struct voxels *out,
+                      struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    char path[PATH_SIZE];
+    if (!files_require(&context->sandbox, args[MEDIUM_DENSITY].text, path, error))
+        return false;
+    if (!args[MEDIUM_CELLS].given && !args[MEDIUM_TYPE].given)
+        return voxels_read_nrrd(path, arena, out, error);
+    return read_cells(args, out, error) &&
+           voxels_read_raw(path, (enum voxel_type)args[MEDIUM_TYPE].choice, arena, out, error);
+}
+
+static const struct density *density_by_function(struct script_context *context, const struct script_value *args,
+                                                 const struct box *box, struct error *error) {
+    const struct fog_field_input field = {.density = args[MEDIUM_DENSITY].program,
+                                          .source = args[MEDIUM_DENSITY].source,
+                                          .corner = box->min,
+                                          .size = vec3_sub(box->max, box->min)};
+    record_use(&context->sandbox, field.density, box);
+    return density_of_function(
+        &context->scene.arena,
+        &(struct density_function){&field, args[MEDIUM_BOUND].given ? args[MEDIUM_BOUND].number : INFINITY, 1}, error);
+}
+
+/* *out: NULL where the density is the same everywhere. */
+static bool read_density(struct script_context *context, const struct script_value *args, const struct density **out,
+                         struct error *error) {
+    const struct script_value *density = &args[MEDIUM_DENSITY];
+    struct arena *arena = &context->scene.arena;
+    bool is_grid = density->text || (density->given && !density->program && !density->single);
+    struct box box;
+    *out = NULL;
+    if (!read_box(args, &box, error))
+        return false;
+    if ((is_grid || density->program) && !args[MEDIUM_CORNER].given)
+        return error_set(error, ERROR_SCENE, "corner and size are missing: the box in which the density %s",
+                         density->program ? "is a function" : "has its grid");
+    if (args[MEDIUM_BOUND].given && !density->program)
+        return error_set(error, ERROR_SCENE, "bound is for a density that is a function");
+    if (args[MEDIUM_CELLS].given && !is_grid)
+        return error_set(error, ERROR_SCENE, "cells is for a density that is a grid");
+    if (is_grid && args[MEDIUM_TOP].given)
+        return error_set(error, ERROR_SCENE, "a grid ends at its box; top is for other densities");
+    if (density->program)
+        return (*out = density_by_function(context, args, &box, error)) != NULL;
+    if (is_grid) {
+        struct voxels voxels;
+        if (!(density->text ? read_file(context, args, &voxels, error) : read_numbers(context, args, &voxels, error)))
+            return false;
+        const struct density_grid grid = {box, {voxels.count[0], voxels.count[1], voxels.count[2]}, voxels.values, 1};
+        return (*out = density_of_grid(arena, &grid, error)) != NULL;
+    }
+    if (!args[MEDIUM_CORNER].given && !args[MEDIUM_TOP].given)
+        return true;
+    return (*out = density_of_box(arena, &box, error)) != NULL;
+}
+
+/* --- the medium --- */
+
+static bool read_coefficients(const struct script_value *args, struct medium_input *in, struct error *error) {
+    bool by_distance = args[MEDIUM_ALBEDO].given || args[MEDIUM_DISTANCE].given;
+    if (by_distance && (args[MEDIUM_ABSORPTION].given || args[MEDIUM_SCATTERING].given))
+        return error_set(error, ERROR_SCENE, "give absorption and scattering, or albedo and distance, not both");
+    in->absorption = args[MEDIUM_ABSORPTION].colour;
+    in->scattering = args[MEDIUM_SCATTERING].colour;
+    in->emission = args[MEDIUM_EMISSION].colour;
+    if (by_distance) {
+        double events = args[MEDIUM_DISTANCE].given ? 1 / args[MEDIUM_DISTANCE].number : 1;
+        in->scattering = colour_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].colour : colour_all(1), events);
+        in->absorption = colour_sub(colour_all(events), in->scattering);
+    }
+    if (args[MEDIUM_DENSITY].single) {
+        double factor = args[MEDIUM_DENSITY].numbers[0];
+        in->absorption = colour_scale(in->absorption, factor);
+        in->scattering = colour_scale(in->scattering, factor);
+        in->emission = colour_scale(in->emission, factor);
+    }
+    return true;
+}
+
+static bool gr_medium(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
+    struct medium_input in = {.phase = {PHASE_HENYEY_GREENSTEIN, args[MEDIUM_G].number}};
+    if (!read_coefficients(args, &in, error))
+        return false;
+    if (args[MEDIUM_PHASE].given && args[MEDIUM_G].given)
+        return error_set(error, ERROR_SCENE, "phase = 'rayleigh' has no g; give one of them");
+    if (args[MEDIUM_PHASE].given)
+        in.phase = (struct phase){PHASE_RAYLEIGH, 0};
+    if (!read_density(context, args, &in.density, error))
+        return false;
+    struct medium medium = medium_filling(&in);
+    if (!colour_finite(medium.extinction) || !colour_finite(medium.emission))
+        return error_set(error, ERROR_SCENE, "absorption, scattering, emission and density are too large together");
+    result->pointer = keep_medium(context, &medium, error);
+    return result->pointer;
+}
+
+static const struct script_function medium_rows[] = {
+    GR("medium", medium_parameters, RESULT_MEDIUM, gr_medium, "A medium that absorbs, scatters and emits light.",
+       "scattering absorption?"),
+};
+const struct function_rows medium_functions = {medium_rows, COUNT(medium_rows)};
