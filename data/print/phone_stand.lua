@@ -9,7 +9,6 @@ local outline = {
     { 0, 0 }, { 80, 0 }, { 80, 6 }, { 76, 14 }, { 71, 12.5 }, { 73, 7 }, { 38, 7 }, { 12, 78 }, { 5, 76 }, { 30, 7 }, { 6, 7 }, { 0, 4 },
 }
 local side = gr.prism { name = 'side', material = plastic, outline = outline, from = 0, to = 60 }
-side:rotate('x', 90):translate(0, 60, 0)
 
 local part = gr.difference {
     side,

@@ -1,5 +1,5 @@
 -- TITLE: To print: a vase
--- A spline turned about an axis, with a wall of 2 mm and flutes that stop below the rim. Millimetres, z up.
+-- A profile turned about an axis, with a wall of 2 mm and a row of hollows. Millimetres, z up.
 -- Author: gray project
 
 local clay = gr.material({ 0.75, 0.55, 0.45 }, { 0.15, 0.15, 0.15 }, 20)
@@ -16,12 +16,12 @@ local function profile(inset, floor)
 end
 
 local vase = gr.difference { gr.lathe { material = clay, points = profile(0, 0) }, gr.lathe { material = clay, points = profile(2, 3) }, name = 'vase' }
-local flutes = {}
+local hollows = {}
 for i = 0, 11 do
     local a = math.rad(30 * i)
-    flutes[#flutes + 1] = gr.sphere { material = clay, centre = { 47 * math.cos(a), 58, 47 * math.sin(a) }, radius = 7 }
+    hollows[#hollows + 1] = gr.sphere { material = clay, centre = { 47 * math.cos(a), 58, 47 * math.sin(a) }, radius = 7 }
 end
-local part = gr.difference { vase, gr.union(flutes), name = 'fluted vase' }
+local part = gr.difference { vase, gr.union(hollows), name = 'hollowed vase' }
 
 -- The axis of a lathe is y.
 local upright = gr.node 'print'
