@@ -191,7 +191,7 @@ bool model_export_picture(struct render_process *process, const struct render_re
     const struct options *options = process->options;
     struct model_work work = {.process = process,
                               .scene = request->scene,
-                              .node = request->root,
+                              .node = request->subject,
                               .file = options->model ? options->model : "check.stl",
                               .where = request->where,
                               .tolerance = options->tolerance,
