@@ -1,10 +1,10 @@
 -- TITLE: Clouds from one Lua function
--- OPTIONS: --spp 48 --max-depth 12 --denoise
+-- OPTIONS: --spp 16 --denoise
 -- The density of the clouds is one function of the point: heaps of noise that fade to their edges. gray finds its bounds
 -- in the cells of the box. The sun and a clear sky light them and the land below.
 local function density(p)
     local q, heap, size = p * gr.vec(.32, .45, .32) + gr.vec(3.1, 0, 1.7), 0, 1
-    for _ = 1, 5 do -- octaves of noise
+    for _ = 1, 4 do -- octaves of noise
         heap = heap + size * gr.noise(q)
         q, size = q * 2.03, size * .5
     end
@@ -14,7 +14,7 @@ end
 
 local scene = gr.node('land')
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = { .10, .15, .06 } } })
-gr.render { node = scene, file = 'clouds.png', width = 640, height = 400, integrator = 'path', eye = { 0, 1.1, 16 },
+gr.render { node = scene, file = 'clouds.png', width = 480, height = 300, max_depth = 10, integrator = 'path', eye = { 0, 1.1, 16 },
     target = { 0, 3.4, 0 }, fov = 50, exposure = -.4, tone = 'filmic',
     lights = { gr.sun_light { sun = { .7, .55, .35 }, colour = { 5, 4.7, 4.2 } } },
     background = gr.clear_sky { sun = { .7, .55, .35 }, turbidity = 2.2 },

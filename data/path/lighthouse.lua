@@ -1,5 +1,5 @@
 -- TITLE: A lighthouse in fog
--- OPTIONS: --spp 48 --max-depth 6 --denoise
+-- OPTIONS: --spp 40 --denoise
 -- The lamp behind its panes sends two beams into the fog of a sea at night. The fog is a medium that ends above the
 -- lamp; spots and lamp are seen by the light that it scatters.
 local scene = gr.node('coast')
@@ -28,7 +28,7 @@ for i = 1, 10 do
     local x, z = .62 * math.cos(a), .62 * math.sin(a)
     scene:add_child(gr.cylinder { from = { x, 10.95, z }, to = { x, 12.2, z }, radius = .03, material = slate })
 end
-scene:add_child(gr.cone { from = { 0, 12.2, 0 }, to = { 0, 13.1, 0 }, from_radius = .85, radius = .02, material = red })
+scene:add_child(gr.cone { from = { 0, 12.2, 0 }, to = { 0, 13.1, 0 }, from_radius = .85, radius = .02, material = slate })
 -- a hut
 scene:add_child(gr.cube { corner = { 2.1, .5, .9 }, size = { 1.7, 1.4, 1.5 }, material = white })
 scene:add_child(gr.cube { corner = { 2, 1.9, .8 }, size = { 1.9, .15, 1.7 }, material = slate })
@@ -41,6 +41,6 @@ local lights = {
     gr.light { position = { 2.9, 1.3, 2.75 }, colour = { 1, .6, .25 }, intensity = 1.6 },
     gr.directional_light { direction = { -.4, -1, -.5 }, colour = { .006, .008, .014 } },
 }
-gr.render { node = scene, file = 'lighthouse.png', width = 640, height = 480, integrator = 'path', eye = { -3, 3.2, 21 },
+gr.render { node = scene, file = 'lighthouse.png', width = 480, height = 360, max_depth = 6, clamp = 2, integrator = 'path', eye = { -3, 3.2, 21 },
     target = { 0, 6.6, 0 }, fov = 42, lights = lights, background = { .002, .003, .006 }, exposure = 1, tone = 'filmic',
     medium = gr.medium { albedo = { .9, .92, .95 }, distance = 60, g = .5, top = 22 } }

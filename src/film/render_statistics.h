@@ -10,6 +10,7 @@ struct render_statistics {
     uint64_t pixels, marked_pixels, samples;
     uint64_t late_pixels; /* Whitted: the time limit was over, and they have fewer samples */
     uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
+    uint64_t medium_events; /* where media scatter paths */
     uint64_t photons, photons_landed, photon_rays;
     uint64_t passes_samples; /* of each pixel where the samples came in passes, else 0 */
     bool noisy;              /* with --noise: a tile did not reach it, because of the limit of samples or time */

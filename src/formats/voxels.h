@@ -10,7 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Types of numbers, little-endian: the word of a script, further words of NRRD, bytes. */
+/* Types of numbers, little-endian: the word of a script (gr.medium has them in this order), further words of NRRD,
+ * bytes. */
 #define VOXEL_TYPES(X)                                                                                                 \
     X(VOXEL_FLOAT, "float", "", 4)                                                                                     \
     X(VOXEL_DOUBLE, "double", "", 8)                                                                                   \

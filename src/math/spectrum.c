@@ -47,3 +47,20 @@ struct colour spectrum_weight(double wavelength) {
 struct colour spectrum_node_weight(int i) {
     return node_weights[i];
 }
+
+/* Planck's law, by wavelength. */
+static struct colour planck(double kelvin) {
+    const double c2 = 14387.768775; /* second radiation constant, in micrometres times kelvin */
+    struct colour sum = {0, 0, 0};
+    for (int i = 0; i < SPECTRUM_NODES; i++) {
+        double wave = 1 / spectrum_node(i),
+               power = 1 / (wave * wave * wave * wave * wave * el_expm1(c2 / (wave * kelvin)));
+        sum = colour_add_scaled(sum, spectrum_node_weight(i), power);
+    }
+    return sum;
+}
+
+struct colour spectrum_black_body(double kelvin) {
+    struct colour one = planck(2000), own = colour_max(planck(kelvin), colour_all(0));
+    return colour_scale(own, 3 / (one.r + one.g + one.b));
+}

@@ -26,4 +26,7 @@ static inline double spectrum_node(int i) {
 }
 struct colour spectrum_node_weight(int i);
 
+/* A black body of this temperature in kelvin, over the mean of the components at 2,000 K; components are at least 0. */
+struct colour spectrum_black_body(double kelvin);
+
 #endif

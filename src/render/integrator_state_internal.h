@@ -37,7 +37,7 @@ struct integrator_state {
     /* With settings.transparent: the share of the current sample that sees the background; 0 before. */
     double seen_through;
     bool media_dim; /* media may dim rays to lights */
-    uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
+    uint64_t reflected_rays, refracted_rays, shadow_rays, hits, medium_events;
     bool clamped; /* set after a colour that was not finite or too large */
 };
 

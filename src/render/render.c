@@ -237,6 +237,7 @@ static void add_statistics(const struct renderer *renderer, int workers, struct 
         out->reflected_rays += worker->state.reflected_rays;
         out->refracted_rays += worker->state.refracted_rays;
         out->shadow_rays += worker->state.shadow_rays;
+        out->medium_events += worker->state.medium_events;
         out->shape_tests += worker->scratch.geom.shape_tests;
         out->triangle_tests += worker->scratch.geom.cost.triangle_tests;
         out->voxels += worker->scratch.geom.cost.voxels;

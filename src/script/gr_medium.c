@@ -5,18 +5,19 @@
 #include "formats/voxels.h"
 #include "material/density.h"
 #include "material/medium.h"
+#include "math/spectrum.h"
 #include "record/record_bounds.h"
 #include "script/rows_internal.h"
 
 #include <float.h>
 
-#define VOXEL_WORD(type, word, more, bytes) " " word
 enum {
     MEDIUM_ABSORPTION,
     MEDIUM_SCATTERING,
     MEDIUM_ALBEDO,
     MEDIUM_DISTANCE,
     MEDIUM_EMISSION,
+    MEDIUM_TEMPERATURE,
     MEDIUM_G,
     MEDIUM_PHASE,
     MEDIUM_DENSITY,
@@ -38,6 +39,8 @@ static const struct script_parameter medium_parameters[] = {
                          "The mean free path: what light travels between two events, on average."},
     [MEDIUM_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
                          "Light that the medium adds, per unit of length."},
+    [MEDIUM_TEMPERATURE] = {"temperature", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), "kelvin", NULL,
+                            "The medium glows as a black body, with emission as a factor, {1, 1, 1} by default."},
     [MEDIUM_G] = {"g", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",
                   "Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward."},
     [MEDIUM_PHASE] = {"phase", KIND_CHOICE, OPTIONAL, 0, 0, "rayleigh", NULL, NULL,
@@ -54,7 +57,7 @@ static const struct script_parameter medium_parameters[] = {
     [MEDIUM_TOP] = {"top", KIND_NUMBER, OPTIONAL, ANY, NULL, "none", "The medium ends at this height y."},
     [MEDIUM_CELLS] = {"cells", KIND_TRIPLE, OPTIONAL, 1, VOXELS_LIMIT, NULL, NULL, NULL,
                       "Of a grid of numbers or plain values: how many there are along x, y and z; x varies fastest."},
-    [MEDIUM_TYPE] = {"type", KIND_CHOICE, OPTIONAL, 0, 0, VOXEL_TYPES(VOXEL_WORD), NULL, "'float'",
+    [MEDIUM_TYPE] = {"type", KIND_CHOICE, OPTIONAL, 0, 0, "float double uint8 int16 uint16", NULL, "'float'",
                      "Type of the values of a plain file, little-endian."},
 };
 
@@ -222,6 +225,11 @@ static bool read_coefficients(const struct script_value *args, struct medium_inp
         double events = args[MEDIUM_DISTANCE].given ? 1 / args[MEDIUM_DISTANCE].number : 1;
         in->scattering = colour_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].colour : colour_all(1), events);
         in->absorption = colour_sub(colour_all(events), in->scattering);
+    }
+    if (args[MEDIUM_TEMPERATURE].given) {
+        struct colour factor = args[MEDIUM_EMISSION].given ? in->emission : colour_all(1);
+        in->emission =
+            colour_mul(factor, colour_mul(in->absorption, spectrum_black_body(args[MEDIUM_TEMPERATURE].number)));
     }
     if (args[MEDIUM_DENSITY].single) {
         double factor = args[MEDIUM_DENSITY].numbers[0];

@@ -948,3 +948,41 @@ TEST(verbose_names_the_voxels_of_a_grid_only) {
         test_free_result(&result);
     }
 }
+
+/* The same voxels as a table, a plain file, and NRRD. */
+TEST(grids_of_a_medium_from_a_table_and_from_files_give_the_same_bytes) {
+    static const char scene[] =
+        "local box = {scattering = {2, 2, 2}, corner = {-1, -1, -1}, size = 2}\n"
+        "local function smoke(name, fields)\n"
+        "  for k, v in pairs(box) do fields[k] = v end\n"
+        "  gr.render{node = gr.sphere{medium = gr.medium(fields)}, file = name, width = 16, height = 16,\n"
+        "            eye = {0, 0, 4}, background = {1, 1, 1}, integrator = 'path', spp = 4}\n"
+        "end\n"
+        "smoke('table.png', {cells = {2, 1, 3}, density = {0, 1, 2, 3, 4, 5}})\n"
+        "smoke('plain.png', {cells = {2, 1, 3}, type = 'uint8', density = 'plain.raw'})\n"
+        "smoke('nrrd.png', {density = 'grid.nrrd'})\n";
+    static const uint8_t voxels[6] = {0, 1, 2, 3, 4, 5};
+    static const char nrrd[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1 3\nencoding: raw\n\n\0\1\2\3\4\5";
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/plain.raw", test_folder());
+    test_write_file(path, voxels, sizeof voxels);
+    (void)snprintf(path, sizeof path, "%s/grid.nrrd", test_folder());
+    test_write_file(path, nrrd, sizeof nrrd - 1);
+    ends(test_gray_scene(scene, "-q scene.lua", NULL), 0);
+    same_bytes("table.png", "plain.png");
+    same_bytes("table.png", "nrrd.png");
+}
+
+TEST(a_density_above_its_bound_is_one_warning_that_names_the_point) {
+    static const char scene[] =
+        "local m = gr.medium{scattering = {1, 1, 1}, corner = {-1, -1, -1}, size = 2, bound = 1,\n"
+        "                    density = function(p) return 2 + p.x end}\n"
+        "gr.render{node = gr.sphere{medium = m}, file = 'a.png', width = 16, height = 16, eye = {0, 0, 4},\n"
+        "          background = {1, 1, 1}, integrator = 'path', spp = 4}\n";
+    struct test_result result = test_gray_scene(scene, "-j 1 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *warning = strstr(result.err, "warning: the density of a medium is ");
+    CHECK(warning && strstr(warning, "at p = {"));
+    CHECK(warning && !strstr(warning + 20, "the density of a medium is "));
+    test_free_result(&result);
+}

@@ -52,3 +52,15 @@ TEST(single_wavelengths_have_the_hues_of_the_rainbow_and_negative_components) {
         CHECK(colour_max_abs(weight) < 10);
     }
 }
+
+/* The mean is 1 at 2,000 K by definition; red light leads there, and white is near 6,000 K. */
+TEST(black_bodies_are_red_then_white_then_blue_and_brighter_when_hotter) {
+    struct colour red = spectrum_black_body(2000), white = spectrum_black_body(5800), blue = spectrum_black_body(15000);
+    CHECK_NEAR((red.r + red.g + red.b) / 3, 1, 1e-9);
+    CHECK(red.r > 2 * red.g && red.g > 2 * red.b);
+    CHECK_NEAR(white.r / white.g, 1, 0.15);
+    CHECK_NEAR(white.b / white.g, 1, 0.15);
+    CHECK(blue.b > 1.5 * blue.r);
+    CHECK(white.g > 100 && blue.g > white.g);
+    CHECK(colour_is_black(spectrum_black_body(1e-3)));
+}

@@ -350,3 +350,139 @@ TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16)
     }
     arena_destroy(&arena);
 }
+
+/* --- densities, several media, surfaces --- */
+
+/* A white cloud in a ball that lies in another cloud, from the outside and from the inside. */
+TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 16) {
+    static const float values[8] = {0, 5, 2, 1, 0.5, 0, 30, 1};
+    struct arena arena = {0};
+    struct error error = {0};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 3};
+    const struct box box = {vec3_all(-2), {2, 0.3, 2}};
+    const struct medium_input cloud = {.scattering = colour_make(0.3, 1, 3),
+                                       .phase = {PHASE_HENYEY_GREENSTEIN, 0.6},
+                                       .density = density_of_grid(&arena, &grid, &error)};
+    const struct medium_input haze = {
+        .scattering = colour_all(0.5), .phase = {PHASE_RAYLEIGH, 0}, .density = density_of_box(&arena, &box, &error)};
+    const struct medium inner = medium_filling(&cloud), outer = medium_filling(&haze);
+    for (int inside = 0; inside < 2; inside++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        (void)stage_sphere(&s, s.root, filled(&s, &inner));
+        struct material *other = stage_phong(&s, colour_all(0), colour_all(0), 1);
+        *other = *filled(&s, &outer);
+        struct node *cube = stage_cube(&s, s.root, other);
+        stage_move(&s, cube, -0.5, -0.5, -0.5);
+        stage_scale(&s, cube, 3, 3, 3);
+        s.sky.colour = colour_all(1);
+        s.camera.eye = inside ? vec3_make(0.4, -0.3, 0.5) : vec3_make(0, 0, 3);
+        s.settings.integrator = INTEGRATOR_PATH;
+        struct colour mean = mean_of(&s, 16, 64 * times, 1000);
+        CHECK_NEAR(mean.r, 1, 0.012);
+        CHECK_NEAR(mean.g, 1, 0.012);
+        CHECK_NEAR(mean.b, 1, 0.025);
+        stage_end(&s);
+    }
+    arena_destroy(&arena);
+}
+
+/* The index is 1, so the surface is there in name only. */
+TEST(a_medium_behind_a_surface_of_index_1_is_the_one_that_fills_the_solid) {
+    struct medium fills = filling_of(0.4, 1.5, 0.3), behind = fills;
+    struct colour means[2];
+    behind.fills = false;
+    for (int i = 0; i < 2; i++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        struct material *glass = stage_glass(&s, 0, 1, 1);
+        glass->phong.ks = colour_all(1);
+        glass->medium = &behind;
+        (void)stage_sphere(&s, s.root, i ? glass : filled(&s, &fills));
+        s.sky.colour = colour_make(0.5, 1, 2);
+        s.camera.eye = vec3_make(0, 0, 3);
+        s.settings.integrator = INTEGRATOR_PATH;
+        means[i] = mean_of(&s, 16, 512, 100);
+        stage_end(&s);
+    }
+    CHECK(means[0].g < 0.9);
+    CHECK_NEAR(means[1].r, means[0].r, 0.01 * means[0].r);
+    CHECK_NEAR(means[1].g, means[0].g, 0.01 * means[0].g);
+    CHECK_NEAR(means[1].b, means[0].b, 0.01 * means[0].b);
+}
+
+/* What a slab of this depth shows in a direction with this cosine to its normal, of a plane of radiance 1 on the side
+ * of the camera or behind it. */
+static double shown(const struct medium *medium, double cosine, bool behind, int samples) {
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
+    glow->phong.emission = colour_all(1);
+    glow->phong.two_sided = true;
+    struct node *wall = stage_sphere(&s, s.root, glow);
+    wall->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), behind ? -5 : 20)};
+    struct node *slab = stage_cube(&s, s.root, filled(&s, medium));
+    stage_move(&s, slab, -0.5, -0.5, 0);
+    stage_scale(&s, slab, 4000, 4000, 1);
+    s.camera.fov = 0.001;
+    s.camera.view = vec3_make(sqrt(1 - cosine * cosine), 0, -cosine);
+    s.camera.up = vec3_make(0, 1, 0);
+    s.settings.integrator = INTEGRATOR_PATH;
+    double mean = mean_of(&s, 4, samples, 1000).g;
+    stage_end(&s);
+    return mean;
+}
+
+/* Known values of transport theory, of diffuse light by the mean over directions; depth 60 is as good as a half space.
+ */
+TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory, 16) {
+    static const struct {
+        double albedo, depth, cosine, reflected, transmitted; /* cosine 0: diffuse light */
+    } slabs[] = {{1, 1, 0, 0.4466, 0.5534},
+                 {0.9, 2, 0, 0.4372, 0.2656},
+                 {0.9, 60, 1, 0.4149, -1},
+                 {0.9, 60, 0.5, 0.5079, -1},
+                 {0.9, 60, 0, 0.4780, -1}};
+    enum { DIRECTIONS = 8 };
+    const int samples = 128 * times;
+    for (int i = 0; i < 5; i++) {
+        const struct medium medium =
+            filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, 0);
+        for (int behind = 0; behind < (slabs[i].transmitted >= 0 ? 2 : 1); behind++) {
+            double sum = 0, want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            for (int k = 0; k < DIRECTIONS; k++)
+                sum += shown(&medium, slabs[i].cosine > 0 ? slabs[i].cosine : sqrt((k + 0.5) / DIRECTIONS), behind,
+                             samples) /
+                       DIRECTIONS;
+            CHECK_NEAR(sum, want, 4 * 0.5 / sqrt(16.0 * samples * DIRECTIONS) + 0.0015);
+        }
+    }
+}
+
+/* Coefficients of .1, 1 and 10 against those of a gray medium: the variance of the mean of the channels. */
+TEST(channels_with_other_coefficients_have_at_most_twice_the_variance_of_a_gray_medium) {
+    double variance[2];
+    for (int gray = 0; gray < 2; gray++) {
+        struct medium medium = medium_filling(&(struct medium_input){
+            .scattering = gray ? colour_all(1) : colour_make(0.1, 1, 10), .phase = {PHASE_HENYEY_GREENSTEIN, 0}});
+        struct stage s;
+        stage_begin(&s, 2);
+        (void)stage_sphere(&s, s.root, filled(&s, &medium));
+        s.sky.colour = colour_all(1);
+        s.camera.eye = vec3_make(0, 0, 3);
+        s.camera.fov = 20;
+        s.settings.integrator = INTEGRATOR_PATH;
+        s.settings.path_samples = 16;
+        s.settings.max_depth = 1000;
+        CHECK(stage_render(&s, 32, 32));
+        double sum = 0;
+        for (uint32_t i = 0; i < 1024; i++) {
+            struct colour c = stage_pixel(&s, i % 32, i / 32);
+            double off = (c.r + c.g + c.b) / 3 - 1;
+            sum += off * off;
+        }
+        variance[gray] = sum / 1024;
+        stage_end(&s);
+    }
+    CHECK(variance[0] <= 2 * variance[1] + 1e-9);
+}
