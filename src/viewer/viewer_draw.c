@@ -304,7 +304,8 @@ void viewer_show(struct viewer *viewer, double now) {
     const struct viewer_large *large = &viewer->window.large;
     bool due = now - viewer->display.figures_at >= status_pause;
     bool changed = viewer->window.dirty || viewer->display.hud_dirty;
-    if (viewer_awaits_frame(viewer, now) || (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
+    if (layout->width == 0 || viewer_awaits_frame(viewer, now) ||
+        (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
         return;
     if (large->shown && large->stale && viewer->block && viewer->pass.view.width > 0)
         viewer_draw_large(viewer);
@@ -697,8 +698,7 @@ static void draw_handles(const struct drawing *drawing) {
 void viewer_make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
     viewer->window.driver->state->line_count = 0;
-    if (!viewer->block || viewer->window.hides_lines || viewer->window.layout.width == 0 ||
-        !viewer_camera_frame(viewer, &drawing.frame))
+    if (!viewer->block || viewer->window.hides_lines || !viewer_camera_frame(viewer, &drawing.frame))
         return;
     if (viewer->edit.selection.kind == SELECTED_NODE)
         draw_node(&drawing);

@@ -746,8 +746,6 @@ static void show_state(struct gui *gui) {
     gtk_widget_set_visible(gui->trace_box, state->trace[0] != '\0');
     gui_tree_show(gui, &was);
     gui_form_show(gui);
-    if (state->has_scene && state->shown_width == 0) /* the viewer does not know the size yet */
-        gui_picture_send_size(gui);
     gui_picture_draw(gui);
 }
 

@@ -145,7 +145,10 @@ TEST(gtk_window_shows_an_error_and_renders_the_mended_script) {
 TEST(gtk_window_that_is_closed_early_leaves_no_picture) {
     need_display();
     gives("sed -i 's/200, 150/1200, 900/; 1i for i = 1, 1e7 do local a = math.sin(i) end' scene.lua", 0);
-    drive("-full -ss 40 scene.lua", "titled '(scene.lua|out.png) - '; xdotool key ctrl+q", 130);
+    drive("-full -ss 40 scene.lua",
+          "titled '(scene.lua|out.png) - '\n" /* it may not have the keyboard yet */
+          "for k in $(seq 100); do xdotool key ctrl+q sleep 0.2; kill -0 $pid 2>/dev/null || break; done",
+          130);
     gives("test ! -e out.png", 0);
 }
 
