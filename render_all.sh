@@ -16,7 +16,7 @@ failed=""
 plan() {
     unlisted=""
     for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua \
-        data/library/show_*.lua \
+        data/library/show_*.lua data/print/*.lua \
         data/classic/*.lua; do
         case $script in */make_*) continue ;; esac # writes models, is not a scene
         [ ! -f "$script" ] || grep -q "^$script " data/gallery.txt || unlisted="$unlisted$script 10

@@ -1,7 +1,7 @@
 /* Writes src/material/subsurface_table_internal.h: the single-scattering albedo under a surface that shows a colour.
  *
  *     cc -O2 -ffp-contract=off tools/subsurface_table.c -lm -o build/subsurface_table && build/subsurface_table \
- *         >src/material/subsurface_table_internal.h
+ *         >src/material/subsurface_table_internal.h && clang-format -i src/material/subsurface_table_internal.h
  *
  * Under the surface is a half space of a medium that scatters by Henyey and Greenstein's function, with the same index
  * on both sides of the surface. Adding and doubling (van de Hulst, "A New Look at Multiple Scattering", 1963; Hansen
@@ -126,11 +126,11 @@ static double reflected(double albedo) {
                 r[i][j] += next[i][j];
         multiply(t, rt, next);
         memcpy(t, next, sizeof t);
-        double most = 0;
+        double largest = 0;
         for (int i = 0; i < POINTS; i++)
             for (int j = 0; j < POINTS; j++)
-                most = fmax(most, fabs(t[i][j]));
-        if (most < 1e-12)
+                largest = fmax(largest, fabs(t[i][j]));
+        if (largest < 1e-12)
             break;
     }
     double sum = 0;

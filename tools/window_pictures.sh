@@ -48,7 +48,7 @@ leave() {
 }
 
 open gray
-take start
+take start 3
 leave
 open 'png - ready' 12demo.lua
 take ready

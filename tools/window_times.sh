@@ -27,9 +27,10 @@ said() { # waits until the program has said so many lines with the words
     echo "never said: $1" >&2
     return 1
 }
-ticks() { # of the processes of the program, in hundredths of a second
-    cat $(ps -s $(ps -o sess= -p $$) -o pid=,args= | awk '/[g]ray/ { print "/proc/" $1 "/stat" }') 2>/dev/null |
-        awk '{ sum += $14 + $15 } END { print sum + 0 }'
+ticks() { # of the program and its processes, in hundredths of a second
+    for process in $pid $(pgrep -P $pid) $(pgrep -P "$(pgrep -d, -P $pid)"); do
+        cat "/proc/$process/stat"
+    done 2>/dev/null | awk '{ sum += $14 + $15 } END { print sum + 0 }'
 }
 move() { # move WAY: 3 seconds of it; prints what the program says about its longest part
     before=$(ticks)
@@ -50,8 +51,8 @@ move() { # move WAY: 3 seconds of it; prints what the program says about its lon
         sort -n | awk -v way="$1" -v used=$((after - before)) \
             -v last="$(sed -n 's/.*integrator after \([0-9]*\) ms.*/\1/p' "$work/said" | tail -1)" '
             { count = $1; seconds = $2; divide = $3; first = $4; all = $5; sum += $1 }
-            END { printf "    %-6s %5.1f pictures/s at 1/%d, %4.0f ms of processor each; first %4d ms, all pixels %5d ms, integrator %6d ms\n",
-                way, seconds > 0 ? count / seconds : 0, divide, sum ? 10 * used / sum : 0, first, all, last }'
+            END { printf("    %-6s %5.1f pictures/s at 1/%d, %4.0f ms of processor each; first %4d ms, all pixels %5d ms, integrator %6d ms\n",
+                way, seconds > 0 ? count / seconds : 0, divide, sum > 0 ? 10 * used / sum : 0, first, all, last) }'
 }
 for scene in "$@"; do
     : >"$work/said"

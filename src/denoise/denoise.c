@@ -59,7 +59,7 @@ static const struct denoise_regression regressions[REGRESSIONS] = {
     {DENOISE_WINDOW, 2, 2.4F, 0, .details = false, .sparse = true},
     {4, 2, 5, 0.5F, .details = true, .sparse = true},
     {DENOISE_WINDOW, 4, 0, 0.3F, false, false},
-    {2, 2, 0, 0, .details = true, .sparse = true}};
+    {2, 2, 0, 0, .details = true, .sparse = false}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float edge_errors = 1;         /* the same at silhouettes */

@@ -527,7 +527,7 @@ static void mark_changes(struct denoise_scratch *s) {
 }
 
 /* From the marks of a row, the columns to the nearest mark, up to a limit. */
-static void spread_marks(uint8_t row[LOCAL], int limit) {
+static void nearest_changes(uint8_t row[LOCAL], int limit) {
     int last = limit;
     for (int x = 0; x < LOCAL; x++) {
         last = row[x] ? 0 : last < limit ? last + 1 : limit;
@@ -543,7 +543,7 @@ static void find_changes(struct denoise_scratch *s) {
     const int limit = DENOISE_WINDOW + 1;
     mark_changes(s);
     for (int y = 0; y < LOCAL; y++)
-        spread_marks(s->change + y * LOCAL, limit);
+        nearest_changes(s->change + y * LOCAL, limit);
     for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
         int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
         int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP, nearest = limit;

@@ -174,20 +174,24 @@ static void add_intersection(void *context, uint32_t one, uint32_t other) {
 
 enum { CHUNK = 256 };
 
-/* The middles of its edges, and its own. */
-static struct vec3 middle_of(const struct corners *c, int number) {
-    return number < 3 ? vec3_scale(vec3_add(c->point[number], c->point[(number + 1) % 3]), 0.5)
-                      : vec3_scale(vec3_add(c->point[0], vec3_add(c->point[1], c->point[2])), 1.0 / 3);
+enum { TEST_POINTS = 7 };
+
+/* The middles of its edges, its own, and points between that and the corners. */
+static struct vec3 test_point(const struct corners *c, int number) {
+    struct vec3 middle = vec3_scale(vec3_add(c->point[0], vec3_add(c->point[1], c->point[2])), 1.0 / 3);
+    if (number < 3)
+        return vec3_scale(vec3_add(c->point[number], c->point[(number + 1) % 3]), 0.5);
+    return number == 3 ? middle : vec3_scale(vec3_add(middle, c->point[number - 4]), 0.5);
 }
 
-/* Bits of the middles that are not near to the solid. */
+/* Bits of the points that are not near to the solid. */
 static uint8_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
     struct vec3 normal = vec3_normalize(triangle_normal(c->point));
     uint8_t out = 0;
     if (!(vec3_length(normal) > 0))
         return 8;
-    for (int i = 0; i < 4; i++) {
-        if (!solid_is_near_for_sure(probe, middle_of(c, i), normal, tolerance))
+    for (int i = 0; i < TEST_POINTS; i++) {
+        if (!solid_is_near_for_sure(probe, test_point(c, i), normal, tolerance))
             out |= (uint8_t)(1 << i);
     }
     return out;
@@ -211,8 +215,8 @@ static bool find_strays(struct verification *v, struct error *error) {
               error_set(error, ERROR_CANCELLED, "stopped while a mesh was tested");
     for (uint32_t i = 0; ok && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
-        for (int k = 0; k < 4; k++) {
-            struct vec3 at = middle_of(&corners, k);
+        for (int k = 0; k < TEST_POINTS; k++) {
+            struct vec3 at = test_point(&corners, k);
             if (!(v->stray[i] >> k & 1))
                 continue;
             v->strays++;

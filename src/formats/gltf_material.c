@@ -199,8 +199,8 @@ static bool read_scattering(struct gltf *g, const json_t *extensions, struct mod
     v->subsurface_colour = unit_colour(tint);
     v->subsurface_anisotropy = v->thin_walled ? 1 : g_scatter;
     /* Channels without extinction are all but clear. */
-    struct colour least = colour_all(colour_max_abs(extinction) / 1024);
-    v->subsurface_radius_scale = colour_share(colour_all(1), colour_max(extinction, least));
+    struct colour minimum = colour_all(colour_max_abs(extinction) / 1024);
+    v->subsurface_radius_scale = colour_share(colour_all(1), colour_max(extinction, minimum));
     if (v->thin_walled || !scatter)
         return true;
     v->subsurface_colour = unit_colour(colour);

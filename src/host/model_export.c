@@ -49,7 +49,7 @@ static void print_report(const struct print_report *report) {
     text_writer_put(&writer, "area above 45 degrees: %g\n", report->overhang_area);
     text_writer_put(&writer,
                     report->is_standing ? "stands on the plate: yes, contact area %g\n"
-                                   : "stands on the plate: no, it falls over; contact area %g\n",
+                                        : "stands on the plate: no, it falls over; contact area %g\n",
                     report->contact_area);
     text_writer_flush(&writer);
 }
@@ -191,7 +191,7 @@ bool model_export_picture(struct render_process *process, const struct render_re
     const struct options *options = process->options;
     struct model_work work = {.process = process,
                               .scene = request->scene,
-                              .node = request->root,
+                              .node = request->subject,
                               .file = options->model ? options->model : "check.stl",
                               .where = request->where,
                               .tolerance = options->tolerance,

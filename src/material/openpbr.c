@@ -340,7 +340,7 @@ static struct colour metal_reflects(const struct layering *l, const struct bsdf_
 
 /* Over the hemisphere, at equal steps of the squared cosine where there is a film. */
 static struct colour metal_average(const struct layering *l, const struct bsdf_facets *facets) {
-    enum { COSINES = 6 };
+    enum { COSINES = 3 };
     struct colour sum = {0, 0, 0};
     if (!has_film(l))
         return bsdf_metal_fresnel_average(facets);
@@ -581,7 +581,8 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     if (is_solid)
         bsdf->eta = context->joint ? context->joint->eta : medium_stack_eta(media, &bsdf->boundary);
     add_fuzz(&l);
-    set_coat_side(&l, tables, material, hit);
+    if (values.coat_weight > 0)
+        set_coat_side(&l, tables, material, hit);
     add_coat(&l);
     set_film(&l, (double)media->wavelength);
     bsdf->emission = colour_mul(inputs->emission, l.left);

@@ -340,7 +340,7 @@ sums_of_boundary(const struct facet_distribution *d, struct vec3 direction, doub
     view = vec3_add_scaled(view, d->along, fabs(vec3_dot(direction, d->along)));
     view = vec3_add_scaled(view, d->across, fabs(vec3_dot(direction, d->across)));
     const bool dense = eta > 1; /* total reflection divides the facets */
-    const int points = dense ? 233 : 34, step = dense ? 144 : 21;
+    const int points = film ? 34 : dense ? 233 : 34, step = points == 34 ? 21 : 144; /* films take long */
     struct colour reflected = {0, 0, 0}, passed = {0, 0, 0};
     double all = 0;
     for (int i = 0; i < points; i++) {
@@ -455,15 +455,21 @@ static struct colour filmed_share(const struct bsdf *bsdf, const struct bsdf_fac
     return thin_film_metal(&bsdf->film, towards, bsdf_metal_fresnel(facets, towards));
 }
 
+static __attribute__((noinline)) struct colour filmed_weight(const struct bsdf *bsdf, const struct lobe *lobe,
+                                                             struct vec3 wo, struct vec3 wi) {
+    double towards = vec3_dot(wo, path_of(bsdf, lobe, wo, wi).half);
+    struct colour share = filmed_share(bsdf, &bsdf->facets[lobe->facets], towards);
+    bool transmits = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    return colour_mul(lobe->weight, transmits ? colour_sub(colour_all(1), share) : share);
+}
+
 struct colour rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
-    unsigned flags = lobe_flags(lobe->kind);
-    if (!(flags & BSDF_TINTED))
+    if (!(lobe_flags(lobe->kind) & BSDF_TINTED))
         return lobe->weight;
-    if (lobe->kind == LOBE_METAL)
-        return colour_mul(lobe->weight, bsdf_metal_fresnel(facets, vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)))));
-    struct colour share = filmed_share(bsdf, facets, vec3_dot(wo, path_of(bsdf, lobe, wo, wi).half));
-    return colour_mul(lobe->weight, flags & BSDF_TRANSMITS ? colour_sub(colour_all(1), share) : share);
+    if (lobe->kind != LOBE_METAL)
+        return filmed_weight(bsdf, lobe, wo, wi);
+    double towards = vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)));
+    return colour_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
 }
 
 double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {

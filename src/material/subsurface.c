@@ -19,6 +19,6 @@ double subsurface_albedo(double colour, double g) {
         const float *near = &subsurface_table[row + i][column];
         s[i] = (double)near[0] + (x - column) * (double)(near[1] - near[0]);
     }
-    double between = s[0] + (y - row) * (s[1] - s[0]), square = between * between;
+    double mixed = s[0] + (y - row) * (s[1] - s[0]), square = mixed * mixed;
     return (1 - square) / (1 - g * square);
 }

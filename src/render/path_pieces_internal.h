@@ -2,6 +2,7 @@
  *     begin    the sampler (path.c) and the camera ray (sample.c)
  *     extend   what the ray hits first
  *     shade    what is there: emission, the choice of a light, the next ray
+ *     come_out the same where light comes out from under a surface (subsurface_walk_internal.h), without a ray
  *     shadow   whether the light arrives
  *     add      the light of a path that has ended becomes part of its pixel, in the order of samples (path.c)
  * A thread calls them for one path after the other. They call no allocator, no function pointer and not themselves;
@@ -23,7 +24,7 @@
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
-#include "render/subsurface_walk.h"
+#include "render/subsurface_walk_internal.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -360,8 +361,8 @@ static __attribute__((noinline)) void send_in_medium(struct ray *ray, struct vec
     ray->skip_primitive = ray->skip_part = 0;
 }
 
-/* Goes under the surface, on to where it comes out: the path's ray ends there. No scattering of the path, until it is
- * scattered out. */
+/* Goes under the surface, on to where it comes out (come_out): the path's ray ends there. No scattering of the path,
+ * until it is scattered out. Always false, for the other pieces are not to follow. */
 static __attribute__((noinline)) bool walk_below(struct integrator_state *state, struct path *path,
                                                  const struct path_vertex *vertex, const struct bsdf_sample *sample,
                                                  struct path_watch *watch) {
@@ -371,6 +372,7 @@ static __attribute__((noinline)) bool walk_below(struct integrator_state *state,
                                    .primitive = vertex->hit->primitive,
                                    .under = *under,
                                    .key = random_combine(path->sampler.key, path->dimension | SAMPLER_MEDIUM),
+                                   .normal = vertex->hit->normal_geometric,
                                    .ray = hit_ray(vertex->hit, &path->ray, sample->direction, &path->media),
                                    .weight = colour_mul(path->weight, colour_share(sample->weight, under->colour))};
     if (!subsurface_walk(&walk))
@@ -382,7 +384,7 @@ static __attribute__((noinline)) bool walk_below(struct integrator_state *state,
         path->ray = walk.ray;
         path->met = (struct packet_answer){.primitive = walk.primitive, .crossing = walk.crossing};
     }
-    return true;
+    return false;
 }
 
 /* Continues in a direction that the BSDF or the phase function samples. */
@@ -460,8 +462,7 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
  * come that far. False: it is another way, and nothing is done. */
 static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tracer, struct integrator_state *state,
                                                     struct path *path, struct path_stretch *out) {
-    if (path->kind == RAY_BELOW || !path_is_sealed(tracer, &path->media) ||
-        touching_has(&state->job->world->touching, path->met.primitive))
+    if (!path_is_sealed(tracer, &path->media) || touching_has(&state->job->world->touching, path->met.primitive))
         return false;
     out->distance = path->met.crossing.t * vec3_length(path->ray.direction);
     pass_medium(tracer, state, path, MEDIUM_RAY_SCATTERED, out);
@@ -530,26 +531,6 @@ struct path_hit {
     struct joint joint;
 };
 
-/* The vertex where the path comes out from under a surface. False: the path ends here. */
-static __attribute__((noinline)) bool come_out(const struct path_tracer *tracer, struct integrator_state *state,
-                                               struct path *path, struct hit *hit, struct path_shadow *shadow,
-                                               struct path_watch *watch) {
-    struct bsdf bsdf;
-    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .receiver = &path->scatter};
-    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
-    state->hits++;
-    material_eval_matt(&state->job->world->surfaces, hit, &bsdf);
-    path->scatter = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, hit->offset),
-                                            bsdf.side, hit->primitive};
-    vertex.at = (struct interaction){.bsdf = &bsdf, .lobes = 1, .wo = hit->view};
-    if (tracer->photon_lights) {
-        add_photons(tracer, state, path, &vertex);
-        vertex.thrown = colour_add(path->received, path->thrown);
-        watch_stage(watch, path, STAGE_PHOTONS);
-    }
-    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
-}
-
 /* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                          const struct path_hit *at, struct path_shadow *shadow, struct path_watch *watch) {
@@ -615,10 +596,8 @@ static void begin(struct path *path, const struct integrator_state *state, const
     path->sampler.key = key;
 }
 
-/* What the ray hits first; one that comes out from under a surface knows it. */
+/* What the ray hits first. */
 static void extend(const struct integrator_state *state, struct path *path) {
-    if (path->kind == RAY_BELOW)
-        return;
     if (!world_nearest_crossing(state->job->world, &path->ray, state->scratch, &path->met.primitive,
                                 &path->met.crossing))
         path->met.primitive = WORLD_NOTHING;
@@ -641,12 +620,6 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
-        if (path->kind == RAY_BELOW) {
-#if OBSERVED
-            watch_ray(watch, state->observer, path, &at.hit);
-#endif
-            return come_out(tracer, state, path, &at.hit, shadow, watch);
-        }
         if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
             double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
             path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
@@ -676,6 +649,35 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     return watch_end(watch, PATH_LEAVES_SCENE);
 }
 
+/* The vertex where the path comes out from under a surface, in the place of shade. */
+static __attribute__((noinline)) bool come_out(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, struct path_shadow *shadow,
+                                               struct path_watch *watch) {
+    const struct world *world = state->job->world;
+    struct hit hit;
+    struct bsdf bsdf;
+    world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &hit);
+#if OBSERVED
+    watch_ray(watch, state->observer, path, &hit);
+#endif
+    path->kind = RAY_REFLECTED;
+    path->dimension += SAMPLER_VERTEX_DIMENSIONS;
+    shadow->part.light = LIGHT_NONE;
+    shadow->sent = false;
+    state->hits++;
+    material_eval_matt(&world->surfaces, &hit, &bsdf);
+    path->scatter = (struct light_receiver){hit.point, vec3_add_scaled(hit.point, hit.normal_geometric, hit.offset),
+                                            bsdf.side, hit.primitive};
+    struct path_vertex vertex = {.ray = &path->ray, .hit = &hit, .receiver = &path->scatter};
+    vertex.at = (struct interaction){.bsdf = &bsdf, .lobes = 1, .wo = hit.view};
+    if (tracer->photon_lights) {
+        add_photons(tracer, state, path, &vertex);
+        vertex.thrown = colour_add(path->received, path->thrown);
+        watch_stage(watch, path, STAGE_PHOTONS);
+    }
+    return light_and_scatter(tracer, state, path, &vertex, shadow, watch);
+}
+
 /* Whether the light that was asked for arrives. */
 static void shadow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                    struct path_shadow *shadow) {
@@ -691,6 +693,19 @@ static void shadow(const struct path_tracer *tracer, struct integrator_state *st
     }
 #if OBSERVED
     watch_light(state->observer, &tracer->lights, shadow, colour_max_abs(arriving) > 0, seen);
+#endif
+}
+
+/* After each vertex. */
+static inline __attribute__((always_inline)) void end_vertex(const struct path_tracer *tracer,
+                                                             struct integrator_state *state, struct path *path,
+                                                             struct path_shadow *to_light, struct path_watch *watch) {
+    shadow(tracer, state, path, to_light);
+#if OBSERVED
+    watch_stage(watch, path, STAGE_DIRECT);
+    watch_vertex(watch, state->observer, tracer->photon_lights != NULL);
+#else
+    (void)watch;
 #endif
 }
 
@@ -737,11 +752,11 @@ struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_st
         path.met.primitive = WORLD_NOTHING;
     for (;;) {
         bool goes_on = shade(tracer, state, &path, &to_light, watch);
-        shadow(tracer, state, &path, &to_light);
-#if OBSERVED
-        watch_stage(watch, &path, STAGE_DIRECT);
-        watch_vertex(watch, state->observer, tracer->photon_lights != NULL);
-#endif
+        end_vertex(tracer, state, &path, &to_light, watch);
+        while (!goes_on && path.kind == RAY_BELOW && !integrator_cancelled(state)) {
+            goes_on = come_out(tracer, state, &path, &to_light, watch);
+            end_vertex(tracer, state, &path, &to_light, watch);
+        }
         if (!goes_on || integrator_cancelled(state))
             break;
         extend(state, &path);

@@ -1,8 +1,9 @@
 /* A random walk (Wrenninge, Villemin and Hery, "Path Traced Subsurface Scattering using Anisotropic Phase Functions and
  * Non-Exponential Free Flights", 2017, for its idea) with the same choice of channels as in media (medium.h). The
  * distance is chosen first, so that a search need not look further. Scatterings have no limit but the roulette; a walk
- * through white matter without end loses its way after so many that where it comes out makes no difference. */
-#include "render/subsurface_walk.h"
+ * through white matter without end loses its way after so many that where it comes out makes no difference, with the
+ * share of its light that diffusion brings up from there. */
+#include "render/subsurface_walk_internal.h"
 
 #include "base/random.h"
 #include "material/phase.h"
@@ -74,9 +75,16 @@ static bool survives(struct colour *weight, double whole, double u) {
     return true;
 }
 
+/* The share of light at a depth below a plane that comes out, by the diffusion equation. */
+static double share_from(double depth, double extinction, double albedo, double g) {
+    return el_exp(-depth * extinction * sqrt(3 * (1 - albedo) * (1 - albedo * g)));
+}
+
 bool subsurface_walk(struct subsurface_walk *walk) {
     const struct walk_medium medium = medium_under(&walk->under);
+    const struct colour e = medium.extinction, a = medium.albedo;
     struct ray *ray = &walk->ray;
+    const struct vec3 begin = ray->origin;
     double whole = colour_max_abs(walk->weight);
     ray->direction = vec3_normalize(ray->direction);
     ray->footprint.spread = 0;
@@ -103,5 +111,8 @@ bool subsurface_walk(struct subsurface_walk *walk) {
         ray->direction = phase_sample(&medium.phase, vec3_negate(ray->direction), (struct sample2){u[2], u[3]});
         ray->skip_primitive = ray->skip_part = 0;
     }
+    double depth = fmax(vec3_dot(vec3_sub(begin, ray->origin), walk->normal), 0), g = walk->under.g;
+    walk->weight = colour_mul(walk->weight, colour_make(share_from(depth, e.r, a.r, g), share_from(depth, e.g, a.g, g),
+                                                        share_from(depth, e.b, a.b, g)));
     return whole > 0;
 }

@@ -553,6 +553,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .where = call,
         .scene = &context->scene,
         .root = args[RENDER_NODE].node,
+        .subject = script_of(context)->fitted ? script_of(context)->fitted : args[RENDER_NODE].node,
         .file = args[RENDER_FILE].text,
         .width = args[RENDER_WIDTH].number,
         .height = args[RENDER_HEIGHT].number,

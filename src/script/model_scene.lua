@@ -75,6 +75,7 @@ return function(gr, path, file, options)
         scene.lights = {gr.light{position = camera.eye, colour = {1, 1, 1}, intensity = radius * radius}}
         scene.exposure = 'auto'
     elseif not camera or camera.eye[2] > low[2] then
+        fit_to(all) -- the ground is no part of the model
         scene.node = gr.node{children = {model, ground_below(gr, low[2] - radius / 1024, camera and camera.view)}}
     end
     if chosen 'exposure' then scene.exposure = nil end

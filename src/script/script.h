@@ -20,6 +20,7 @@
 struct render_request {
     struct scene *scene;
     struct node *root;
+    struct node *subject; /* what a model of the scene is: without the ground of a picture of a model */
     const char *file; /* as the script wrote it, with compatible number formats; relative to the working directory */
     double width, height; /* checked to be whole numbers in 1..2^20 */
     struct camera camera;

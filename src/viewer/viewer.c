@@ -400,6 +400,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
 
 /* The complete view again, at the resolution of the window. */
 static void begin_large_pass(struct viewer *viewer, double now) {
+    viewer->pass.view.kept = 0; /* its film is another one */
     for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++)
         atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
     command_pass(viewer, now);

@@ -82,13 +82,14 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
 }
 
 /* The pixels of the film on both sides of the middle of a pixel, and how far it is to the second one, of 256. */
-struct between {
+struct interpolation {
     uint32_t first, second, far;
 };
 
-static struct between between_pixels(uint32_t at, uint32_t divide, uint32_t count) {
+static struct interpolation interpolate_pixels(uint32_t at, uint32_t divide, uint32_t count) {
     uint32_t middle = (256 * at + 128) / divide, first = middle < 128 ? 0 : (middle - 128) >> 8;
-    return (struct between){first, first + 1 < count ? first + 1 : first, middle < 128 ? 0 : (middle - 128) & 255};
+    return (struct interpolation){first, first + 1 < count ? first + 1 : first,
+                                  middle < 128 ? 0 : (middle - 128) & 255};
 }
 
 static void blend(uint8_t *restrict out, const uint8_t *a, const uint8_t *b, uint32_t far, size_t count) {
@@ -104,7 +105,7 @@ static void enlarge_row(const struct viewer *viewer, const struct tone *tone, ui
         for (size_t c = 0; c < 3; c++)
             small[3 * i + c] = png_write_byte(tone_apply(tone, (double)film->pixels[y * film->width + i].rgb[c]));
     for (uint32_t x = 0; x < viewer->request.width; x++) {
-        struct between u = between_pixels(x, viewer->pass.view.divide, film->width);
+        struct interpolation u = interpolate_pixels(x, viewer->pass.view.divide, film->width);
         blend(out + (size_t)3 * x, small + (size_t)3 * u.first, small + (size_t)3 * u.second, u.far, 3);
     }
 }
@@ -119,7 +120,7 @@ static bool draw_smooth(struct viewer *viewer) {
     if (!rows)
         return false;
     for (uint32_t y = 0; y < viewer->request.height; y++) {
-        struct between v = between_pixels(y, viewer->pass.view.divide, film->height);
+        struct interpolation v = interpolate_pixels(y, viewer->pass.view.divide, film->height);
         for (; done <= v.second; done++)
             enlarge_row(viewer, &tone, done, rows + 2 * row, rows + done % 2 * row);
         blend(viewer->window.image + row * y, rows + v.first % 2 * row, rows + v.second % 2 * row, v.far, row);
@@ -303,8 +304,7 @@ void viewer_show(struct viewer *viewer, double now) {
     const struct viewer_large *large = &viewer->window.large;
     bool due = now - viewer->display.figures_at >= status_pause;
     bool changed = viewer->window.dirty || viewer->display.hud_dirty;
-    if (layout->width == 0 || viewer_awaits_frame(viewer, now) ||
-        (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
+    if (viewer_awaits_frame(viewer, now) || (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
         return;
     if (large->shown && large->stale && viewer->block && viewer->pass.view.width > 0)
         viewer_draw_large(viewer);
@@ -697,7 +697,8 @@ static void draw_handles(const struct drawing *drawing) {
 void viewer_make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
     viewer->window.driver->state->line_count = 0;
-    if (!viewer->block || viewer->window.hides_lines || !viewer_camera_frame(viewer, &drawing.frame))
+    if (!viewer->block || viewer->window.hides_lines || viewer->window.layout.width == 0 ||
+        !viewer_camera_frame(viewer, &drawing.frame))
         return;
     if (viewer->edit.selection.kind == SELECTED_NODE)
         draw_node(&drawing);

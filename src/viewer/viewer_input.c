@@ -644,7 +644,9 @@ static void describe_setting(const struct viewer *viewer, int index, struct wind
                                            : words ? FIELD_CHOICE
                                                    : FIELD_NUMBER,
                                    .number = FIELD_SETTING + (uint32_t)index,
-                                   .numbers[0] = (double)bits};
+                                   .numbers[0] = (double)bits,
+                                   .resets = true,
+                                   .initial = row->initial};
     (void)snprintf(field->group, sizeof field->group, "%s", option_group_title(row->group));
     (void)snprintf(field->name, sizeof field->name, "%.*s", (int)strcspn(row->option + dashes, "|"),
                    row->option + dashes);

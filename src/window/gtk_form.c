@@ -26,6 +26,7 @@ static void show_values(struct gui *gui, struct form_row *row) {
     const struct window_field *field = &row->field;
     int count = field->kind == FIELD_VECTOR ? 3 : 1;
     gui->updates = true;
+    gtk_widget_set_sensitive(row->reset, field->numbers[0] < field->initial || field->numbers[0] > field->initial);
     switch (field->kind) {
     case FIELD_TEXT:
         gtk_label_set_text(GTK_LABEL(row->inputs[0]), field->text);
@@ -98,6 +99,29 @@ static void choice_changed(GObject *widget, GParamSpec *property, gpointer data)
     else
         row->field.numbers[0] = gtk_drop_down_get_selected(GTK_DROP_DOWN(widget));
     send_field(gui, row);
+}
+
+static void reset_number(GtkButton *button, gpointer data) {
+    struct gui *gui = g_object_get_data(G_OBJECT(button), "gui");
+    struct form_row *row = data;
+    row->field.numbers[0] = row->field.initial;
+    show_values(gui, row);
+    send_field(gui, row);
+}
+
+/* Back to the default; nothing where there is none. */
+static GtkWidget *reset_button(struct gui *gui, struct form_row *row) {
+    GtkWidget *button = gtk_button_new_from_icon_name("edit-undo-symbolic");
+    char *name = g_strdup_printf("Default of %s", row->field.name);
+    gtk_button_set_has_frame(GTK_BUTTON(button), FALSE);
+    gtk_widget_add_css_class(button, "eye");
+    gtk_widget_set_visible(button, row->field.resets);
+    gtk_widget_set_valign(button, GTK_ALIGN_CENTER);
+    gui_name(button, name);
+    g_object_set_data(G_OBJECT(button), "gui", gui);
+    g_signal_connect(button, "clicked", G_CALLBACK(reset_number), row);
+    g_free(name);
+    return button;
 }
 
 static GtkWidget *choice_input(struct gui *gui, struct form_row *row) {
@@ -206,7 +230,9 @@ static void add_row(struct gui *gui, GtkGrid *grid, int at, struct form_row *row
         gtk_widget_set_tooltip_text(inputs, field->help);
     }
     gtk_grid_attach(grid, label, 0, at, 1, 1);
+    row->reset = reset_button(gui, row);
     gtk_grid_attach(grid, inputs, 1, at, 1, 1);
+    gtk_grid_attach(grid, row->reset, 2, at, 1, 1);
     g_free(text);
     show_values(gui, row);
 }

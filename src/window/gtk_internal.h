@@ -23,7 +23,7 @@ struct picture_tiles {
 /* The widgets of a field of the form. */
 struct form_row {
     struct window_field field;
-    GtkWidget *inputs[3];
+    GtkWidget *inputs[3], *reset;
 };
 
 struct gui {
@@ -42,7 +42,8 @@ struct gui {
     struct node_query revealed; /* the node to which the tree is to be opened; depth 0: none */
     struct picture_tiles tiles;
     struct share memory;       /* of the shared state ... */
-    struct window_state state; /* ... and what it was last */
+    struct window_state state; /* ... and what it was last, ... */
+    uint32_t number;           /* ... with this number */
     double mouse_x, mouse_y;   /* in those of the picture's widget, times the scale */
     GFile *next_scene;         /* the scene to open if the user agrees to lose the edits; else NULL */
 

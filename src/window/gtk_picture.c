@@ -123,7 +123,8 @@ static void gray_picture_snapshot(GtkWidget *widget, GtkSnapshot *snapshot) {
     gtk_snapshot_append_color(snapshot, &(GdkRGBA){0.1f, 0.1f, 0.1f, 1}, &whole);
     graphene_rect_t area = GRAPHENE_RECT_INIT((float)gui->state.left, (float)gui->state.top,
                                               (float)gui->state.shown_width, (float)gui->state.shown_height);
-    draw_tiles(snapshot, &gui->tiles, &area, scale);
+    if (gui->state.shown_width > 0)
+        draw_tiles(snapshot, &gui->tiles, &area, scale);
     if (gui->state.line_count > 0) {
         cairo_t *cairo = gtk_snapshot_append_cairo(snapshot, &whole);
         cairo_scale(cairo, 1 / scale, 1 / scale);

@@ -5,6 +5,7 @@
 
 #include "window/gtk_form_internal.h"
 #include "window/gtk_picture_internal.h"
+#include "window/gtk_settings_internal.h"
 #include "window/gtk_start_internal.h"
 #include "window/gtk_tree_internal.h"
 #include "window/gtk_window_internal.h"
@@ -29,12 +30,10 @@ void gui_name(GtkWidget *widget, const char *name) {
 
 /* To the viewer. */
 
-static void save_settings(struct gui *gui);
-
 /* Without a viewer there is nothing to show. */
 static void end_process(struct gui *gui) {
     if (gui->window)
-        save_settings(gui);
+        gui_save_settings(gui);
     if (gui->window)
         gtk_window_destroy(GTK_WINDOW(gui->window));
     gui->window = NULL;
@@ -618,61 +617,6 @@ static GtkWidget *make_body(struct gui *gui) {
     return gui->inspector_pane;
 }
 
-/* Sizes and choices, from one run to the next. */
-
-static char *settings_path(void) {
-    return g_build_filename(g_get_user_config_dir(), "gray", "window.ini", NULL);
-}
-
-static int kept_number(GKeyFile *file, const char *name, int otherwise) {
-    GError *error = NULL;
-    int number = g_key_file_get_integer(file, "window", name, &error);
-    bool ok = !error && number > 0 && number < 32768;
-    g_clear_error(&error);
-    return ok ? number : otherwise;
-}
-
-static void load_settings(struct gui *gui) {
-    GKeyFile *file = g_key_file_new();
-    char *path = settings_path(), *keys;
-    (void)g_key_file_load_from_file(file, path, G_KEY_FILE_NONE, NULL);
-    int width = kept_number(file, "width", 1280), inspector = kept_number(file, "inspector", 330);
-    gtk_window_set_default_size(GTK_WINDOW(gui->window), width, kept_number(file, "height", 800));
-    gtk_paned_set_position(GTK_PANED(gui->tree_pane), kept_number(file, "tree", 200));
-    gtk_paned_set_position(GTK_PANED(gui->inspector_pane), MAX(width - inspector, 300));
-    gtk_paned_set_position(GTK_PANED(gui->trace_pane), kept_number(file, "trace", 400));
-    keys = g_key_file_get_string(file, "window", "keys", NULL);
-    if (g_strcmp0(keys, "OpenSCAD") == 0)
-        g_action_group_change_action_state(G_ACTION_GROUP(gui->window), "keys", g_variant_new_string(keys));
-    if (g_key_file_get_boolean(file, "window", "dark", NULL))
-        g_action_group_change_action_state(G_ACTION_GROUP(gui->window), "dark", g_variant_new_boolean(TRUE));
-    g_free(keys);
-    g_free(path);
-    g_key_file_free(file);
-}
-
-static void save_settings(struct gui *gui) {
-    static const char *const sets[] = {WINDOW_KEY_SETS(LIST_WORD)};
-    GKeyFile *file = g_key_file_new();
-    char *path = settings_path(), *folder = g_path_get_dirname(path);
-    int width, height;
-    gboolean dark;
-    gtk_window_get_default_size(GTK_WINDOW(gui->window), &width, &height);
-    g_object_get(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", &dark, NULL);
-    g_key_file_set_integer(file, "window", "width", width);
-    g_key_file_set_integer(file, "window", "height", height);
-    g_key_file_set_integer(file, "window", "tree", gtk_paned_get_position(GTK_PANED(gui->tree_pane)));
-    g_key_file_set_integer(file, "window", "inspector", width - gtk_paned_get_position(GTK_PANED(gui->inspector_pane)));
-    g_key_file_set_integer(file, "window", "trace", gtk_paned_get_position(GTK_PANED(gui->trace_pane)));
-    g_key_file_set_string(file, "window", "keys", sets[gui->key_set]);
-    g_key_file_set_boolean(file, "window", "dark", dark);
-    if (g_mkdir_with_parents(folder, 0700) == 0)
-        (void)g_key_file_save_to_file(file, path, NULL);
-    g_free(folder);
-    g_free(path);
-    g_key_file_free(file);
-}
-
 static gboolean ask_close(GtkWindow *window, gpointer data) {
     (void)window;
     ask_to_leave(data, NULL);
@@ -715,7 +659,7 @@ static void make_window(struct gui *gui) {
     g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
     gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
     gui_add_keys(gui);
-    load_settings(gui);
+    gui_load_settings(gui);
 }
 
 /* From the viewer. */
@@ -802,7 +746,29 @@ static void show_state(struct gui *gui) {
     gtk_widget_set_visible(gui->trace_box, state->trace[0] != '\0');
     gui_tree_show(gui, &was);
     gui_form_show(gui);
+    if (state->has_scene && state->shown_width == 0) /* the viewer does not know the size yet */
+        gui_picture_send_size(gui);
     gui_picture_draw(gui);
+}
+
+/* Until then no order to show comes, so that a viewer that has much to show leaves time for drawing. */
+static const guint show_pause = 15; /* milliseconds */
+
+static gboolean allow_show(gpointer data);
+
+static void show_now(struct gui *gui) {
+    gui->number = atomic_load(&((struct window_shared *)gui->memory.block)->number);
+    show_state(gui);
+    (void)g_timeout_add(show_pause, allow_show, gui);
+}
+
+static gboolean allow_show(gpointer data) {
+    struct gui *gui = data;
+    struct window_shared *shared = gui->memory.block;
+    atomic_store(&shared->announced, 0);
+    if (gui->window && atomic_load(&shared->number) != gui->number && atomic_exchange(&shared->announced, 1) == 0)
+        show_now(gui);
+    return G_SOURCE_REMOVE;
 }
 
 static void obey(struct gui *gui, const struct window_order *order, int descriptor) {
@@ -817,7 +783,7 @@ static void obey(struct gui *gui, const struct window_order *order, int descript
         return;
     case ORDER_SHOW:
         if (gui->memory.block)
-            show_state(gui);
+            show_now(gui);
         return;
     case ORDER_NODES:
         gui_tree_receive(gui, order);

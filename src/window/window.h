@@ -57,10 +57,11 @@ enum window_field_kind {
 enum { FORM_FIELDS = 80, FORM_TEXT = 192, WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */ };
 struct window_field {
     enum window_field_kind kind;
-    uint32_t number;                    /* what the field is, to the receiver of its events */
-    bool acts;                          /* a number is not a state: it does something, and the field is as before */
-    char group[32], name[32], unit[16]; /* unit #: whole numbers */
-    double numbers[3], low, high;       /* low and high may be infinite */
+    uint32_t number;                       /* what the field is, to the receiver of its events */
+    bool resets;                           /* it has a default: the number `initial` */
+    bool acts;                             /* a number is not a state: it does something, and the field is as before */
+    char group[32], name[32], unit[16];    /* unit #: whole numbers */
+    double numbers[3], initial, low, high; /* low and high may be infinite */
     char text[FORM_TEXT], help[FORM_TEXT];
 };
 struct window_form {

@@ -75,7 +75,11 @@ static bool update_state(struct window_channel *window) {
 }
 
 static void show_state(struct window_channel *window, bool changed) {
-    if (update_state(window) || changed)
+    struct window_shared *shared = window->memory.block;
+    if (changed && shared)
+        atomic_fetch_add_explicit(&shared->number, 2, memory_order_release);
+    bool shows = update_state(window) || changed;
+    if (shows && (!shared || atomic_exchange(&shared->announced, 1) == 0))
         send(window, &(struct window_order){.kind = ORDER_SHOW}, -1);
 }
 

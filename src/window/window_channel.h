@@ -23,9 +23,11 @@ uint8_t *window_picture_pixels(const struct window_picture *picture);
 /* Maps the memory of the other process, whose descriptor it takes over. */
 bool window_picture_attach(struct window_picture *picture, uint32_t width, uint32_t height, int descriptor);
 
-/* The state in such memory; its number is odd while it is written. */
+/* The state in such memory; its number is odd while it is written, and grows with the picture, too. An order to show
+ * them is on its way at most once: the window clears `announced` when it has had the time to draw, and compares the
+ * number. */
 struct window_shared {
-    _Atomic uint32_t number;
+    _Atomic uint32_t number, announced;
     struct window_state state;
 };
 void window_shared_read(const struct window_shared *shared, struct window_state *out);

@@ -64,6 +64,16 @@ TEST(models_are_read_again_with_their_volume_and_are_closed) {
         }
         model_destroy(&model);
     }
+    /* A model is a scene, whose ground is no part of it. */
+    struct test_result result = test_gray(test_folder(), "-q part.obj -o again.stl");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, test_path("again.stl"), &options, &error));
+    CHECK_NEAR(volume_of(model_meshes(&model)[0].mesh), 6000 - PI * 320, 0.1 * 2 * PI * 40);
+    model_destroy(&model);
 }
 
 /* The first file of a zip, inflated. */

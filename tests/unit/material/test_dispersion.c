@@ -105,7 +105,7 @@ static double deviation(struct prism *prism, double incidence, double wavelength
     return acos(vec3_dot(first, ray));
 }
 
-static double least_deviation(struct prism *prism, double wavelength) {
+static double smallest_deviation(struct prism *prism, double wavelength) {
     double min = INFINITY;
     for (int i = 0; i < 2000; i++)
         min = fmin(min, deviation(prism, 0.75 + 0.4 * i / 2000, wavelength));
@@ -113,7 +113,7 @@ static double least_deviation(struct prism *prism, double wavelength) {
 }
 
 /* D = 2 asin(n sin 30) - 60 degrees, of classic and of layered glass. */
-TEST(a_prism_turns_three_wavelengths_by_the_least_deviation_of_their_indices) {
+TEST(a_prism_turns_three_wavelengths_by_the_smallest_deviation_of_their_indices) {
     static const struct {
         const char *name;
         double wavelength, ior; /* of the catalogue */
@@ -132,9 +132,9 @@ TEST(a_prism_turns_three_wavelengths_by_the_least_deviation_of_their_indices) {
                                   medium_inside(ior, colour_all(1), &(struct medium_input){.scattering = {0, 0, 0}})};
             prism.medium.dispersion = dispersion;
             double expected = 2 * asin(rows[i].ior / 2) - M_PI / 3;
-            CHECK_NEAR(least_deviation(&prism, rows[i].wavelength), expected, 1e-4);
+            CHECK_NEAR(smallest_deviation(&prism, rows[i].wavelength), expected, 1e-4);
             if (i == 1)
-                CHECK_NEAR(least_deviation(&prism, 0), expected, 1e-4);
+                CHECK_NEAR(smallest_deviation(&prism, 0), expected, 1e-4);
         }
     }
 }

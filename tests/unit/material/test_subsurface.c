@@ -63,7 +63,7 @@ static double brought_back(double albedo, double g, int walks, struct test_rando
     return sum / walks;
 }
 
-TEST_TIMES(walks_in_a_half_space_of_the_albedo_for_a_colour_bring_it_back, 100) {
+TEST_TIMES(walks_in_a_half_space_of_the_albedo_for_a_colour_reflect_it, 100) {
     static const double g[] = {-0.9, -0.5, 0.3, 0.8, 0.9};
     struct test_random random = {5};
     for (int i = 0; i < 5; i++)

@@ -4,6 +4,7 @@
 #include "tests/stage.h"
 #include "tests/unit/path_estimate.h"
 
+#include "film/path_film.h"
 #include "material/openpbr.h"
 
 #include <math.h>
@@ -76,6 +77,28 @@ TEST_TIMES(a_ball_of_dispersive_glass_is_invisible_in_white_light, 16) {
             check_white("ball of flint", &s, &smooth, times > 1 ? 0.001 : 0.004);
         stage_end(&s);
     }
+}
+
+/* The guides of the denoiser see a wall behind flint in its own colour, whatever wavelengths the paths have. */
+TEST(denoisers_see_what_is_behind_dispersive_glass_without_its_colours) {
+    struct stage s;
+    begin(&s);
+    struct node *pane = stage_cube(&s, s.root, flint(&s, true, 0));
+    struct node *wall = stage_cube(&s, s.root, stage_phong(&s, colour_make(0.6, 0.5, 0.4), colour_all(0), 1));
+    stage_scale(&s, pane, 60, 60, 1);
+    stage_move(&s, pane, -30, -30, -1);
+    stage_scale(&s, wall, 60, 60, 1);
+    stage_move(&s, wall, -30, -30, -6);
+    s.settings.denoise = DENOISER_GRAY;
+    s.settings.path_samples = 64;
+    CHECK(stage_render(&s, 8, 8));
+    for (size_t i = 0; i < 64; i++) {
+        struct path_pixel pixel = path_film_load(&s.film, i);
+        double r = path_pixel_feature(&pixel, 0, PATH_ALBEDO), b = path_pixel_feature(&pixel, 0, PATH_ALBEDO + 2);
+        /* The first reflection of the pane has no colour, either. */
+        CHECK(r > 0.4 && b > 0.2 && r / b > 1.2 && r / b < 1.6);
+    }
+    stage_end(&s);
 }
 
 /* A lamp above a slab, and the floor below it: the light of photons has the same mean with and without dispersion. */

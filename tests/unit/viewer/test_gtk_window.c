@@ -233,7 +233,8 @@ static void press_every_key(enum window_key_set set) {
             for (const char *at = row->keys[set]; *at && ends_scene((enum window_action)i) == last;) {
                 size_t length = strcspn(at, " ");
                 key_for_tool(at, length, key, sizeof key);
-                used += (size_t)snprintf(commands + used, SIZE - used, "press %s %s\n", key, row->name);
+                used += i == DO_QUIT ? (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s\n", key)
+                                     : (size_t)snprintf(commands + used, SIZE - used, "press %s %s\n", key, row->name);
                 if (row->menu == MENU_VIEW)
                     used += (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s\n",
                                              set == KEYS_BLENDER ? "0" : "ctrl+0");

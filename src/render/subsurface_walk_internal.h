@@ -1,7 +1,7 @@
 /* The walk of a path under a surface (material/subsurface.h), from where it goes in to where it comes out. Only the
  * surface of the same primitive ends it: what else is inside has no effect. */
-#ifndef GRAY_RENDER_SUBSURFACE_WALK_H
-#define GRAY_RENDER_SUBSURFACE_WALK_H
+#ifndef GRAY_RENDER_SUBSURFACE_WALK_INTERNAL_H
+#define GRAY_RENDER_SUBSURFACE_WALK_INTERNAL_H
 
 #include "material/subsurface.h"
 #include "world/world.h"
@@ -11,7 +11,8 @@ struct subsurface_walk {
     struct world_scratch *scratch;
     uint32_t primitive;
     struct subsurface under;
-    uint64_t key; /* of its random numbers */
+    uint64_t key;       /* of its random numbers */
+    struct vec3 normal; /* outwards, where it goes in */
     /* In: the ray that goes in. Out: the one that comes out. */
     struct ray ray;
     struct colour weight; /* of the path */
