@@ -12,8 +12,8 @@
 /* Whether the ray of the path has such samples: of four depths (1, 2, 3, all), in fog with two lamps, these have the
  * least error in equal time. */
 enum { AIMED_DEPTHS = 3 };
-static inline bool path_aims(const struct path_tracer *tracer, const struct path *path) {
-    return tracer->lamp_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS &&
+static inline bool path_is_aimed(const struct path_tracer *tracer, const struct path *path) {
+    return tracer->aimed_light_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS &&
            !path_is_sealed(tracer, &path->media);
 }
 

@@ -179,16 +179,16 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
         const struct medium_mix mix = {1, {medium}};
         const double end = out->distance;
-        const bool aims = path_aims(tracer, path);
+        const bool aimed = path_is_aimed(tracer, path);
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
-        if (aims)
+        if (aimed)
             aim(tracer, state, path, &mix, end);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
         out->medium = sample.scatters ? medium : NULL;
-        if (aims && sample.scatters)
+        if (aimed && sample.scatters)
             note_tracked(path, &mix, weight, end, out);
         return;
     }
@@ -222,13 +222,13 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
         path->weight = colour_mul(weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
         return;
     }
-    const bool aims = path_aims(tracer, path);
-    if (aims)
+    const bool aimed = path_is_aimed(tracer, path);
+    if (aimed)
         aim(tracer, state, path, &mix, end);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;
-    if (aims && track.scatterer)
+    if (aimed && track.scatterer)
         note_tracked(path, &mix, weight, end, out);
 }
 

@@ -354,7 +354,7 @@ TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16)
 /* --- densities, several media, surfaces --- */
 
 /* A white cloud in a ball that lies in another cloud, from the outside and from the inside. */
-TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 16) {
+TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
     static const float values[8] = {0, 5, 2, 1, 0.5, 0, 30, 1};
     struct arena arena = {0};
     struct error error = {0};
