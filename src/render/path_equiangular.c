@@ -1,5 +1,5 @@
-/* See path_aim.h. */
-#include "render/path_aim.h"
+/* See path_equiangular.h. */
+#include "render/path_equiangular.h"
 
 #include "math/elementary.h"
 #include "render/path_light_internal.h"
