@@ -60,7 +60,8 @@ static void leave_surface(const struct path_vertex *vertex, struct path_shadow *
     shadow->skip_part = skip.part;
 }
 
-void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+static inline __attribute__((always_inline)) void send_shadow_ray(const struct path_vertex *vertex,
+                                                                  struct path_shadow *out) {
     const struct world_light_sample *sample = &out->sample;
     struct ray *shadow = &out->ray;
     shadow->origin = vertex->receiver->from;
@@ -78,6 +79,10 @@ void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *
         shadow->skip_part = 0;
     }
     out->sent = true;
+}
+
+void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out) {
+    send_shadow_ray(vertex, out);
 }
 
 /* The random numbers of a stretch of a ray to a light from the last vertex of the path. */
@@ -221,7 +226,7 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
     out->scattered = colour_add(f, choice->highlight);
     if (colour_is_black(out->scattered))
         return false;
-    path_send_shadow_ray(vertex, out);
+    send_shadow_ray(vertex, out);
     return true;
 }
 
