@@ -151,9 +151,9 @@ static uint64_t medium_key(const struct path *path) {
 
 /* The samples of lights on the way, and what weights those of the vertex against them: the weight of the path is still
  * that before the way. */
-static __attribute__((noinline)) void sample_lights_between(const struct path_tracer *tracer,
-                                                            struct integrator_state *state, struct path *path,
-                                                            const struct medium_mix *mix, double distance) {
+static __attribute__((noinline)) void sample_aimed_light(const struct path_tracer *tracer,
+                                                         struct integrator_state *state, struct path *path,
+                                                         const struct medium_mix *mix, double distance) {
     struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
     struct path_parts *parts = parts_of(state);
     path->light = colour_add(path->light, light);
@@ -184,7 +184,7 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
         if (aimed)
-            sample_lights_between(tracer, state, path, &mix, end);
+            sample_aimed_light(tracer, state, path, &mix, end);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
@@ -225,7 +225,7 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const bool aimed = path_is_aimed(tracer, path);
     if (aimed)
-        sample_lights_between(tracer, state, path, &mix, end);
+        sample_aimed_light(tracer, state, path, &mix, end);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;
