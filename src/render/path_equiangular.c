@@ -64,7 +64,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
                                  const struct medium_mix *mix, double distance) {
     const struct world_lights *lights = &tracer->lights;
     const struct sampler *sampler = &path->sampler;
-    const struct sample2 u = sampler_point(sampler, path->dimension | SAMPLER_AIM);
+    const struct sample2 u = sampler_point(sampler, path->dimension | SAMPLER_AIMED);
     const struct path_tracked line = {.ray = &path->ray, .end = distance};
     struct view_of_line view;
     struct path_shadow shadow;
@@ -81,7 +81,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
     /* The light there. */
     if (!(t < INFINITY) ||
         !world_lights_sample(lights, &path->scatter, shadow.part,
-                             sampler_point(sampler, path->dimension | SAMPLER_AIM | SAMPLER_STRETCH), &shadow.sample))
+                             sampler_point(sampler, path->dimension | SAMPLER_AIMED | SAMPLER_STRETCH), &shadow.sample))
         return colour_all(0);
     double pmf_there = light_sampler_pmf(&lights->sampler, point, vec3_all(0), shadow.part);
     struct colour light = scattered(tracer, path, mix, &shadow, pmf_there);
@@ -91,7 +91,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
     double tracked = medium_mix_density(mix, &before, path->weight);
     double own = view_pdf(&view, t) / tracer->aimed_light_count, weight = squared_share(own, tracked * pmf_there);
     light =
-        colour_mul(light, medium_mix_left(mix, &before, random_combine(sampler->key, path->dimension | SAMPLER_AIM)));
+        colour_mul(light, medium_mix_left(mix, &before, random_combine(sampler->key, path->dimension | SAMPLER_AIMED)));
     const struct path_vertex vertex = {.ray = &path->ray, .receiver = &path->scatter};
     path_send_shadow_ray(&vertex, &shadow);
     struct colour arriving = path_light_arriving(tracer, state, path, &shadow);
