@@ -1,5 +1,5 @@
-/* See path_equiangular.h. */
-#include "render/path_equiangular.h"
+/* See path_equiangular_internal.h. */
+#include "render/path_equiangular_internal.h"
 
 #include "math/elementary.h"
 #include "render/path_light_internal.h"

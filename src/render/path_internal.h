@@ -29,7 +29,7 @@ struct path_tracer {
     bool has_fillings;            /* media inside invisible surfaces */
     bool in_medium;               /* the medium around all solids affects rays */
     bool disperses;               /* indices of refraction depend on the wavelength */
-    const uint32_t *aimed_lights; /* lights with a middle, for path_equiangular.h */
+    const uint32_t *aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
     uint32_t aimed_light_count;
     const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through

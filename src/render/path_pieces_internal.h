@@ -20,7 +20,7 @@
 #include "material/medium_mix.h"
 #include "math/range.h"
 #include "math/spectrum.h"
-#include "render/path_equiangular.h"
+#include "render/path_equiangular_internal.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
@@ -137,7 +137,7 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
-/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_equiangular.h. */
+/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_equiangular_internal.h. */
 struct path_stretch {
     double distance, end; /* the end of the ray */
     const struct medium *medium;

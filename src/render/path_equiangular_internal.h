@@ -2,8 +2,8 @@
  * closest to it (equiangular sampling: C. Kulla and M. Fajardo, "Importance Sampling Techniques for Path Tracing in
  * Participating Media", EGSR 2012). The vertices that tracking finds have the same light, so both are weighted by
  * multiple importance sampling: of tracking an estimate of its density serves, since weights need only add up to 1. */
-#ifndef GRAY_RENDER_PATH_EQUIANGULAR_H
-#define GRAY_RENDER_PATH_EQUIANGULAR_H
+#ifndef GRAY_RENDER_PATH_EQUIANGULAR_INTERNAL_H
+#define GRAY_RENDER_PATH_EQUIANGULAR_INTERNAL_H
 
 #include "material/medium_mix.h"
 #include "render/path_internal.h"
