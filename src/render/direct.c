@@ -4,7 +4,7 @@
 #include "render/direct_internal.h"
 
 #include "light/light_edit.h"
-#include "render/media_light.h"
+#include "render/media_light_internal.h"
 #include "world/packet.h"
 
 enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are traced together */

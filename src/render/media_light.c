@@ -1,6 +1,6 @@
-/* See media_light.h. Strata are equal in length in bounded media. In endless ones they are equal in the light that is
- * left by the mean of the channels. */
-#include "render/media_light.h"
+/* See media_light_internal.h. Strata are equal in length in bounded media. In endless ones they are equal in the light
+ * that is left by the mean of the channels. */
+#include "render/media_light_internal.h"
 
 #include "light/light_edit.h"
 #include "material/medium_mix.h"

@@ -88,17 +88,17 @@ static bool find_photon_lights(struct path_tracer *tracer, const struct world *w
 }
 
 /* The lights with a position, if there are media. */
-static bool find_lamps(struct path_tracer *tracer) {
+static bool find_aimed_lights(struct path_tracer *tracer) {
     const struct world_lights *lights = &tracer->lights;
     struct light_target middle;
     if (!tracer->has_fillings && !tracer->in_medium)
         return true;
-    uint32_t *lamps = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *lamps);
-    for (uint32_t i = 0; lamps && i < lights->count; i++)
+    uint32_t *numbers = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *numbers);
+    for (uint32_t i = 0; numbers && i < lights->count; i++)
         if (light_middle(&lights->lights[i], &middle) && !middle.distant)
-            lamps[tracer->lamp_count++] = i;
-    tracer->lamps = lamps;
-    return lamps != NULL;
+            numbers[tracer->aimed_light_count++] = i;
+    tracer->aimed_lights = numbers;
+    return numbers != NULL;
 }
 
 /* --- sealed solids --- */
@@ -173,7 +173,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     /* The lights and, with --caustics, the photons that they send. */
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
-    if (tracer->built && (!find_lamps(tracer) || !find_sealed(tracer, world)))
+    if (tracer->built && (!find_aimed_lights(tracer) || !find_sealed(tracer, world)))
         return error_no_memory(error, "the solids of the scene");
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;

@@ -22,15 +22,15 @@ struct path_tracer {
     int roulette_depth; /* scattering events after which roulette may end a path */
     enum path_strategy strategy;
     struct filter filter;
-    double noise;          /* a tile with this noise is finished; 0: every tile takes all samples */
-    double clamp;          /* the limit on components of a sample; 0: no limit */
-    double bright;         /* of struct path_pixel */
-    bool built;            /* the lights are prepared */
-    bool has_fillings;     /* media inside invisible surfaces */
-    bool in_medium;        /* the medium around all solids affects rays */
-    bool disperses;        /* indices of refraction depend on the wavelength */
-    const uint32_t *lamps; /* lights with a middle, for path_aim.h */
-    uint32_t lamp_count;
+    double noise;                 /* a tile with this noise is finished; 0: every tile takes all samples */
+    double clamp;                 /* the limit on components of a sample; 0: no limit */
+    double bright;                /* of struct path_pixel */
+    bool built;                   /* the lights are prepared */
+    bool has_fillings;            /* media inside invisible surfaces */
+    bool in_medium;               /* the medium around all solids affects rays */
+    bool disperses;               /* indices of refraction depend on the wavelength */
+    const uint32_t *aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
+    uint32_t aimed_light_count;
     const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */

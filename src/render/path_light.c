@@ -9,8 +9,8 @@
 
 #include "material/bsdf_select.h"
 #include "material/medium_mix.h"
-#include "render/media_light.h"
-#include "render/path_aim.h"
+#include "render/media_light_internal.h"
+#include "render/path_equiangular_internal.h"
 #include "render/path_light_internal.h"
 #include "world/world_describe.h"
 

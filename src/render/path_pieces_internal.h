@@ -20,7 +20,7 @@
 #include "material/medium_mix.h"
 #include "math/range.h"
 #include "math/spectrum.h"
-#include "render/path_aim.h"
+#include "render/path_equiangular_internal.h"
 #include "render/path_light_internal.h"
 #include "render/path_trace_internal.h"
 #include "render/path_watch_internal.h"
@@ -137,7 +137,7 @@ static double passed_of(const struct path *path) {
 /* Where a ray ends; nothing hit is a hit, too. */
 enum travelled { ENDS_AT_HIT, ENDS_AT_LIGHT, ENDS_IN_MEDIUM };
 
-/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_aim.h. */
+/* How far it comes, and the medium that scatters it there, or NULL. tracked: of path_equiangular_internal.h. */
 struct path_stretch {
     double distance, end; /* the end of the ray */
     const struct medium *medium;
@@ -151,8 +151,9 @@ static uint64_t medium_key(const struct path *path) {
 
 /* The samples of lights on the way, and what weights those of the vertex against them: the weight of the path is still
  * that before the way. */
-static __attribute__((noinline)) void aim(const struct path_tracer *tracer, struct integrator_state *state,
-                                          struct path *path, const struct medium_mix *mix, double distance) {
+static __attribute__((noinline)) void sample_aimed_light(const struct path_tracer *tracer,
+                                                         struct integrator_state *state, struct path *path,
+                                                         const struct medium_mix *mix, double distance) {
     struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
     struct path_parts *parts = parts_of(state);
     path->light = colour_add(path->light, light);
@@ -179,16 +180,16 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct sample2 u = sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM);
         const struct medium_mix mix = {1, {medium}};
         const double end = out->distance;
-        const bool aims = path_aims(tracer, path);
+        const bool aimed = path_is_aimed(tracer, path);
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
-        if (aims)
-            aim(tracer, state, path, &mix, end);
+        if (aimed)
+            sample_aimed_light(tracer, state, path, &mix, end);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
         out->medium = sample.scatters ? medium : NULL;
-        if (aims && sample.scatters)
+        if (aimed && sample.scatters)
             note_tracked(path, &mix, weight, end, out);
         return;
     }
@@ -222,13 +223,13 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
         path->weight = colour_mul(weight, medium_mix_left(&mix, &line, random_combine(medium_key(path), 0)));
         return;
     }
-    const bool aims = path_aims(tracer, path);
-    if (aims)
-        aim(tracer, state, path, &mix, end);
+    const bool aimed = path_is_aimed(tracer, path);
+    if (aimed)
+        sample_aimed_light(tracer, state, path, &mix, end);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;
-    if (aims && track.scatterer)
+    if (aimed && track.scatterer)
         note_tracked(path, &mix, weight, end, out);
 }
 

@@ -4,7 +4,7 @@
 #include "render/aov_values_internal.h"
 #include "render/integrator.h"
 #include "render/integrator_internal.h"
-#include "render/media_light.h"
+#include "render/media_light_internal.h"
 
 #include "base/mem.h"
 #include "denoise/film_denoise.h"

@@ -2,7 +2,7 @@
  * and the position in the tree of rays. */
 #include "material/bsdf_select.h"
 #include "material/medium.h"
-#include "render/media_light.h"
+#include "render/media_light_internal.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
 #include "world/joint.h"

@@ -1,7 +1,7 @@
 /* Light in media: what they leave of a ray to a light, and, for Whitted's integrator, what they scatter towards the
  * eye. Paths are in path_pieces_internal.h. */
-#ifndef GRAY_RENDER_MEDIA_LIGHT_H
-#define GRAY_RENDER_MEDIA_LIGHT_H
+#ifndef GRAY_RENDER_MEDIA_LIGHT_INTERNAL_H
+#define GRAY_RENDER_MEDIA_LIGHT_INTERNAL_H
 
 #include "render/integrator_state_internal.h"
 

@@ -1,5 +1,5 @@
-/* See path_aim.h. */
-#include "render/path_aim.h"
+/* See path_equiangular_internal.h. */
+#include "render/path_equiangular_internal.h"
 
 #include "math/elementary.h"
 #include "render/path_light_internal.h"
@@ -10,8 +10,8 @@ struct view_of_line {
 };
 
 /* False: the lamp has no middle. */
-static bool look_at_line(const struct world_lights *lights, struct light_part part, const struct path_tracked *line,
-                         struct view_of_line *out) {
+static bool find_view(const struct world_lights *lights, struct light_part part, const struct path_tracked *line,
+                      struct view_of_line *out) {
     struct light_target target;
     if (!light_middle(&lights->lights[part.light], &target) || target.distant)
         return false;
@@ -37,9 +37,9 @@ static double squared_share(double own, double other) {
 double path_tracked_weight(const struct path_tracer *tracer, const struct path_tracked *tracked, struct light_part part,
                            double pmf) {
     struct view_of_line view;
-    if (!(tracked->density > 0) || !look_at_line(&tracer->lights, part, tracked, &view))
+    if (!(tracked->density > 0) || !find_view(&tracer->lights, part, tracked, &view))
         return 1;
-    return squared_share(tracked->density * pmf, view_pdf(&view, tracked->distance) / tracer->lamp_count);
+    return squared_share(tracked->density * pmf, view_pdf(&view, tracked->distance) / tracer->aimed_light_count);
 }
 
 /* What the media at the point scatter of the sample, weighted against rays that meet the light. */
@@ -64,13 +64,13 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
                                  const struct medium_mix *mix, double distance) {
     const struct world_lights *lights = &tracer->lights;
     const struct sampler *sampler = &path->sampler;
-    const struct sample2 u = sampler_point(sampler, path->dimension | SAMPLER_AIM);
+    const struct sample2 u = sampler_point(sampler, path->dimension | SAMPLER_AIMED);
     const struct path_tracked line = {.ray = &path->ray, .end = distance};
     struct view_of_line view;
     struct path_shadow shadow;
     /* A lamp, and a point on the ray. */
-    shadow.part = (struct light_part){tracer->lamps[(uint32_t)(u.x * tracer->lamp_count)], 0};
-    if (!look_at_line(lights, shadow.part, &line, &view))
+    shadow.part = (struct light_part){tracer->aimed_lights[(uint32_t)(u.x * tracer->aimed_light_count)], 0};
+    if (!find_view(lights, shadow.part, &line, &view))
         return colour_all(0);
     double angle = view.from + u.y * (view.to - view.from), sine, cosine;
     el_sincos(angle, &sine, &cosine);
@@ -81,7 +81,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
     /* The light there. */
     if (!(t < INFINITY) ||
         !world_lights_sample(lights, &path->scatter, shadow.part,
-                             sampler_point(sampler, path->dimension | SAMPLER_AIM | SAMPLER_STRETCH), &shadow.sample))
+                             sampler_point(sampler, path->dimension | SAMPLER_AIMED | SAMPLER_STRETCH), &shadow.sample))
         return colour_all(0);
     double pmf_there = light_sampler_pmf(&lights->sampler, point, vec3_all(0), shadow.part);
     struct colour light = scattered(tracer, path, mix, &shadow, pmf_there);
@@ -89,9 +89,9 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
         return light;
     const struct medium_line before = {path->ray.origin, direction, t, path->ray.time};
     double tracked = medium_mix_density(mix, &before, path->weight);
-    double own = view_pdf(&view, t) / tracer->lamp_count, weight = squared_share(own, tracked * pmf_there);
+    double own = view_pdf(&view, t) / tracer->aimed_light_count, weight = squared_share(own, tracked * pmf_there);
     light =
-        colour_mul(light, medium_mix_left(mix, &before, random_combine(sampler->key, path->dimension | SAMPLER_AIM)));
+        colour_mul(light, medium_mix_left(mix, &before, random_combine(sampler->key, path->dimension | SAMPLER_AIMED)));
     const struct path_vertex vertex = {.ray = &path->ray, .receiver = &path->scatter};
     path_send_shadow_ray(&vertex, &shadow);
     struct colour arriving = path_light_arriving(tracer, state, path, &shadow);

@@ -2,8 +2,8 @@
  * closest to it (equiangular sampling: C. Kulla and M. Fajardo, "Importance Sampling Techniques for Path Tracing in
  * Participating Media", EGSR 2012). The vertices that tracking finds have the same light, so both are weighted by
  * multiple importance sampling: of tracking an estimate of its density serves, since weights need only add up to 1. */
-#ifndef GRAY_RENDER_PATH_AIM_H
-#define GRAY_RENDER_PATH_AIM_H
+#ifndef GRAY_RENDER_PATH_EQUIANGULAR_INTERNAL_H
+#define GRAY_RENDER_PATH_EQUIANGULAR_INTERNAL_H
 
 #include "material/medium_mix.h"
 #include "render/path_internal.h"
@@ -12,8 +12,8 @@
 /* Whether the ray of the path has such samples: of four depths (1, 2, 3, all), in fog with two lamps, these have the
  * least error in equal time. */
 enum { AIMED_DEPTHS = 3 };
-static inline bool path_aims(const struct path_tracer *tracer, const struct path *path) {
-    return tracer->lamp_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS &&
+static inline bool path_is_aimed(const struct path_tracer *tracer, const struct path *path) {
+    return tracer->aimed_light_count > 0 && path->depth < tracer->max_depth && path->depth < AIMED_DEPTHS &&
            !path_is_sealed(tracer, &path->media);
 }
 
