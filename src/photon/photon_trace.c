@@ -107,7 +107,8 @@ static bool pass_media(struct photon_path *path, double distance) {
     medium_stack_mix(path->ray.media, &mix);
     const struct medium_line line = {path->ray.origin, path->ray.direction, distance, path->ray.time};
     if (!medium_mix_scatters(&mix)) {
-        path->left = colour_mul(path->left, medium_mix_left(&mix, &line, random_combine(path->key, path->draws++)));
+        const uint64_t key = random_combine(path->key, ~(uint64_t)path->draws); /* none of those that are drawn */
+        path->left = colour_mul(path->left, medium_mix_left(&mix, &line, key));
         return false;
     }
     double u = draw(path), v = draw(path);
