@@ -361,12 +361,16 @@ static inline float sum_lanes(const float lanes[LANES]) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* The normal equations: the lower triangle of the matrix, and three right sides. The terms of features are in units of
- * `scale`: twice their mean difference to the centre, but at least what `scale` is before. */
+/* The normal equations: the lower triangle of the matrix, and three right sides. */
+struct equations {
+    double matrix[TERMS][TERMS], right[TERMS][3];
+};
+
+/* The terms of features are in units of `scale`: twice their mean difference to the centre, but at least what
+ * `scale` is before. */
 static inline __attribute__((always_inline)) void build_equations(const struct denoise_scratch *s,
                                                                   const struct window *w, int half, int terms,
-                                                                  double scale[TERMS], double matrix[TERMS][TERMS],
-                                                                  double right[TERMS][3]) {
+                                                                  double scale[TERMS], struct equations *out) {
     float sums[TERMS][COLUMNS][LANES];
 #define MULTIPLY(i)                                                                                                    \
     if (i < terms)                                                                                                     \
@@ -389,9 +393,9 @@ static inline __attribute__((always_inline)) void build_equations(const struct d
     }
     for (int i = 0; i < terms; i++) {
         for (int j = i; j < terms; j++)
-            matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
+            out->matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
         for (int c = 0; c < 3; c++)
-            right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
+            out->right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
     }
 }
 
@@ -469,20 +473,20 @@ static int fill_features(struct denoise_scratch *s, const struct window *w, doub
 /* The regression with a number of terms that the compiler knows. */
 static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, int half, const struct window *w,
                                                       int terms, double scale[TERMS]) {
-    double matrix[TERMS][TERMS], right[TERMS][3];
+    struct equations e;
     float range[3][2];
     for (int c = 0; c < 3; c++)
         find_range(s, w, half, c, range[c]);
-    build_equations(s, w, half, terms, scale, matrix, right);
+    build_equations(s, w, half, terms, scale, &e);
     for (int i = 1; i < terms; i++)
-        matrix[i][i] += ridge * matrix[0][0]; /* keeps terms small that the window does not determine */
-    if (!solve(terms, matrix, right))
+        e.matrix[i][i] += ridge * e.matrix[0][0]; /* keeps terms small that the window does not determine */
+    if (!solve(terms, e.matrix, e.right))
         return;
     for (int i = 0; i < terms; i++)
         for (int c = 0; c < 3; c++)
-            right[i][c] *= scale[i];
+            e.right[i][c] *= scale[i];
     for (int c = 0; c < 3; c++)
-        predict(s, w, terms, c, right, range[c]);
+        predict(s, w, terms, c, e.right, range[c]);
     for (int r = w->row0; r < w->row1; r++) {
         float *to = s->sums[3] + row_at(w, r);
         for (int at = 0; at < LANES; at += WIDTH)

@@ -166,8 +166,8 @@ bool picture_files_check_output(const struct options *options, struct error *err
         snprintf(moving + strlen(moving), sizeof moving - strlen(moving), "%s%s", moving[0] ? ", " : "", animations[i]);
     return error_set(
         error, ERROR_USAGE,
-        "-o %.600s: gray writes no %.100s files; a name ends in %s, or for animations in %s (--force writes "
-        "a PNG file with any name)",
+        "-o %.600s: gray writes no %.100s files; a name ends in %s, or for animations in %s, or for models "
+        "in" MODEL_FORMATS_HELP " (--force writes a PNG file with any name)",
         options->output, strrchr(name, '.'), picture_extensions(extensions), moving);
 }
 

@@ -35,7 +35,7 @@ static bool gr_export(struct script_context *context, const struct script_value 
     if (!record_check(&context->sandbox, &context->scene, request.node, error))
         return false;
     limits_pause(&context->sandbox.limits);
-    bool done = host->export_model(host->context, &request, error);
+    bool done = !host->export_model || host->export_model(host->context, &request, error);
     limits_resume(&context->sandbox.limits);
     return done;
 }

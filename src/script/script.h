@@ -65,7 +65,7 @@ struct script_host {
     /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line
      * of the call, other kinds end the script without being catchable by pcall). */
     bool (*render)(void *context, const struct render_request *request, struct error *error);
-    /* The same for models. */
+    /* The same for models; may be NULL. */
     bool (*export_model)(void *context, const struct export_request *request, struct error *error);
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);

@@ -89,7 +89,7 @@ TEST(pictures_are_decoded_where_they_are_read_as_colours) {
             struct image *image = ramp(&s.error);
             bool colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION ||
                           input == INPUT_TRANSMISSION_COLOUR || input == INPUT_COAT_COLOUR ||
-                          input == INPUT_FUZZ_COLOUR;
+                          input == INPUT_FUZZ_COLOUR || input == INPUT_SUBSURFACE_COLOUR;
             bool expected = encoding == ENCODING_SRGB || (encoding == ENCODING_AUTO && colour);
             enum material_input at = (enum material_input)input;
             struct image *linear = in_world(&s, image, at, (enum texture_encoding)encoding, COLOUR_LINEAR);
