@@ -202,7 +202,7 @@ TEST(a_pixel_trace_that_is_too_long_counts_what_it_leaves_out) {
     OBSERVE(&pixel_trace.observer, OBSERVED_SAMPLE_BEGIN, .sample.position = &position);
     for (int i = 0; i < PIXEL_TRACE_RAYS + 10; i++) {
         OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_CAMERA, colour_all(1), RAY_FOLLOWED});
-        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_BEGIN, .begin = {&ray, NULL, NULL, INFINITY, 1});
+        OBSERVE(&pixel_trace.observer, OBSERVED_RAY_BEGIN, .begin = {&ray, NULL, NULL, INFINITY, 1, 0});
         OBSERVE(&pixel_trace.observer, OBSERVED_RAY_SENT, .sent = {RAY_REFLECTED, colour_all(1), RAY_FOLLOWED});
         CHECK_EQ_INT(pixel_trace.mute, i >= PIXEL_TRACE_RAYS);
         OBSERVE(&pixel_trace.observer, OBSERVED_RAY_END, .end = end);
