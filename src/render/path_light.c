@@ -43,7 +43,8 @@ static inline struct colour scattered(const struct path_vertex *vertex, uint32_t
 }
 
 /* Starts a ray to a sample on the side of the surface on which the light is, in the media on that side. */
-static void leave_surface(const struct path_vertex *vertex, struct path_shadow *out) {
+static inline __attribute__((always_inline)) void leave_surface(const struct path_vertex *vertex,
+                                                                struct path_shadow *out) {
     const struct world_light_sample *sample = &out->sample;
     const struct hit *hit = vertex->hit;
     struct ray *shadow = &out->ray;
