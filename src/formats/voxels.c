@@ -238,7 +238,7 @@ static bool unpack(const char *path, const uint8_t *data, size_t size, uint8_t *
                                        path, made, wanted);
 }
 
-bool voxels_is_nrrd(const uint8_t *data, size_t size) {
+static bool is_nrrd(const uint8_t *data, size_t size) {
     return size >= 8 && memcmp(data, "NRRD000", 7) == 0 && isdigit(data[7]);
 }
 
@@ -246,7 +246,7 @@ bool voxels_parse_nrrd(const char *path, const uint8_t *data, size_t size, struc
                        struct error *error) {
     struct header header = {.path = path};
     size_t at = 0;
-    if (!voxels_is_nrrd(data, size))
+    if (!is_nrrd(data, size))
         return error_set(error, ERROR_SCENE, "%s is no NRRD file", path);
     if (!read_header(&header, data, size, &at, error) || !check_header(&header, error))
         return false;

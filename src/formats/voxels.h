@@ -33,12 +33,10 @@ struct voxels {
 /* Reads a file that begins as NRRD does. Errors name the path: not such a file, a field that is not supported, sizes
  * that do not fit the data, a value that is negative or not finite, no memory. */
 bool voxels_read_nrrd(const char *path, struct arena *arena, struct voxels *out, struct error *error);
-/* Whether a file begins so. */
-bool voxels_is_nrrd(const uint8_t *data, size_t size);
 /* Reads a file of nothing but the values; out->count is given. */
 bool voxels_read_raw(const char *path, enum voxel_type type, struct arena *arena, struct voxels *out,
                      struct error *error);
-/* The same from memory; `path` is for messages. */
+/* An NRRD file from memory; `path` is for messages. */
 bool voxels_parse_nrrd(const char *path, const uint8_t *data, size_t size, struct arena *arena, struct voxels *out,
                        struct error *error);
 

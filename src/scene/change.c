@@ -15,7 +15,8 @@ const char *added_kind_name(enum added_kind kind) {
     return names[kind];
 }
 
-struct material added_material(struct colour colour) {
+/* The material of new shapes; its serial is 0. */
+static struct material added_material(struct colour colour) {
     return (struct material){
         .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = colour, .ks = colour_all(0.3), .shininess = 30, .ior = 1}};
 }

@@ -35,8 +35,6 @@ enum { TURN_AT = 6, COLOUR_AT = 15 };
 enum added_kind { ADDED(LIST_MEMBER) };
 enum { ADDED_KINDS = LIST_COUNT(ADDED) };
 const char *added_kind_name(enum added_kind kind);
-/* The material of new shapes; its serial is 0. */
-struct material added_material(struct colour colour);
 
 /* An added node or material, by its serial: its number from 1; 0: the script made it. */
 uint32_t added_number(uint32_t serial);

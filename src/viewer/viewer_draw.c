@@ -45,7 +45,8 @@ static void tone_pixel(const struct viewer *viewer, const struct tone *tone, siz
         viewer->window.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
-void viewer_draw_again(struct viewer *viewer, size_t pixel) {
+/* One pixel of the image. */
+static void draw_again(struct viewer *viewer, size_t pixel) {
     struct tone tone = picture_tone(&viewer->request);
     tone_pixel(viewer, &tone, pixel);
 }
@@ -299,36 +300,6 @@ static void note_first_picture(struct viewer *viewer) {
     viewer->built = 0;
 }
 
-void viewer_show(struct viewer *viewer, double now) {
-    const struct window_layout *layout = &viewer->window.layout;
-    const struct viewer_large *large = &viewer->window.large;
-    bool due = now - viewer->display.figures_at >= status_pause;
-    bool changed = viewer->window.dirty || viewer->display.hud_dirty;
-    if (layout->width == 0 || viewer_awaits_frame(viewer, now) ||
-        (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
-        return;
-    if (large->shown && large->stale && viewer->block && viewer->pass.view.width > 0)
-        viewer_draw_large(viewer);
-    end_notice(&viewer->window.notice, now);
-    if (due || viewer->display.hud_dirty) {
-        viewer->display.hud_dirty = false;
-        viewer_make_lines(viewer);
-        describe(viewer, now);
-        viewer->display.figures_at = due ? now : viewer->display.figures_at;
-    }
-    struct window_state *state = viewer->window.driver->state;
-    state->left = (int)layout->left;
-    state->top = (int)layout->top;
-    state->shown_width = (int)layout->shown_width;
-    state->shown_height = (int)layout->shown_height;
-    viewer->window.driver->show(viewer->window.driver->context, large->shown ? large->image : viewer->window.image,
-                                large->shown ? large->width : viewer->request.width,
-                                large->shown ? large->height : viewer->request.height);
-    note_first_picture(viewer);
-    viewer->display.shown_at = now;
-    viewer->window.dirty = false;
-}
-
 /* --- What is drawn over the picture --- */
 
 /* What is drawn over the picture. The lines of --overlay are part of the image that is shown and saved; the outline of
@@ -381,7 +352,7 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
         if (other)
             memcpy(viewer->overlay.lines[i], buffers->lines[i], sizeof viewer->overlay.lines[i]);
         if (other || (!had && viewer->overlay.lines[i][3] < 1))
-            viewer_draw_again(viewer, i);
+            draw_again(viewer, i);
     }
     viewer->window.dirty = true;
     viewer->window.large.stale = viewer->window.large.shown;
@@ -695,7 +666,8 @@ static void draw_handles(const struct drawing *drawing) {
     }
 }
 
-void viewer_make_lines(struct viewer *viewer) {
+/* Outline and symbols. */
+static void make_lines(struct viewer *viewer) {
     struct drawing drawing = {.viewer = viewer};
     viewer->window.driver->state->line_count = 0;
     if (!viewer->block || viewer->window.hides_lines || !viewer_camera_frame(viewer, &drawing.frame))
@@ -709,6 +681,36 @@ void viewer_make_lines(struct viewer *viewer) {
         draw_light(&drawing, light);
     draw_handles(&drawing);
     draw_cube(&drawing);
+}
+
+void viewer_show(struct viewer *viewer, double now) {
+    const struct window_layout *layout = &viewer->window.layout;
+    const struct viewer_large *large = &viewer->window.large;
+    bool due = now - viewer->display.figures_at >= status_pause;
+    bool changed = viewer->window.dirty || viewer->display.hud_dirty;
+    if (layout->width == 0 || viewer_awaits_frame(viewer, now) ||
+        (!due && !(changed && now - viewer->display.shown_at >= redraw_pause)))
+        return;
+    if (large->shown && large->stale && viewer->block && viewer->pass.view.width > 0)
+        viewer_draw_large(viewer);
+    end_notice(&viewer->window.notice, now);
+    if (due || viewer->display.hud_dirty) {
+        viewer->display.hud_dirty = false;
+        make_lines(viewer);
+        describe(viewer, now);
+        viewer->display.figures_at = due ? now : viewer->display.figures_at;
+    }
+    struct window_state *state = viewer->window.driver->state;
+    state->left = (int)layout->left;
+    state->top = (int)layout->top;
+    state->shown_width = (int)layout->shown_width;
+    state->shown_height = (int)layout->shown_height;
+    viewer->window.driver->show(viewer->window.driver->context, large->shown ? large->image : viewer->window.image,
+                                large->shown ? large->width : viewer->request.width,
+                                large->shown ? large->height : viewer->request.height);
+    note_first_picture(viewer);
+    viewer->display.shown_at = now;
+    viewer->window.dirty = false;
 }
 
 void viewer_destroy_overlay(struct viewer *viewer) {

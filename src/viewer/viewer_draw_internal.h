@@ -4,9 +4,8 @@
 
 #include "viewer/viewer.h"
 
-void viewer_draw_tiles(struct viewer *viewer);               /* from the film to the image */
-void viewer_redraw(struct viewer *viewer);                   /* the image, with another exposure */
-void viewer_draw_again(struct viewer *viewer, size_t pixel); /* one pixel of it */
+void viewer_draw_tiles(struct viewer *viewer); /* from the film to the image */
+void viewer_redraw(struct viewer *viewer);     /* the image, with another exposure */
 void viewer_show(struct viewer *viewer, double now);
 /* Positions the picture in a window of this size. */
 void viewer_resize(struct viewer *viewer, int width, int height, double density);
@@ -16,7 +15,6 @@ bool viewer_needs_overlay(const struct viewer *viewer);
 struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, bool walking);
 void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
                             const struct view_overlay *overlay);
-void viewer_make_lines(struct viewer *viewer); /* outline and symbols: window.lines */
 /* Looks along the axis of a face of the view cube that is there; false: there is none. */
 bool viewer_click_cube(struct viewer *viewer, double x, double y);
 void viewer_destroy_overlay(struct viewer *viewer);

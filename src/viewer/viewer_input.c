@@ -441,58 +441,6 @@ void viewer_receive_nodes(struct viewer *viewer, const struct node_query *query,
     viewer->window.driver->nodes(viewer->window.driver->context, query, rows);
 }
 
-void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
-    switch (event->kind) {
-    case WINDOW_CLOSE:
-        viewer->quit = true;
-        return;
-    case WINDOW_KEY:
-        handle_key(viewer, event);
-        return;
-    case WINDOW_MOVE:
-        handle_motion(viewer, event);
-        return;
-    case WINDOW_WHEEL:
-        handle_wheel(viewer, event);
-        return;
-    case WINDOW_PRESS:
-        handle_press(viewer, event);
-        return;
-    case WINDOW_RELEASE:
-        handle_release(viewer, event);
-        return;
-    /* What happens outside is not reported: keys count as released. */
-    case WINDOW_LEAVE:
-        release_keys(viewer);
-        viewer->input.pressed = 0;
-        return;
-    case WINDOW_SIZE:
-        viewer_resize(viewer, (int)event->x, (int)event->y, event->density);
-        return;
-    case WINDOW_ACTION:
-        take_position(viewer, event);
-        (void)snprintf(viewer->save_as, sizeof viewer->save_as, "%s", event->text);
-        viewer_do(viewer, event->action);
-        return;
-    case WINDOW_NODES:
-        want_rows(viewer, &event->node);
-        return;
-    case WINDOW_SELECT:
-        select_row(viewer, &event->node);
-        return;
-    case WINDOW_HIDE:
-        if (viewer->block)
-            viewer_hide(viewer, event->node.serial, event->text);
-        return;
-    case WINDOW_TYPE:
-        type(viewer, event->typed);
-        return;
-    case WINDOW_FIELD:
-        viewer_set_field(viewer, event);
-        return;
-    }
-}
-
 /* --- The form --- */
 
 /* Each field of the form has a number, by which its change comes back; the rows of materials and settings are those of
@@ -724,6 +672,8 @@ static void set_selected(struct viewer *viewer, const struct window_event *event
     static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
     viewer->edit.joins = event->joins;
+    if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
+        viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0, numbers);
     switch (event->field) {
     case FIELD_POSITION:
         viewer_move(viewer, vec3_sub(vec3_make(numbers[0], numbers[1], numbers[2]), viewer_selection_position(viewer)));
@@ -743,14 +693,10 @@ static void set_selected(struct viewer *viewer, const struct window_event *event
     case FIELD_LIGHT_COLOUR:
         viewer_set_numbers(viewer, CHANGE_LIGHT, 0, COLOUR_AT, numbers);
         return;
-    default:
-        if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
-            viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0,
-                               numbers);
     }
 }
 
-void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
+static void set_field(struct viewer *viewer, const struct window_event *event) {
     double number = event->numbers[0];
     viewer->display.hud_dirty = true;
     switch (event->field) {
@@ -773,10 +719,61 @@ void viewer_set_field(struct viewer *viewer, const struct window_event *event) {
                                             vec3_make(number, event->numbers[1], event->numbers[2])))
             viewer_change_view(viewer);
         return;
-    default:
-        if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)
-            change_setting(viewer, (int)(event->field - FIELD_SETTING), number);
-        else if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
-            set_selected(viewer, event);
+    }
+    if (event->field >= FIELD_SETTING && event->field - FIELD_SETTING < (uint32_t)setting_count)
+        change_setting(viewer, (int)(event->field - FIELD_SETTING), number);
+    else if (viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING)
+        set_selected(viewer, event);
+}
+
+void viewer_handle_event(struct viewer *viewer, const struct window_event *event) {
+    switch (event->kind) {
+    case WINDOW_CLOSE:
+        viewer->quit = true;
+        return;
+    case WINDOW_KEY:
+        handle_key(viewer, event);
+        return;
+    case WINDOW_MOVE:
+        handle_motion(viewer, event);
+        return;
+    case WINDOW_WHEEL:
+        handle_wheel(viewer, event);
+        return;
+    case WINDOW_PRESS:
+        handle_press(viewer, event);
+        return;
+    case WINDOW_RELEASE:
+        handle_release(viewer, event);
+        return;
+    /* What happens outside is not reported: keys count as released. */
+    case WINDOW_LEAVE:
+        release_keys(viewer);
+        viewer->input.pressed = 0;
+        return;
+    case WINDOW_SIZE:
+        viewer_resize(viewer, (int)event->x, (int)event->y, event->density);
+        return;
+    case WINDOW_ACTION:
+        take_position(viewer, event);
+        (void)snprintf(viewer->save_as, sizeof viewer->save_as, "%s", event->text);
+        viewer_do(viewer, event->action);
+        return;
+    case WINDOW_NODES:
+        want_rows(viewer, &event->node);
+        return;
+    case WINDOW_SELECT:
+        select_row(viewer, &event->node);
+        return;
+    case WINDOW_HIDE:
+        if (viewer->block)
+            viewer_hide(viewer, event->node.serial, event->text);
+        return;
+    case WINDOW_TYPE:
+        type(viewer, event->typed);
+        return;
+    case WINDOW_FIELD:
+        set_field(viewer, event);
+        return;
     }
 }

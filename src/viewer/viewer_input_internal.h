@@ -14,6 +14,5 @@ void viewer_change_view(struct viewer *viewer); /* the camera was moved */
 void viewer_halt(struct viewer *viewer, bool on);
 /* The form, and the integrator, as they are now. */
 void viewer_make_form(const struct viewer *viewer, struct window_state *state);
-void viewer_set_field(struct viewer *viewer, const struct window_event *event);
 
 #endif
