@@ -130,10 +130,6 @@ struct box density_box(const struct density *density) {
     return density->box;
 }
 
-const struct expr_program *density_program(const struct density *density) {
-    return density->kind == DENSITY_FUNCTION ? fog_field_density(density->field) : NULL;
-}
-
 /* --- at a point --- */
 
 static double grid_at(const struct density *density, struct vec3 p) {

@@ -12,12 +12,6 @@
 
 struct density;
 
-/* A line through media, from `origin` along the unit `direction`. */
-struct medium_line {
-    struct vec3 origin, direction;
-    double distance, time; /* the distance may be infinite */
-};
-
 /* Errors: no memory. */
 const struct density *density_of_box(struct arena *arena, const struct box *box, struct error *error);
 
@@ -40,8 +34,6 @@ const struct density *density_of_grid(struct arena *arena, const struct density_
 
 /* The box outside of which the density is 0. */
 struct box density_box(const struct density *density);
-/* The recorded function, or NULL. */
-const struct expr_program *density_program(const struct density *density);
 /* The first point where the density was above its bound, and the density there. False: none. */
 bool density_excess(const struct density *density, struct vec3 *point, double *value);
 

@@ -87,7 +87,7 @@ double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 
         return faded(grid_depth(fog, origin, direction, distance));
     case FOG_FIELD: {
         struct colour source;
-        return fog_field_transmittance(fog->field, &(struct fog_line){origin, direction, distance, 0}, &source);
+        return fog_field_transmittance(fog->field, &(struct medium_line){origin, direction, distance, 0}, &source);
     }
     }
     return 1;

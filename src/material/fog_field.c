@@ -236,7 +236,7 @@ double fog_field_at(const struct fog_field *field, struct vec3 p, double time) {
 /* Steps of the line that are not evaluated yet, and the result of the line before them. */
 struct fog_march {
     const struct fog_field *field;
-    const struct fog_line *line;
+    const struct medium_line *line;
     uint32_t count;
     double from[STEPS_AT_ONCE], length[STEPS_AT_ONCE];
     double depth;
@@ -253,7 +253,7 @@ static void evaluate_steps(const struct fog_march *march, uint32_t count, const 
     _Alignas(64) unsigned char rows[(VALUES + 3) * EXPR_BATCH * sizeof(union expr_value)];
     double p[3][EXPR_BATCH], view[3][EXPR_BATCH], time[EXPR_BATCH];
     const double *inputs[EXPR_INPUT_COUNT] = {0};
-    const struct fog_line *line = march->line;
+    const struct medium_line *line = march->line;
     for (uint32_t i = 0; i < 2 * count; i++) {
         double apart = length[i / 2] * 0.28867513459481287; /* 1 / (2 sqrt 3) */
         double t = from[i / 2] + length[i / 2] / 2 + (i % 2 ? apart : -apart);
@@ -346,7 +346,7 @@ static uint32_t steps_of(struct fog_march *march, const float bounds[2], double 
     return visible > STEPS ? (uint32_t)visible : STEPS;
 }
 
-double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct colour *source) {
+double fog_field_transmittance(const struct fog_field *field, const struct medium_line *line, struct colour *source) {
     struct fog_march march;
     struct fog_traversal traversal;
     uint64_t cell;

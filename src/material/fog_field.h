@@ -36,12 +36,13 @@ const float (*fog_field_cells(const struct fog_field *field, struct fog_cells *c
 /* The density at a point; it may be negative or NaN. */
 double fog_field_at(const struct fog_field *field, struct vec3 p, double time);
 
-struct fog_line {
+/* A line through media. */
+struct medium_line {
     struct vec3 origin, direction; /* unit */
     double distance, time;         /* the distance may be infinite */
 };
 /* The transmittance along the line, 0 to 1. source: the light that the fog adds is source * (1 - transmittance); set
  * only with a colour. */
-double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct colour *source);
+double fog_field_transmittance(const struct fog_field *field, const struct medium_line *line, struct colour *source);
 
 #endif

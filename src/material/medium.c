@@ -80,7 +80,7 @@ static bool fog_effect(const struct fog *fog, const struct ray *ray, double dist
     struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
     out->source = fog->colour;
     if (fog->kind == FOG_FIELD) {
-        const struct fog_line line = {ray->origin, direction, distance, ray->time};
+        const struct medium_line line = {ray->origin, direction, distance, ray->time};
         out->transmittance = colour_all(fog_field_transmittance(fog->field, &line, &out->source));
     } else {
         out->transmittance = colour_all(fog_transmittance(fog, ray->origin, direction, distance));
@@ -169,11 +169,11 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
     memcpy(to->solids, from->solids, from->count * sizeof *from->solids);
 }
 
-/* Whether nothing tells two media apart. */
+/* Whether two media have the same effect on light. */
 static bool are_equal(const struct medium *a, const struct medium *b) {
-    return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density && colour_equal(a->extinction, b->extinction) &&
-           colour_equal(a->scattering, b->scattering) && colour_equal(a->emission, b->emission) &&
-           a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
+    return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density &&
+           colour_equal(a->extinction, b->extinction) && colour_equal(a->scattering, b->scattering) &&
+           colour_equal(a->emission, b->emission) && a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {

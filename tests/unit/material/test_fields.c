@@ -39,7 +39,7 @@ static const struct fog_field *field_of(struct arena *arena, const struct expr_p
 
 static double seen(const struct fog_field *field, struct vec3 o, struct vec3 d, double distance) {
     struct colour source;
-    return fog_field_transmittance(field, &(struct fog_line){o, d, distance, 0}, &source);
+    return fog_field_transmittance(field, &(struct medium_line){o, d, distance, 0}, &source);
 }
 
 /* The part of the line in the cube from -half to half. */
