@@ -2,8 +2,8 @@
 #include "base/mem.h"
 #include "export/contour_grid_internal.h"
 
-/* A crossing so close to a node, in finest cells, belongs to the side that the node itself tells, or the three lines
- * through it would disagree. */
+/* Where a crossing is closer than this to a node, in finest cells, the node itself is tested, so that the three lines
+ * through it agree. */
 static const double node_margin = 1e-6;
 /* Where the grid begins before the solid, in base cells: odd numbers, so that faces of models meet no nodes. */
 static const double grid_offset[3] = {0.5137, 0.4719, 0.5391};

@@ -27,10 +27,10 @@ enum message_kind {
     MESSAGE_SCRIPT,        /* struct message_script: a script has ended; no answer */
     MESSAGE_READ,          /* struct message_read: a file was read; no answer */
     MESSAGE_FRAME,         /* no body: the script begins another frame, its time counts from here; no answer */
-    MESSAGE_MODEL,         /* struct model_request: a model is to be written; answered by MESSAGE_FILM, with memory for its
-                            * bytes if their number is known */
-    MESSAGE_MODEL_WRITE,   /* no body: the bytes are there; answered by MESSAGE_ANSWER when the file is written */
-    MESSAGE_MODEL_END,     /* no body: the script goes on; no answer */
+    MESSAGE_MODEL, /* struct model_request: a model is to be written; answered by MESSAGE_FILM, with memory for its
+                    * bytes if their number is known */
+    MESSAGE_MODEL_WRITE, /* no body: the bytes are there; answered by MESSAGE_ANSWER when the file is written */
+    MESSAGE_MODEL_END,   /* no body: the script goes on; no answer */
     MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, possibly much later, by MESSAGE_ANSWER: ok: run them
                      * again */
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
@@ -77,7 +77,7 @@ struct picture_request {
 
 /* A file of a model. */
 struct model_request {
-    uint64_t size;    /* bytes; 0: whether it can be written is asked before the work begins */
+    uint64_t size;    /* bytes; 0: a question before the work begins: can this file be written? */
     uint32_t by_user; /* not 0: the file of -o */
     uint32_t beside;  /* not 0: the file of its materials, .mtl in place of .obj */
     char file[4096];  /* as the script wrote it */

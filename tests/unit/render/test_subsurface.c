@@ -229,7 +229,7 @@ TEST_TIMES(white_milk_is_invisible_in_uniform_light, 16) {
     }
 }
 
-/* No lamp outside reaches a point of milk without refraction, so none is asked for there; one inside is. */
+/* Light of a lamp outside comes into milk only by refraction, so shadow rays inside go to a lamp inside alone. */
 TEST(lamps_inside_of_milk_light_it) {
     for (int inside = 0; inside < 2; inside++) {
         struct stage s;

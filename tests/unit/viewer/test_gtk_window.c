@@ -251,7 +251,7 @@ static void press_every_key(enum window_key_set set) {
         }
     }
     (void)used;
-    /* It is asked whether edits are to be lost. */
+    /* The window asks whether it may discard the edits: Alt+D. */
     drive("--verbose scene.lua", strcat(commands, "sleep 0.5; xdotool key alt+d"), 0);
 }
 
