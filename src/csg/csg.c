@@ -491,7 +491,7 @@ bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *
 
 /* A surface takes the place of a crossing that the sweep has passed. */
 bool csg_list_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
-                   struct crossing_list *out) {
+                        struct crossing_list *out) {
     uint32_t used = scratch->used;
     struct sweep s;
     struct pending_leaves pending;

@@ -53,7 +53,7 @@ bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *
 /* All crossings of the whole line, by ascending t, pushed on the scratch: the caller pops them by setting scratch->used
  * to what it was. The solid is closed and finite. False: the scratch overflowed. */
 bool csg_list_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
-                   struct crossing_list *out);
+                        struct crossing_list *out);
 /* A clipped surface contains no point. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
 void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);

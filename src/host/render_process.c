@@ -14,11 +14,11 @@
 #include "host/render_reports.h"
 #include "inspect/inspect.h"
 #include "output/progress.h"
+#include "preview/preview_session.h"
 #include "render/integrator.h"
 #include "render/overlay.h"
 #include "render/scene_check.h"
 #include "session/text.h"
-#include "preview/preview_session.h"
 #include "world/world_cache.h"
 
 #include <stdio.h>
@@ -374,7 +374,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (warning[0] != '\0')
         render_process_warn_at(process, work->request->where, warning);
     picture->shown = (struct film_rectangle){area.x0, area.y0, area.x0 + area.width, area.y0 + area.height};
-    uint32_t rim = settings_denoise(&job->settings) && path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
+    uint32_t rim =
+        settings_denoise(&job->settings) && path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
     rim += finish_rim(&job->settings.finish, picture->full_height);
     struct film_rectangle all = film_rectangle_grown(&picture->shown, rim, picture->full_width, picture->full_height);
     picture->x0 = all.x0, picture->y0 = all.y0, picture->width = all.x1 - all.x0, picture->height = all.y1 - all.y0;

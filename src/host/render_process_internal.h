@@ -59,9 +59,9 @@ struct render_process {
     struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
     bool frames_differ;
     uint64_t frames_shown;
-    uint32_t models;           /* calls of node:export */
-    uint32_t model_pictures;   /* under -o MODEL */
-    char picture_names[1024];  /* theirs, for a message */
+    uint32_t models;          /* calls of node:export */
+    uint32_t model_pictures;  /* under -o MODEL */
+    char picture_names[1024]; /* theirs, for a message */
     struct kept_model kept_model;
     unsigned faults; /* the notices of scene_check that this script has caused */
 };

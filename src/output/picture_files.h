@@ -27,7 +27,7 @@ struct picture_files {
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
     struct file_rules named_checkpoint;
-    struct file_rules model;     /* a model of a script; of -o: user_model */
+    struct file_rules model; /* a model of a script; of -o: user_model */
     struct file_rules user_model;
     struct file_rules saved; /* views and edits saved from the window: never replace a file */
     bool ending_noticed;

@@ -16,8 +16,9 @@ struct path_vertex {
     uint32_t substitute;  /* highlights that represent the mirror image of those lights that no mirror shows */
     bool sight;           /* of a line of sight, on which mirrors show only visible lights */
     struct colour thrown; /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
-    const struct path_tracked *tracked; /* in a medium whose ray has other samples of lights (path_equiangular_internal.h); or NULL */
-    bool sealed;          /* no lamp reaches it */
+    const struct path_tracked
+        *tracked; /* in a medium whose ray has other samples of lights (path_equiangular_internal.h); or NULL */
+    bool sealed;  /* no lamp reaches it */
 };
 
 /* medium_affects; most scenes have nothing around their solids. */

@@ -20,9 +20,10 @@ struct render_job {
     struct settings settings;
     uint32_t width, height; /* of the whole picture */
     struct colour ambient;
-    bool background_lights;          /* the script chose the sky of the world: paths take its light */
-    uint32_t kept_samples; /* that all pixels of the film have: passes of a progressive integrator go on with the next */
-    struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
+    bool background_lights; /* the script chose the sky of the world: paths take its light */
+    uint32_t
+        kept_samples;  /* that all pixels of the film have: passes of a progressive integrator go on with the next */
+    struct film *film; /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
     struct pool_event *handed;       /* or NULL; signalled when tiles become wanted, and when no more can */
     uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */

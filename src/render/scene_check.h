@@ -12,7 +12,8 @@
     X(FAULT_EMPTY)                                                                                                     \
     X(FAULT_VIEW)                                                                                                      \
     X(FAULT_SIZE)                                                                                                      \
-    X(FAULT_LIGHT) X(FAULT_EYE) X(FAULT_LIGHT_INSIDE) X(FAULT_SOLID) X(FAULT_CAUSTICS) X(FAULT_FIELD) X(FAULT_THIN_WALL)      \
+    X(FAULT_LIGHT)                                                                                                     \
+    X(FAULT_EYE) X(FAULT_LIGHT_INSIDE) X(FAULT_SOLID) X(FAULT_CAUSTICS) X(FAULT_FIELD) X(FAULT_THIN_WALL)              \
         X(FAULT_SUBSURFACE) X(FAULT_DISPERSION)
 enum scene_fault { SCENE_FAULTS(LIST_MEMBER) };
 

@@ -249,8 +249,9 @@ static void choose_kept(struct options *options) {
 }
 
 bool options_check(struct options *options, struct error *error) {
-    bool ok = check_together(options, error) && check_questions(options, error) && check_model(options, error) && check_parts(options, error) &&
-              check_time(options, error) && check_name(options, error) && check_animation(options, error);
+    bool ok = check_together(options, error) && check_questions(options, error) && check_model(options, error) &&
+              check_parts(options, error) && check_time(options, error) && check_name(options, error) &&
+              check_animation(options, error);
     if (ok)
         choose_kept(options);
     return ok;

@@ -30,8 +30,8 @@ struct host_services {
     void (*wait)(void *context);
     /* The same. False: they cannot be written, reported once. NULL with `wait`. */
     bool (*settle)(void *context, struct error *error);
-    /* Writes a file of a model: the bytes, or NULL to ask only whether it could be written, before the work begins; then
-     * model_end follows in any case. */
+    /* Writes a file of a model: the bytes, or NULL to ask only whether it could be written, before the work begins;
+     * then model_end follows in any case. */
     bool (*model)(void *context, const struct model_request *request, const void *bytes, struct error *error);
     void (*model_end)(void *context);
     void (*line)(void *context, enum line_kind kind, const char *text);

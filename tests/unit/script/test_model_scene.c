@@ -216,7 +216,7 @@ TEST(a_sky_of_the_command_line_lights_models_and_scripts) {
 TEST(every_ending_that_gray_writes_is_written_and_others_are_wrong_usage_that_lists_them) {
     static const char *const pictures[] = {PICTURE_FORMATS(LIST_WORD)};
     static const char *const others[] = {"part.step", "x.bmp",     "x.txt",     "x%d.jpg",
-                                         "x##.tif",  "dir/x.svg", "x.png.bmp", "x."};
+                                         "x##.tif",   "dir/x.svg", "x.png.bmp", "x."};
     char command[256];
     test_write_text(test_path("a.lua"), "gr.render{node = gr.sphere{}, width = 8, height = 8}");
     for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++) {

@@ -211,7 +211,8 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
         "--aov depth,dept s.lua",
         "--aov needs names separated by commas (depth, normal, albedo, uv, node, material, "
         "cost, samples, lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
-        "specular_direct, specular_indirect, transmission_direct, transmission_indirect, volume_direct, volume_indirect) or all, not 'depth,dept'");
+        "specular_direct, specular_indirect, transmission_direct, transmission_indirect, volume_direct, "
+        "volume_indirect) or all, not 'depth,dept'");
     refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|kdtree|none, not 'octree'");
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
     refused("-o= s.lua", "-o needs a text");

@@ -2,9 +2,9 @@
  * without memory. */
 #include "base/fault.h"
 #include "host/file_watch.h"
+#include "render/fly_camera.h"
 #include "scene/edits.h"
 #include "tests/harness.h"
-#include "render/fly_camera.h"
 
 #include <math.h>
 #include <stdio.h>
