@@ -313,6 +313,7 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
         ready++;
     ok = ok && ((fixed && ready == workers) || error_no_memory(error, "the mesh of a solid"));
     ok = ok && simplify_and_test(&v, &fine, out, fixed, good, error);
+    findings->far_points = v.strays;
     while (ready > 0)
         solid_probe_destroy(&v.probes[--ready]);
     mem_free(v.probes);
