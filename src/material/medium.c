@@ -146,17 +146,25 @@ struct colour medium_albedo(const struct medium *medium) {
     return colour_make(quotient(s.r, e.r), quotient(s.g, e.g), quotient(s.b, e.b));
 }
 
-struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
-                                   struct sample2 u) {
+struct medium_flight medium_fly(struct colour extinction, struct colour throughput, struct sample2 u) {
     throughput = colour_abs(throughput); /* single wavelengths have negative components */
     double sum = throughput.r + throughput.g + throughput.b;
-    struct colour share = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3), s = medium->extinction;
-    double extinction = u.x < share.r ? s.r : u.x < share.r + share.g ? s.g : s.b;
-    double t = extinction > 0 ? -el_log(1 - u.y) / extinction : INFINITY;
-    struct medium_sample sample = {.scatters = t < distance, .distance = fmin(t, distance)};
-    struct colour left = uniform_transmittance(s, sample.distance);
-    /* Passing has a probability, scattering a density; each is the mean over the channels that may have been chosen. */
-    double chance = colour_dot(share, sample.scatters ? colour_mul(s, left) : left);
+    struct colour shares = sum > 0 ? colour_scale(throughput, 1 / sum) : colour_all(1.0 / 3), e = extinction;
+    double chosen = u.x < shares.r ? e.r : u.x < shares.r + shares.g ? e.g : e.b;
+    return (struct medium_flight){chosen > 0 ? -el_log(1 - u.y) / chosen : INFINITY, shares};
+}
+
+double medium_flight_chance(const struct medium_flight *flight, struct colour extinction, struct colour left,
+                            bool event) {
+    return colour_dot(flight->shares, event ? colour_mul(extinction, left) : left);
+}
+
+struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
+                                   struct sample2 u) {
+    const struct medium_flight flight = medium_fly(medium->extinction, throughput, u);
+    struct medium_sample sample = {.scatters = flight.distance < distance, .distance = fmin(flight.distance, distance)};
+    struct colour left = uniform_transmittance(medium->extinction, sample.distance);
+    double chance = medium_flight_chance(&flight, medium->extinction, left, sample.scatters);
     sample.weight =
         colour_scale(sample.scatters ? colour_mul(medium->scattering, left) : left, chance > 0 ? 1 / chance : 0);
     return sample;

@@ -165,6 +165,19 @@ struct colour medium_emission(const struct medium *medium, double distance);
 /* The share of scattering in the extinction. */
 struct colour medium_albedo(const struct medium *medium);
 
+/* The way to the next event in a medium of this extinction. The channel whose extinction decides is chosen in
+ * proportion to the throughput of the path; all channels use the way with one-sample multiple importance sampling
+ * (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the throughput never grows. */
+struct medium_flight {
+    double distance;      /* may be infinite */
+    struct colour shares; /* of the channels in the throughput */
+};
+struct medium_flight medium_fly(struct colour extinction, struct colour throughput, struct sample2 u);
+/* The probability of passing a distance that is `left` of light, or the density of an event there: the mean over the
+ * channels that may have been chosen. */
+double medium_flight_chance(const struct medium_flight *flight, struct colour extinction, struct colour left,
+                            bool event);
+
 /* Where a path is scattered in a medium without fog. */
 struct medium_sample {
     bool scatters; /* before the distance */
@@ -172,10 +185,7 @@ struct medium_sample {
     struct colour weight; /* transmittance over the probability of coming this far; or with the colour of scattering,
                            over the density of the distance */
 };
-/* Samples over at most `distance` (may be infinite) in a medium that is alone and has no density. The channel whose
- * extinction decides is chosen in proportion to the throughput of the path, and all channels use the sample with
- * one-sample multiple importance sampling (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014): so the sum of the
- * throughput never grows. */
+/* Samples over at most `distance` (may be infinite) in a medium that is alone and has no density. */
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u);
 

@@ -6,6 +6,7 @@
 #include "render/subsurface_walk_internal.h"
 
 #include "base/random.h"
+#include "material/medium.h"
 #include "material/phase.h"
 #include "math/elementary.h"
 
@@ -27,29 +28,16 @@ static struct walk_medium medium_under(const struct subsurface *under) {
     return medium;
 }
 
-/* The extinction of a channel, chosen in proportion to the weight; shares: of the channels. */
-static double choose_extinction(const struct walk_medium *medium, struct colour weight, double u,
-                                struct colour *shares) {
-    weight = colour_abs(weight); /* single wavelengths have negative components */
-    double sum = weight.r + weight.g + weight.b;
-    *shares = colour_scale(weight, 1 / sum);
-    return u < shares->r               ? medium->extinction.r
-           : u < shares->r + shares->g ? medium->extinction.g
-                                       : medium->extinction.b;
-}
-
-/* The factor of the weight after a distance without scattering; with `density` that of scattering there. */
-static struct colour factor_after(const struct walk_medium *medium, double distance, struct colour shares,
-                                  bool density) {
+/* The factor of the weight after a distance without scattering, or with an event there that of scattering. */
+static struct colour factor_after(const struct walk_medium *medium, double distance, const struct medium_flight *flight,
+                                  bool event) {
     struct colour e = medium->extinction;
     if (medium->is_gray)
-        return density ? medium->albedo : colour_all(1);
+        return event ? medium->albedo : colour_all(1);
     struct colour left = colour_make(el_exp(-e.r * distance), el_exp(-e.g * distance), el_exp(-e.b * distance));
-    if (density)
-        left = colour_mul(left, e);
-    double chance = colour_dot(shares, left);
-    left = colour_scale(left, chance > 0 ? 1 / chance : 0);
-    return density ? colour_mul(left, medium->albedo) : left;
+    double chance = medium_flight_chance(flight, e, left, event);
+    left = colour_scale(event ? colour_mul(left, e) : left, chance > 0 ? 1 / chance : 0);
+    return event ? colour_mul(left, medium->albedo) : left;
 }
 
 /* The nearest place where the ray leaves the primitive; other parts of it may lie inside. */
@@ -94,17 +82,16 @@ bool subsurface_walk(struct subsurface_walk *walk) {
         for (int i = 0; i < WALK_NUMBERS; i++)
             u[i] = random_unit(random_combine(walk->key, (uint64_t)(WALK_NUMBERS * walk->scatterings + i)));
         /* How far it goes, and whether it is out before that. */
-        struct colour shares;
-        double extinction = choose_extinction(&medium, walk->weight, u[0], &shares);
+        const struct medium_flight flight = medium_fly(e, walk->weight, (struct sample2){u[0], u[1]});
         ray->t_min = 0;
-        ray->t_max = -el_log(1 - u[1]) / extinction;
+        ray->t_max = flight.distance;
         if (leaves(walk, ray)) {
-            walk->weight = colour_mul(walk->weight, factor_after(&medium, walk->crossing.t, shares, false));
+            walk->weight = colour_mul(walk->weight, factor_after(&medium, walk->crossing.t, &flight, false));
             ray->t_max = INFINITY;
             return walk->comes_out = true;
         }
         /* It is scattered. */
-        walk->weight = colour_mul(walk->weight, factor_after(&medium, ray->t_max, shares, true));
+        walk->weight = colour_mul(walk->weight, factor_after(&medium, ray->t_max, &flight, true));
         if (!survives(&walk->weight, whole, u[4]))
             return false;
         ray->origin = vec3_add_scaled(ray->origin, ray->direction, ray->t_max);
