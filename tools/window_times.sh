@@ -10,7 +10,7 @@ if [ "$1" != inside ]; then
         command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 1; }
     done
     [ $# -gt 0 ] || set -- data/03demo.lua data/06demo.lua data/10demo.lua data/12demo.lua data/14demo.lua \
-        data/classic/creature.lua data/functions/show_gyroid.lua data/path/cornell.lua data/path/dining.lua data/path/street.lua
+        data/functions/creature.lua data/functions/julia.lua data/path/cornell.lua data/path/dining.lua data/path/street.lua
     exec xvfb-run -a -s "-screen 0 1700x1000x24" sh "$0" inside "$@"
 fi
 shift
@@ -55,6 +55,7 @@ move() { # move WAY: 3 seconds of it; prints what the program says about its lon
                 way, seconds > 0 ? count / seconds : 0, divide, sum > 0 ? 10 * used / sum : 0, first, all, last) }'
 }
 for scene in "$@"; do
+    [ -r "$scene" ] || { echo "cannot read $scene" >&2; exit 1; }
     : >"$work/said"
     "$gray" -gui -q --verbose --progress=none --size "${SIZE:-1280x720}" --allow-read . "$scene" -o "$work/out.png" \
         >"$work/out" 2>>"$work/said" &
