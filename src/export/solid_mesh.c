@@ -1,6 +1,6 @@
 /* From the contour of a solid to its mesh. Triangles are removed without tests for intersections, which would take most
- * of the time; afterwards all are tested, and their middles against the solid. Where something is wrong the vertices
- * around it are kept, and it is done again. The last resort is another grid. */
+ * of the time; afterwards all are tested, points of them against the solid, and points of the solid against them. Where
+ * something is wrong the vertices around it are kept, and it is done again. The last resort is another grid. */
 #include "export/solid_mesh_internal.h"
 
 #include "base/hash.h"
@@ -147,9 +147,10 @@ bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct er
 struct verification {
     const struct solid_input *input;
     const struct solid_mesh *mesh;
+    struct list known; /* struct known_point */
     double size;
     int round;
-    uint32_t intersections, strays;
+    uint32_t faults;
     struct solid_probe *probes; /* of the workers */
     uint8_t *stray;             /* by triangle, bits */
     struct list boxes;
@@ -163,18 +164,20 @@ static void add_fault(struct verification *v, struct box box, double margin) {
         return;
     *room = (struct box){vec3_sub(box.min, vec3_all(margin)), vec3_add(box.max, vec3_all(margin))};
     v->boxes.count++;
+    v->faults++;
+}
+
+static void add_far_point(struct verification *v, struct vec3 point) {
+    add_fault(v, (struct box){point, point}, 10 * v->input->tolerance * (1 << v->round));
 }
 
 static void add_intersection(void *context, uint32_t one, uint32_t other) {
     struct verification *v = context;
     struct corners a = corners_of(v->mesh, one), b = corners_of(v->mesh, other);
-    v->intersections++;
     add_fault(v, box_meet(corners_box(&a), corners_box(&b)), 2 * v->input->tolerance + 0.02 * v->size * v->round);
 }
 
-enum { CHUNK = 256 };
-
-enum { TEST_POINTS = 7 };
+enum { CHUNK = 256, TEST_POINTS = 7, KNOWN_TESTS = 200000 };
 
 /* The middles of its edges, its own, and points between that and the corners. */
 static struct vec3 test_point(const struct corners *c, int number) {
@@ -216,11 +219,8 @@ static bool find_strays(struct verification *v, struct error *error) {
     for (uint32_t i = 0; ok && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
         for (int k = 0; k < TEST_POINTS; k++) {
-            struct vec3 at = test_point(&corners, k);
-            if (!(v->stray[i] >> k & 1))
-                continue;
-            v->strays++;
-            add_fault(v, (struct box){at, at}, 10 * v->input->tolerance * (1 << v->round));
+            if (v->stray[i] >> k & 1)
+                add_far_point(v, test_point(&corners, k));
         }
     }
     mem_free(v->stray);
@@ -229,10 +229,14 @@ static bool find_strays(struct verification *v, struct error *error) {
 
 static bool verify(struct verification *v, struct error *error) {
     struct box_tree tree;
-    v->intersections = v->strays = 0;
+    const struct known_point *known = v->known.items;
+    v->faults = 0;
     if (!triangle_tree_build(&tree, v->mesh, v->input->pool, error))
         return false;
     find_intersections(v->mesh, &tree, 1e-13 * v->size, add_intersection, v);
+    for (size_t i = 0, step = 1 + v->known.count / KNOWN_TESTS; i < v->known.count; i += step)
+        if (!mesh_is_near(v->mesh, &tree, known[i].point, v->input->tolerance))
+            add_far_point(v, known[i].point);
     box_tree_destroy(&tree);
     if (!find_strays(v, error))
         return false;
@@ -277,8 +281,7 @@ static bool simplify_and_test(struct verification *v, const struct solid_mesh *f
         v->mesh = out;
         if (!verify(v, error))
             return false;
-        /* What is not proved to be near may be near: in the end it is good. */
-        *good = v->intersections == 0 && (v->strays == 0 || v->round == ROUNDS - 1);
+        *good = v->faults == 0;
     }
     if (!solid_mesh_compact(out))
         return error_no_memory(error, "the mesh of a solid");
@@ -299,26 +302,23 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
     struct verification v = {.input = input, .size = size};
     struct solid_mesh fine;
     *good = false;
-    if (!contour_build(&contour, &fine, error))
-        return false;
-    if (fine.triangles.count == 0) {
-        solid_mesh_destroy(&fine);
-        return is_empty(input, error);
-    }
+    bool ok = contour_build(&contour, &fine, &v.known, error);
+    if (ok && fine.triangles.count == 0)
+        ok = is_empty(input, error);
     round_coordinates(&fine);
-    bool ok = separate_parts(&fine, input, findings, error);
+    ok = ok && separate_parts(&fine, input, findings, error);
     uint8_t *fixed = mem_alloc_zero(fine.vertices.count, 1);
     v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
     while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
         ready++;
     ok = ok && ((fixed && ready == workers) || error_no_memory(error, "the mesh of a solid"));
     ok = ok && simplify_and_test(&v, &fine, out, fixed, good, error);
-    findings->far_points = v.strays;
     while (ready > 0)
         solid_probe_destroy(&v.probes[--ready]);
     mem_free(v.probes);
     mem_free(fixed);
     list_destroy(&v.boxes);
+    list_destroy(&v.known);
     solid_mesh_destroy(&fine);
     return ok;
 }
