@@ -150,7 +150,6 @@ struct verification {
     struct list known; /* struct known_point */
     double size;
     int round;
-    uint32_t faults;
     struct solid_probe *probes; /* of the workers */
     uint8_t *stray;             /* by triangle, bits */
     struct list boxes;
@@ -164,7 +163,6 @@ static void add_fault(struct verification *v, struct box box, double margin) {
         return;
     *room = (struct box){vec3_sub(box.min, vec3_all(margin)), vec3_add(box.max, vec3_all(margin))};
     v->boxes.count++;
-    v->faults++;
 }
 
 static void add_far_point(struct verification *v, struct vec3 point) {
@@ -230,7 +228,6 @@ static bool find_strays(struct verification *v, struct error *error) {
 static bool verify(struct verification *v, struct error *error) {
     struct box_tree tree;
     const struct known_point *known = v->known.items;
-    v->faults = 0;
     if (!triangle_tree_build(&tree, v->mesh, v->input->pool, error))
         return false;
     find_intersections(v->mesh, &tree, 1e-13 * v->size, add_intersection, v);
@@ -254,34 +251,39 @@ static void round_coordinates(struct solid_mesh *mesh) {
     }
 }
 
-static void mark_fixed(const struct verification *v, const struct solid_mesh *mesh, uint8_t *fixed) {
+/* Vertices near the faults of the last round are kept better than before. */
+static void mark_kept(struct verification *v, const struct solid_mesh *mesh, uint8_t *keep) {
     const struct box *boxes = v->boxes.items;
-    for (uint32_t i = 0; i < mesh->vertices.count; i++)
-        for (size_t k = 0; k < v->boxes.count && !fixed[i]; k++)
-            fixed[i] = box_contains(&boxes[k], solid_vertex_at(mesh, i)->point);
+    for (uint32_t i = 0; i < mesh->vertices.count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < v->boxes.count && !found && keep[i] != KEEP_VERTEX; k++)
+            found = box_contains(&boxes[k], solid_vertex_at(mesh, i)->point);
+        keep[i] = (uint8_t)(keep[i] + found);
+    }
+    v->boxes.count = 0;
 }
 
 /* *good: it has no faults. */
 static bool simplify_and_test(struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
-                              uint8_t *fixed, bool *good, struct error *error) {
+                              uint8_t *keep, bool *good, struct error *error) {
     const struct simplify_input input = {
         .tolerance = v->input->tolerance,
         .size = v->size,
         .resolution = 0x1p-22 * fmax(vec3_max_abs(v->input->csg->bounds.min), vec3_max_abs(v->input->csg->bounds.max)),
-        .fixed = fixed};
+        .keep = keep};
     *good = false;
     for (v->round = 0; v->round < ROUNDS && !*good; v->round++) {
         if (pool_cancelled(v->input->pool))
             return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
         solid_mesh_destroy(out);
-        mark_fixed(v, fine, fixed);
+        mark_kept(v, fine, keep);
         bool memory = solid_mesh_copy(fine, out) && simplify_mesh(out, &input);
         if (!memory)
             return error_no_memory(error, "the mesh of a solid");
         v->mesh = out;
         if (!verify(v, error))
             return false;
-        *good = v->faults == 0;
+        *good = v->boxes.count == 0;
     }
     if (!solid_mesh_compact(out))
         return error_no_memory(error, "the mesh of a solid");
@@ -307,16 +309,16 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
         ok = is_empty(input, error);
     round_coordinates(&fine);
     ok = ok && separate_parts(&fine, input, findings, error);
-    uint8_t *fixed = mem_alloc_zero(fine.vertices.count, 1);
+    uint8_t *keep = mem_alloc_zero(fine.vertices.count, 1);
     v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
     while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
         ready++;
-    ok = ok && ((fixed && ready == workers) || error_no_memory(error, "the mesh of a solid"));
-    ok = ok && simplify_and_test(&v, &fine, out, fixed, good, error);
+    ok = ok && ((keep && ready == workers) || error_no_memory(error, "the mesh of a solid"));
+    ok = ok && simplify_and_test(&v, &fine, out, keep, good, error);
     while (ready > 0)
         solid_probe_destroy(&v.probes[--ready]);
     mem_free(v.probes);
-    mem_free(fixed);
+    mem_free(keep);
     list_destroy(&v.boxes);
     list_destroy(&v.known);
     solid_mesh_destroy(&fine);
