@@ -478,7 +478,7 @@ static void remove_slivers(struct simplifier *s) {
             continue;
         for (int k = 0; k < 3; k++) {
             double opposite = vec3_length(vec3_sub(c.point[(k + 1) % 3], c.point[(k + 2) % 3]));
-            if (opposite < length)
+            if (opposite < length || s->input->keep[c.vertex[k]] == KEEP_VERTEX)
                 continue;
             if (!collapse_edge(s, c.vertex[k], c.vertex[(k + 1) % 3]))
                 (void)collapse_edge(s, c.vertex[k], c.vertex[(k + 2) % 3]);
