@@ -43,6 +43,7 @@ struct simplifier {
     struct list samples;
     struct key_map piece_numbers; /* by surface + 1 */
     struct list pieces;
+    uint32_t *piece; /* by triangle */
     uint32_t *mark, stamp;
     struct list moved; /* struct moved_sample */
 };
@@ -125,8 +126,7 @@ static bool note_piece(struct simplifier *s, uint32_t surface, struct vec3 point
 
 /* The plane of a triangle's piece, or NULL. */
 static const struct piece *plane_of(const struct simplifier *s, uint32_t triangle) {
-    uint64_t key = (uint64_t)solid_triangle_at(s->mesh, triangle)->surface + 1;
-    const struct piece *piece = (struct piece *)s->pieces.items + *key_map_find(&s->piece_numbers, key);
+    const struct piece *piece = (struct piece *)s->pieces.items + s->piece[triangle];
     return piece->curved ? NULL : piece;
 }
 
@@ -138,11 +138,14 @@ static bool note_pieces(struct simplifier *s) {
             ok = ok && note_piece(s, vertex->surface[k], vertex->point, vertex->normal[k]);
     }
     /* A triangle may be of a piece that no vertex names: it counts as curved. */
-    for (uint32_t i = 0; i < s->mesh->triangles.count; i++) {
+    for (uint32_t i = 0; ok && i < s->mesh->triangles.count; i++) {
         uint32_t surface = solid_triangle_at(s->mesh, i)->surface;
-        if (!key_map_find(&s->piece_numbers, (uint64_t)surface + 1))
+        uint64_t key = (uint64_t)surface + 1;
+        if (!key_map_find(&s->piece_numbers, key))
             ok = ok && note_piece(s, surface, vec3_all(0), vec3_all(0)) &&
                  note_piece(s, surface, vec3_all(0), vec3_all(0));
+        if (ok)
+            s->piece[i] = *key_map_find(&s->piece_numbers, key);
     }
     return ok;
 }
@@ -534,9 +537,11 @@ static bool begin(struct simplifier *s) {
     s->kind = mem_alloc_zero(vertices, 1);
     s->waiting = mem_alloc(vertices);
     s->crease = mem_alloc_zero(triangles, 1);
+    s->piece = mem_alloc(triangles * sizeof *s->piece);
     s->first_sample = mem_alloc(triangles * sizeof *s->first_sample);
     s->mark = mem_alloc_zero(vertices, sizeof *s->mark);
-    if (!s->head || !s->next || !s->degree || !s->kind || !s->waiting || !s->crease || !s->first_sample || !s->mark)
+    if (!s->head || !s->next || !s->degree || !s->kind || !s->waiting || !s->crease || !s->piece || !s->first_sample ||
+        !s->mark)
         return false;
     memset(s->head, 0xff, vertices * sizeof *s->head);
     memset(s->first_sample, 0xff, triangles * sizeof *s->first_sample);
@@ -568,6 +573,7 @@ bool simplify_mesh(struct solid_mesh *mesh, const struct simplify_input *input) 
     mem_free(s.kind);
     mem_free(s.waiting);
     mem_free(s.crease);
+    mem_free(s.piece);
     mem_free(s.first_sample);
     mem_free(s.mark);
     list_destroy(&s.samples);
