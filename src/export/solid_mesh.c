@@ -151,7 +151,7 @@ struct verification {
     double size;
     int round;
     struct solid_probe *probes; /* of the workers */
-    uint8_t *stray;             /* by triangle, bits */
+    uint64_t *stray;            /* by triangle, bits */
     struct list boxes;
     bool failed;
 };
@@ -175,26 +175,32 @@ static void add_intersection(void *context, uint32_t one, uint32_t other) {
     add_fault(v, box_meet(corners_box(&a), corners_box(&b)), 2 * v->input->tolerance + 0.02 * v->size * v->round);
 }
 
-enum { CHUNK = 256, TEST_POINTS = 7, KNOWN_TESTS = 200000 };
+enum { CHUNK = 256, TEST_POINTS = 6, KNOWN_TESTS = 200000 };
 
-/* The middles of its edges, its own, and points between that and the corners. */
-static struct vec3 test_point(const struct corners *c, int number) {
-    struct vec3 middle = vec3_scale(vec3_add(c->point[0], vec3_add(c->point[1], c->point[2])), 1.0 / 3);
-    if (number < 3)
-        return vec3_scale(vec3_add(c->point[number], c->point[(number + 1) % 3]), 0.5);
-    return number == 3 ? middle : vec3_scale(vec3_add(middle, c->point[number - 4]), 0.5);
+/* Points of a regular grid on a triangle, and the same on its edges, which the triangle beyond has too: one of them is
+ * enough. */
+static bool test_point(const struct corners *c, int number, struct vec3 *out) {
+    int i = number / TEST_POINTS, k = number % TEST_POINTS, rest = TEST_POINTS - i - k;
+    const int share[3] = {i, k, rest};
+    *out = vec3_all(0);
+    for (int n = 0; n < 3; n++) {
+        int next = (n + 1) % 3;
+        if (share[n] < 0 || share[n] == TEST_POINTS || (share[n] == 0 && c->vertex[next] > c->vertex[(n + 2) % 3]))
+            return false;
+        *out = vec3_add_scaled(*out, c->point[n], (double)share[n] / TEST_POINTS);
+    }
+    return true;
 }
 
 /* Bits of the points that are not near to the solid. */
-static uint8_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
-    struct vec3 normal = vec3_normalize(triangle_normal(c->point));
-    uint8_t out = 0;
+static uint64_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
+    struct vec3 normal = vec3_normalize(triangle_normal(c->point)), at;
+    uint64_t out = 0;
     if (!(vec3_length(normal) > 0))
         return 8;
-    for (int i = 0; i < TEST_POINTS; i++) {
-        if (!solid_is_near_for_sure(probe, test_point(c, i), normal, tolerance))
-            out |= (uint8_t)(1 << i);
-    }
+    for (int i = 0; i < TEST_POINTS * TEST_POINTS; i++)
+        if (test_point(c, i, &at) && !solid_is_near_for_sure(probe, at, normal, tolerance))
+            out |= UINT64_C(1) << i;
     return out;
 }
 
@@ -209,17 +215,17 @@ static void test_chunk(void *context, uint32_t item, int worker) {
 
 static bool find_strays(struct verification *v, struct error *error) {
     uint32_t count = (uint32_t)v->mesh->triangles.count;
-    v->stray = mem_alloc_zero(count, 1);
+    v->stray = mem_alloc_zero(count, sizeof *v->stray);
     if (!v->stray)
         return error_no_memory(error, "the mesh of a solid");
     bool ok = pool_run(v->input->pool, (count + CHUNK - 1) / CHUNK, test_chunk, v) ||
               error_set(error, ERROR_CANCELLED, "stopped while a mesh was tested");
     for (uint32_t i = 0; ok && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
-        for (int k = 0; k < TEST_POINTS; k++) {
-            if (v->stray[i] >> k & 1)
-                add_far_point(v, test_point(&corners, k));
-        }
+        struct vec3 at;
+        for (int k = 0; k < TEST_POINTS * TEST_POINTS; k++)
+            if ((v->stray[i] >> k & 1) && test_point(&corners, k, &at))
+                add_far_point(v, at);
     }
     mem_free(v->stray);
     return ok;
