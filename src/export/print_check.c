@@ -149,7 +149,7 @@ static void measure_chunk(void *context, uint32_t item, int worker) {
 
 static bool measure_part(const struct export_model *model, const struct export_part *part, struct pool *pool,
                          struct print_report *report, struct error *error) {
-    int workers = pool_workers(pool), ready = 0;
+    int workers = pool_workers(pool);
     size_t triangles = part->triangles.count;
     uint32_t chunks = SAMPLES / CHUNK;
     struct wall_search search = {.part = part,
@@ -157,7 +157,7 @@ static bool measure_part(const struct export_model *model, const struct export_p
                                  .areas = mem_alloc(triangles * sizeof *search.areas),
                                  .count = SAMPLES,
                                  .lowest = report->box.min.z + model->tolerance,
-                                 .probes = mem_alloc_zero((size_t)workers, sizeof *search.probes),
+                                 .probes = solid_probes(part->csg, workers),
                                  .walls = mem_alloc_zero(chunks, sizeof *search.walls)};
     double area = 0;
     for (size_t t = 0; search.areas && t < triangles; t++) {
@@ -166,9 +166,7 @@ static bool measure_part(const struct export_model *model, const struct export_p
         area += 0.5 * vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
         search.areas[t] = area;
     }
-    while (search.probes && ready < workers && solid_probe_init(&search.probes[ready], part->csg))
-        ready++;
-    bool ok = (search.areas && search.walls && ready == workers) || error_no_memory(error, "the walls of a model");
+    bool ok = (search.areas && search.walls && search.probes) || error_no_memory(error, "the walls of a model");
     ok = ok && (pool_run(pool, chunks, measure_chunk, &search) ||
                 error_set(error, ERROR_CANCELLED, "stopped while a model was measured"));
     for (uint32_t i = 0; ok && i < chunks; i++) {
@@ -183,9 +181,7 @@ static bool measure_part(const struct export_model *model, const struct export_p
             report->overhang_at = wall->down_at;
         }
     }
-    while (ready > 0)
-        solid_probe_destroy(&search.probes[--ready]);
-    mem_free(search.probes);
+    solid_probes_destroy(search.probes, workers);
     mem_free(search.walls);
     mem_free(search.areas);
     return ok;
