@@ -4,8 +4,10 @@
 #include "csg/csg_build.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
-#include "math/elementary.h"
+#include "image/png_write.h"
+#include "material/material_eval.h"
 #include "mesh/mesh.h"
+#include "world/world_describe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -90,8 +92,10 @@ static void name_material(const struct model_builder *b, uint32_t number, uint32
     }
 }
 
-static double encode_srgb(double light) {
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * el_pow(light, 1 / 2.4) - 0.055;
+static void encode(const struct model_builder *b, struct colour colour, uint8_t out[3]) {
+    const struct tone tone = {.srgb = b->input->linear};
+    for (int k = 0; k < 3; k++)
+        out[k] = png_write_byte(tone_apply(&tone, colour_get(colour, k)));
 }
 
 /* The number in the model of a material of the world; UINT32_MAX: no memory. */
@@ -103,17 +107,60 @@ static uint32_t number_material(struct model_builder *b, uint32_t index) {
     struct export_material *material = list_room(&b->out->materials, 1, sizeof *material);
     if (!material)
         return UINT32_MAX;
-    struct colour diffuse = surface_diffuse(surfaces, &surfaces->materials[index]);
-    const double parts[3] = {diffuse.r, diffuse.g, diffuse.b};
-    material->diffuse = diffuse;
-    for (int k = 0; k < 3; k++) {
-        double shown = b->input->linear ? encode_srgb(parts[k]) : parts[k];
-        material->display[k] = (uint8_t)(fmin(fmax(shown, 0), 1) * 255 + 0.5);
-    }
+    material->diffuse = surface_diffuse(surfaces, &surfaces->materials[index]);
+    material->textured = surface_has_texture(&surfaces->materials[index], INPUT_KD);
+    encode(b, material->diffuse, material->display);
     name_material(b, number, index, material->name);
     b->out->materials.count++;
     b->material_of[index] = number + 1;
     return number;
+}
+
+/* The colour of the surface near a point, on a line against the normal. */
+static void colour_corner(const struct model_builder *b, struct world_scratch *scratch, struct vec3 point,
+                          struct vec3 normal, uint8_t out[3]) {
+    const struct world *world = b->input->world;
+    struct surface_inputs inputs;
+    struct hit hit;
+    /* Nearby first: in a narrow gap, the other surface is further away. */
+    for (double reach = b->tolerance / 64; reach <= 2 * b->tolerance; reach *= 128) {
+        struct ray ray = {
+            .origin = vec3_add_scaled(point, normal, reach), .direction = vec3_negate(normal), .t_max = 2 * reach};
+        if (!world_nearest_surface(world, &ray, scratch, &hit))
+            continue;
+        material_inputs_at(&world->surfaces, &world->surfaces.materials[hit.material], &hit, &inputs);
+        encode(b, inputs.kd, out);
+        return;
+    }
+}
+
+/* Corners have the colour a little inside of their triangle, since the next one may have another material. */
+static void colour_part(const struct model_builder *b, struct world_scratch *scratch, const struct export_part *part) {
+    const struct export_material *materials = b->out->materials.items;
+    for (size_t t = 0; t < part->triangles.count && !pool_cancelled(b->input->pool); t++) {
+        struct export_triangle *at = &export_triangles(part)[t];
+        struct vec3 c[3];
+        export_corners(part, t, c);
+        struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+        struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
+        for (int k = 0; k < 3; k++) {
+            memcpy(at->display[k], materials[at->material].display, 3);
+            if (b->input->corners && materials[at->material].textured)
+                colour_corner(b, scratch, vec3_add_scaled(c[k], vec3_sub(middle, c[k]), 0.01), normal, at->display[k]);
+        }
+    }
+}
+
+static bool colour_all_parts(const struct model_builder *b, struct error *error) {
+    struct world_scratch scratch;
+    bool ok = world_scratch_init(&scratch, b->input->world);
+    for (size_t i = 0; ok && i < b->out->parts.count; i++)
+        colour_part(b, &scratch, &export_parts(b->out)[i]);
+    ok = ok && !scratch.failed;
+    world_scratch_destroy(&scratch);
+    if (!ok)
+        return error_no_memory(error, "the colours of a model");
+    return !pool_cancelled(b->input->pool) || error_set(error, ERROR_CANCELLED, "stopped while a model was coloured");
 }
 
 /* --- parts --- */
@@ -131,14 +178,14 @@ static bool add_part(struct model_builder *b, const struct export_part *about, c
          list_room(&part->triangles, mesh->triangles.count, sizeof(struct export_triangle)) &&
          solid_mesh_is_closed(mesh, &part->closed, error);
     for (uint32_t i = 0; ok && i < mesh->vertices.count; i++)
-        ((struct vec3 *)part->points.items)[part->points.count++] = solid_vertex_at(mesh, i)->point;
+        export_points(part)[part->points.count++] = solid_vertex_at(mesh, i)->point;
     for (uint32_t i = 0; ok && i < mesh->triangles.count; i++) {
         const struct solid_triangle *at = solid_triangle_at(mesh, i);
         uint32_t material = number_material(b, material_of(b, at->surface));
         ok = material != UINT32_MAX;
         if (ok)
-            ((struct export_triangle *)part->triangles.items)[part->triangles.count++] =
-                (struct export_triangle){{at->vertex[0], at->vertex[1], at->vertex[2]}, material};
+            export_triangles(part)[part->triangles.count++] =
+                (struct export_triangle){.vertex = {at->vertex[0], at->vertex[1], at->vertex[2]}, .material = material};
     }
     return ok || error_no_memory(error, "a model");
 }
@@ -302,7 +349,8 @@ bool model_build(const struct model_build_input *input, struct export_model *out
     for (uint32_t i = 0; i < input->world->primitive_count; i++)
         if (!check_primitive(input->world, i, error))
             return false;
-    bool ok = choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error);
+    bool ok =
+        choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error) && colour_all_parts(&b, error);
     mem_free(b.cluster);
     mem_free(b.material_of);
     mem_free(b.leaves);

@@ -76,21 +76,43 @@ TEST(models_are_read_again_with_their_volume_and_are_closed) {
     model_destroy(&model);
 }
 
-/* The first file of a zip, inflated. */
-static char *first_of_zip(const char *path) {
+static uint32_t little(const char *bytes, int count) {
+    uint32_t number = 0;
+    for (int i = count; i-- > 0;)
+        number = number << 8 | (uint8_t)bytes[i];
+    return number;
+}
+
+/* A file of a zip, inflated; NULL: there is none of this name. */
+static char *out_of_zip(const char *path, const char *name, size_t *length_of) {
     size_t size = 0;
-    char *bytes = test_read_file(path, &size), *out = mem_alloc_zero(1 << 20, 1);
-    z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
-    CHECK(bytes && size > 60 && memcmp(bytes, "PK\3\4", 4) == 0 && memcmp(bytes + 30, "3D/3dmodel.model", 16) == 0);
-    CHECK(inflateInit2(&stream, -15) == Z_OK);
-    stream.next_in = (Bytef *)bytes + 46;
-    stream.avail_in = (uInt)(size - 46);
-    stream.next_out = (Bytef *)out;
-    stream.avail_out = (1 << 20) - 1;
-    CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END);
-    (void)inflateEnd(&stream);
+    char *bytes = test_read_file(path, &size), *at = bytes, *out = NULL;
+    while (!out && bytes && at + 30 < bytes + size && memcmp(at, "PK\3\4", 4) == 0) {
+        uint32_t packed = little(at + 18, 4), whole = little(at + 22, 4), length = little(at + 26, 2);
+        z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
+        const char *data = at + 30 + length;
+        at = bytes + (data - bytes) + packed;
+        if (length != strlen(name) || memcmp(data - length, name, length) != 0)
+            continue;
+        out = mem_alloc_zero(whole + 1, 1);
+        CHECK(inflateInit2(&stream, -15) == Z_OK);
+        stream.next_in = (const Bytef *)data;
+        stream.avail_in = packed;
+        stream.next_out = (Bytef *)out;
+        stream.avail_out = whole;
+        CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == whole);
+        (void)inflateEnd(&stream);
+        *length_of = whole;
+    }
     free(bytes);
     return out;
+}
+
+static char *model_of_zip(const char *path) {
+    size_t size = 0;
+    char *xml = out_of_zip(path, "3D/3dmodel.model", &size);
+    CHECK(xml);
+    return xml;
 }
 
 TEST(a_3mf_file_has_units_names_and_colours) {
@@ -100,13 +122,83 @@ TEST(a_3mf_file_has_units_names_and_colours) {
     expect("local root = gr.node 'root'\nroot:add_child(gr.sphere{name = 'left & \"right\"', radius = 1})\n"
            "root:add_child(gr.sphere{name = 'other', centre = {5, 0, 0}, radius = 1})\nroot:export('two.3mf')\n",
            "scene.lua", 0, NULL);
-    char *xml = first_of_zip(test_path("part.3mf"));
+    char *xml = model_of_zip(test_path("part.3mf"));
     CHECK(strstr(xml, "unit=\"inch\"") && strstr(xml, "displaycolor=\"#CC331A\""));
     mem_free(xml);
-    xml = first_of_zip(test_path("two.3mf"));
+    xml = model_of_zip(test_path("two.3mf"));
     CHECK(strstr(xml, "name=\"left &amp; &quot;right&quot;\"") && strstr(xml, "name=\"other\""));
     CHECK(strstr(xml, "<item objectid=\"3\"/>"));
     mem_free(xml);
+}
+
+/* The colour of a point is its place. */
+TEST(textures_colour_the_corners_of_3mf_files_and_the_faces_of_ply_files) {
+    expect("local place = gr.material{kd = function(p) return {p[1], p[2], p[3]} end}\n"
+           "local cube = gr.box{material = place, min = {0, 0, 0}, max = {1, 1, 1}}\n"
+           "cube:export('cube.3mf')\ncube:export('cube.ply')\n",
+           "scene.lua", 0, NULL);
+    char *xml = model_of_zip(test_path("cube.3mf"));
+    unsigned seen = 0, colour;
+    for (const char *at = xml; at && (at = strstr(at, "<m:color color=\"#")); at++) {
+        CHECK_EQ_INT(sscanf(at + 17, "%6x", &colour), 1);
+        for (int k = 0; k < 24; k += 8) /* a hundredth inside of the triangles */
+            CHECK((colour >> k & 255) < 4 || (colour >> k & 255) > 251);
+        seen |= 1U << ((colour >> 23 & 1) | (colour >> 14 & 2) | (colour >> 5 & 4));
+    }
+    CHECK_EQ_INT(seen, 255);
+    CHECK(xml && strstr(xml, "<m:colorgroup id=\"3\">") && strstr(xml, " pid=\"3\" p1=\""));
+    mem_free(xml);
+    size_t size = 0;
+    char *ply = test_read_file(test_path("cube.ply"), &size);
+    CHECK(ply && size > 192);
+    for (int i = 0; ply && size > 192 && i < 12; i++) /* 13 bytes and a colour each: thirds of a corner's */
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(fmod((uint8_t)ply[size - 192 + 16 * (size_t)i + 13 + (size_t)k] + 3, 85), 3, 3);
+    free(ply);
+}
+
+/* Two balls beside each other: which one is on the left of the thumbnail? */
+static void expect_on_the_left(const char *call, const char *options, int channel) {
+    char text[1024];
+    size_t size = 0;
+    (void)snprintf(
+        text, sizeof text,
+        "local function ball(x, colour)\n"
+        "    return gr.sphere{centre = {x, 0, 0}, radius = 1, material = gr.material{kd = colour}}\n"
+        "end\n"
+        "local balls = gr.node{name = 'balls', children = {ball(-1.5, {1, 0, 0}), ball(1.5, {0, 0, 1})}}\n%s",
+        call);
+    expect(text, options, 0, NULL);
+    char *png = out_of_zip(test_path("balls.3mf"), "Metadata/thumbnail.png", &size);
+    if (png)
+        test_write_file(test_path("small.png"), png, size);
+    mem_free(png);
+    struct test_picture picture = test_read_picture(test_path("small.png"));
+    CHECK(picture.width == 256 && picture.height == 256 && picture.rgb[0] == 229);
+    const uint8_t *left = picture.rgb + (size_t)3 * (128 * 256 + 64);
+    CHECK(left[channel] > 200 && left[1] == 0 && left[2 - channel] == 0);
+    free(picture.rgb);
+}
+
+TEST(a_3mf_file_has_a_picture_of_the_model_from_the_side_of_the_camera) {
+    expect_on_the_left("balls:export('balls.3mf')\n", "scene.lua", 0);
+    expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, 9}, target = {0, 0, 0}}\n",
+                       "-o balls.3mf scene.lua", 0);
+    expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, -9}, target = {0, 0, 0}}\n",
+                       "-o balls.3mf scene.lua", 2);
+}
+
+TEST(the_studio_is_no_part_of_a_model_and_a_node_that_is_called_model_is_all_of_it) {
+    static const char *const calls[] = {
+        "gr.render(gr.studio{node = part, file = 'x.png', width = 8})\n",
+        "local all = gr.node{children = {part, gr.plane{normal = {0, 0, 1}}}}\n"
+        "gr.render{node = all, model = part, file = 'x.png', width = 8}\n",
+    };
+    for (int i = 0; i < 2; i++) {
+        struct test_result result = test_gray_scene(part_and(calls[i]), "--check-print scene.lua", NULL);
+        CHECK(result.status == 0 && strstr(result.out, "size: 40 x 30 x 5"));
+        test_free_result(&result);
+    }
 }
 
 TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
