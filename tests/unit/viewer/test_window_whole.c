@@ -285,6 +285,26 @@ TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
     free(said);
 }
 
+TEST(window_exports_the_model_that_the_command_line_writes_and_says_what_is_wrong) {
+#define EXPORT(name)                                                                                                   \
+    { .kind = WINDOW_ACTION, .action = DO_EXPORT_MODEL, .text = name }
+    static const char ball[] = "for i = 1, 2 do\n"
+                               "    gr.render{node = gr.sphere{radius = i}, file = 'ball.png', width = 64, eye = {0, "
+                               "0, 9}, view = {0, 0, -1}}\n"
+                               "end\n";
+    const struct deed deeds[] = {{"ready", ACTION(DO_NEXT_PICTURE), 0},
+                                 {"ready", EXPORT("ball.stl"), 30},
+                                 {"ball.stl is written", EXPORT("ball.wrl"), 0},
+                                 {"ball.wrl: the name of a model ends in", EXPORT("notes.stl"), 0},
+                                 {"notes.stl: exists already and is not a model", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("notes.stl"), "my notes\n");
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = ball}), 0);
+    struct test_result result = test_gray(NULL, "-q scene.lua -o same.stl --picture 2");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("ball.stl", "same.stl"));
+}
+
 /* Frames that depend on those before. */
 #define ANIMATION(colour, file)                                                                                        \
     "local r = gr.node('root')\n"                                                                                      \
