@@ -1,4 +1,5 @@
 /* -o MODEL, node:export and --check-print, and the files that they write. */
+#define _GNU_SOURCE
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/model.h"
@@ -6,10 +7,18 @@
 #include "math/elementary.h"
 #include "tests/harness.h"
 
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <linux/ptrace.h>
 
 static const char part[] =
     "local red = gr.material({0.8, 0.2, 0.1}, {0, 0, 0}, 20)\n"
@@ -227,6 +236,7 @@ TEST(a_model_of_the_command_line_is_the_scene_of_the_only_picture_or_of_a_chosen
            "-o frame.stl scene.lua", 1, "--frames N-N chooses it");
     expect("gr.frames{count = 2, draw = function() return {node = gr.sphere{radius = 1}, width = 8} end}\n",
            "-o frame.stl --frames 2-2 scene.lua", 0, NULL);
+    expect(two, "-o one.stl -o two.stl scene.lua", 2, "a run writes one model");
     expect("print(1)\n", "-o none.stl scene.lua", 2, "the script renders no picture");
 }
 
@@ -312,37 +322,96 @@ TEST(check_print_reports_volume_overhang_and_contact) {
     test_free_result(&result);
 }
 
-TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 20) {
-    static const char *const endings[] = {"stl", "obj", "ply", "3mf"};
-    test_need_tools("timeout");
-    for (int kind = 0; kind < 4; kind++) {
-        char scene[1024], name[32], command[256];
-        size_t old_size = 0, new_size = 0, size = 0;
-        (void)snprintf(name, sizeof name, "x.%s", endings[kind]);
-        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 1}:export('x.%s', {tolerance = 0.02})\n",
-                       endings[kind]);
-        expect(scene, "scene.lua", 0, NULL);
-        char *old = test_read_file(test_path(name), &old_size);
-        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 2}:export('x.%s', {tolerance = 0.02})\n",
-                       endings[kind]);
-        test_write_text(test_path("new.lua"), scene);
-        (void)snprintf(command, sizeof command, "cp %s keep && $gray -q new.lua && mv %s new && mv keep %s", name, name,
-                       name);
-        CHECK_EQ_INT(test_run_shell(command, ""), 0);
-        char *new = test_read_file(test_path("new"), &new_size);
-        for (int i = 0; i < 2 * times; i++) {
-            (void)snprintf(command, sizeof command, "timeout -s KILL %.4f $gray -q new.lua; true",
-                           0.02 + 0.1 * (i + 0.5) / (2 * times));
-            CHECK_EQ_INT(test_run_shell(command, ""), 0);
-            char *now = test_read_file(test_path(name), &size);
-            bool is_old = now && size == old_size && memcmp(now, old, size) == 0;
-            bool is_new = now && size == new_size && memcmp(now, new, size) == 0;
-            if (!is_old && !is_new)
-                test_fail(__FILE__, __LINE__, "%s is neither the old nor the new model", name);
-            free(now);
-            test_write_file(test_path(name), old, old_size);
-        }
-        free(old);
-        free(new);
+/* A sphere of this radius as x.KIND. */
+static const char *sphere_as(const char *kind, int radius) {
+    static char text[256];
+    (void)snprintf(text, sizeof text, "gr.sphere{radius = %d}:export('x.%s', {tolerance = 0.1})\n", radius, kind);
+    return text;
+}
+
+static bool may_change_files(const struct ptrace_syscall_info *info) {
+    switch (info->entry.nr) {
+    case SYS_openat:
+        return (info->entry.args[2] & (O_CREAT | O_TMPFILE)) != 0;
+    case SYS_write:
+    case SYS_ftruncate:
+    case SYS_fsync:
+    case SYS_linkat:
+    case SYS_renameat2:
+    case SYS_unlinkat:
+    case SYS_close:
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* Runs scene.lua and kills the supervisor before the call `at` of those that may change files. The number of these
+ * calls, or -1: it was killed. */
+static int run_until(int at) {
+    int status = 0, calls = 0;
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(test_folder()) == 0 && ptrace(PTRACE_TRACEME, 0, NULL, NULL) == 0)
+            (void)execl(test_program(), "gray", "-q", "scene.lua", (char *)NULL);
+        _exit(99);
+    }
+    CHECK(waitpid(child, &status, 0) == child && WIFSTOPPED(status));
+    (void)ptrace(PTRACE_SETOPTIONS, child, NULL, (void *)(PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL));
+    for (long signal = 0; ptrace(PTRACE_SYSCALL, child, NULL, (void *)signal) == 0;) {
+        struct ptrace_syscall_info info = {0};
+        if (waitpid(child, &status, 0) != child || !WIFSTOPPED(status))
+            break;
+        signal = WSTOPSIG(status) == SIGTRAP ? 0 : WSTOPSIG(status);
+        if (signal != (SIGTRAP | 0x80))
+            continue;
+        signal = 0;
+        (void)ptrace(PTRACE_GET_SYSCALL_INFO, child, (void *)sizeof info, &info);
+        if (info.op != PTRACE_SYSCALL_INFO_ENTRY || !may_change_files(&info) || calls++ != at)
+            continue;
+        (void)kill(child, SIGKILL);
+        (void)waitpid(child, &status, 0);
+        return -1;
+    }
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    return calls;
+}
+
+/* Each file is the old one or the new one. */
+static void check_files(const char *const *names, int count, int at) {
+    for (int i = 0; i < count; i++) {
+        char old[32], new[32];
+        (void)snprintf(old, sizeof old, "old-%s", names[i]);
+        (void)snprintf(new, sizeof new, "new-%s", names[i]);
+        if (!test_same_files(names[i], old) && !test_same_files(names[i], new))
+            test_fail(__FILE__, __LINE__, "killed before call %d: %s is neither the old nor the new file", at,
+                      names[i]);
+    }
+}
+
+/* step: of how many calls one is tried. */
+static void kill_writer(const char *kind, int step) {
+    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}};
+    int which = strcmp(kind, "obj") == 0 ? 1 : strcmp(kind, "ply") == 0 ? 2 : strcmp(kind, "3mf") == 0 ? 3 : 0;
+    int count = which == 1 ? 2 : 1;
+    expect(sphere_as(kind, 2), "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("for f in x.*; do mv $f new-$f; done", ""), 0);
+    expect(sphere_as(kind, 1), "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("for f in x.*; do cp $f old-$f; done", ""), 0);
+    test_write_text(test_path("scene.lua"), sphere_as(kind, 2));
+    int calls = run_until(-1);
+    CHECK(calls > 10);
+    for (int at = calls - 1; at >= 0 && at > calls - 101; at -= step) {
+        CHECK_EQ_INT(test_run_shell("for f in old-*; do cp $f ${f#old-}; done", ""), 0);
+        (void)run_until(at);
+        check_files(files[which], count, at);
+    }
+}
+
+TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
+    static const char *const kinds[] = {"stl", "obj", "ply", "3mf"};
+    for (int i = 0; i < 4; i++) {
+        kill_writer(kinds[i], times > 1 ? 1 : 9);
+        CHECK_EQ_INT(test_run_shell("rm -f x.* old-* new-*", ""), 0);
     }
 }
