@@ -34,7 +34,7 @@ check_admesh() {
 
 # The intersection needs exact polyhedra (CGAL), which an open or self-intersecting surface does not give.
 check_openscad() {
-    openscad --version 2>&1
+    openscad --version 2>&1; echo
     for file in *.stl *.3mf; do
         echo "intersection() { import(\"$file\"); translate([-500, -500, -500]) cube(1000); }" >in.scad
         openscad --render -o out.off in.scad >said.txt 2>&1 || fail "openscad $file"

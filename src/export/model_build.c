@@ -9,6 +9,7 @@
 #include "mesh/mesh.h"
 #include "world/world_describe.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -41,6 +42,8 @@ static bool check_primitive(const struct world *world, uint32_t primitive, struc
         return error_set(error, ERROR_SCENE, "node '%.100s' is no solid, because it %s", name,
                          geometry->csg ? "is clipped, cut open without caps; intersect it instead"
                                        : shape_why_open(&geometry->shape));
+    if (box_is_empty(box))
+        return error_set(error, ERROR_SCENE, "node '%.100s' is empty: there is nothing to write", name);
     if (!vec3_finite(box->min) || !vec3_finite(box->max) || (geometry->csg && geometry->csg->inside_out))
         return error_set(error, ERROR_SCENE, "node '%.100s' has no end, so it cannot be written as a model", name);
     return true;
@@ -244,6 +247,17 @@ static const struct csg *unite(struct model_builder *b, uint32_t first, struct e
     return csg_build(b->input->arena, b->leaves, b->leaf_count, b->program, b->length, error);
 }
 
+static void note(const struct model_builder *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void note(const struct model_builder *b, const char *format, ...) {
+    char text[512];
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    if (b->input->notice)
+        b->input->notice(b->input->context, text);
+}
+
 /* The triangles of a mesh as they are, with the vertices that its file has. */
 static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct export_part *about, struct error *error) {
     struct solid_mesh own = {0};
@@ -251,27 +265,9 @@ static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct ex
         solid_mesh_of_triangles(mesh, &b->leaves[0].csg_from_leaf.forward, &own) || error_no_memory(error, "a model");
     ok = ok && add_part(b, about, &own, material_of_slot, error);
     solid_mesh_destroy(&own);
+    if (ok && !export_parts(b->out)[b->out->parts.count - 1].closed)
+        note(b, "node '%.100s': surfaces of its mesh meet in edges or vertices; slicers may repair it", about->name);
     return ok;
-}
-
-static void note_separation(const struct model_builder *b, const char *name, const struct solid_findings *findings) {
-    char text[512];
-    struct vec3 at = findings->position;
-    (void)snprintf(text, sizeof text,
-                   "node '%.100s': its surface touches itself, for example at (%.6g, %.6g, %.6g); the parts are %.3g "
-                   "apart there in the model",
-                   name, at.x, at.y, at.z, 0.3 * b->tolerance);
-    b->input->notice(b->input->context, text);
-}
-
-static void note_far_points(const struct model_builder *b, const char *name, uint32_t count) {
-    char text[512];
-    (void)snprintf(
-        text, sizeof text,
-        "node '%.100s': %u points of the model may be further than %.3g from the solid; another tolerance may "
-        "help",
-        name, count, b->tolerance);
-    b->input->notice(b->input->context, text);
 }
 
 static bool add_solid(struct model_builder *b, struct export_part *about, struct error *error) {
@@ -280,10 +276,16 @@ static bool add_solid(struct model_builder *b, struct export_part *about, struct
     struct solid_findings findings;
     if (!solid_mesh_build(&input, &mesh, &findings, error))
         return false;
-    if (findings.separated > 0 && b->input->notice)
-        note_separation(b, about->name, &findings);
-    if (findings.far_points > 0 && b->input->notice)
-        note_far_points(b, about->name, findings.far_points);
+    if (findings.separated > 0)
+        note(b,
+             "node '%.100s': its surface touches itself, for example at (%.6g, %.6g, %.6g); the parts are %.3g apart "
+             "there in the model",
+             about->name, findings.position.x, findings.position.y, findings.position.z, 0.3 * b->tolerance);
+    if (findings.far_points > 0)
+        note(b,
+             "node '%.100s': %u points of the model may be further than %.3g from the solid; another tolerance may "
+             "help",
+             about->name, findings.far_points, b->tolerance);
     bool ok = add_part(b, about, &mesh, material_of_leaf, error);
     solid_mesh_destroy(&mesh);
     return ok;

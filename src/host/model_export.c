@@ -9,6 +9,7 @@
 #include "scene/traversal.h"
 #include "session/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,7 +46,10 @@ static void print_report(const struct print_report *report) {
     text_writer_print(&writer, "closed: %s\n", report->closed ? "yes" : "no");
     text_writer_print(&writer, "volume: %.6g, surface: %.6g\n", report->volume, report->area);
     text_writer_print(&writer, "size: %.6g x %.6g x %.6g\n", size.x, size.y, size.z);
-    text_writer_put(&writer, "thinnest wall: %g at %v\n", report->thinnest, report->thinnest_at);
+    if (isfinite(report->thinnest))
+        text_writer_put(&writer, "thinnest wall: %g at %v\n", report->thinnest, report->thinnest_at);
+    else
+        text_writer_print(&writer, "thinnest wall: none is as thick as the tolerance\n");
     if (report->overhang > 0)
         text_writer_put(&writer, "steepest overhang: %g degrees from the vertical at %v; ", report->overhang,
                         report->overhang_at);

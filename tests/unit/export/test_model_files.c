@@ -220,6 +220,13 @@ TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
     free(bytes);
 }
 
+TEST(a_mesh_whose_surfaces_meet_in_a_point_has_a_notice) {
+    expect("gr.mesh{name = 'pair', verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, "
+           "{0, 0, -1}}, faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, "
+           "{4, 6, 5}}}:export('x.stl')\n",
+           "scene.lua", 0, "node 'pair': surfaces of its mesh meet in edges or vertices");
+}
+
 TEST(a_model_of_the_command_line_is_the_scene_of_the_only_picture_or_of_a_chosen_one) {
     static const char two[] = "gr.render{node = gr.sphere{name = 'a', radius = 1}, file = 'a.png', width = 8}\n"
                               "gr.render{node = gr.sphere{name = 'b', radius = 2}, file = 'b.png', width = 8}\n";
@@ -249,6 +256,10 @@ TEST(what_is_no_solid_is_an_error_that_names_the_node_and_writes_nothing) {
            ":export('x.stl')\n",
            "scene.lua", 1, "node 'hole' is no solid, because its mesh is open");
     expect("gr.node('nothing'):export('x.stl')\n", "scene.lua", 1, "node 'nothing' is empty");
+    expect("gr.intersection(gr.sphere{}, gr.sphere{centre = {5, 0, 0}, name = 'far'}):export('x.stl')\n", "scene.lua",
+           1, "node 'csg' is empty");
+    expect("gr.difference(gr.sphere{}, gr.sphere{radius = 2}):export('x.stl')\n", "scene.lua", 1,
+           "node 'csg' is empty");
     CHECK(!file_is_regular(test_path("x.stl")));
 }
 
@@ -414,4 +425,33 @@ TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
         kill_writer(kinds[i], times > 1 ? 1 : 9);
         CHECK_EQ_INT(test_run_shell("rm -f x.* old-* new-*", ""), 0);
     }
+}
+
+/* 16 solids in other programs (docs/export.md). */
+static void open_in(const char *program) {
+    char line[8192];
+    test_need_tools(program);
+    (void)snprintf(line, sizeof line, "GRAY='%s' tools/check_exports.sh %s >'%s' 2>&1", test_program(), program,
+                   test_path("said.txt"));
+    int status = system(line);
+    char *said = test_read_file(test_path("said.txt"), NULL);
+    if (status != 0)
+        test_fail(__FILE__, __LINE__, "%s", said ? said : program);
+    free(said);
+}
+
+TEST_LONG(admesh_opens_models_without_repair) {
+    open_in("admesh");
+}
+
+TEST_LONG(openscad_takes_models_as_exact_polyhedra) {
+    open_in("openscad");
+}
+
+TEST_LONG(blender_finds_models_manifold) {
+    open_in("blender");
+}
+
+TEST_LONG(prusa_slicer_slices_models_without_repair) {
+    open_in("prusa-slicer");
 }
