@@ -126,9 +126,9 @@ static void colour_corner(const struct model_builder *b, struct world_scratch *s
     struct surface_inputs inputs;
     struct hit hit;
     /* Nearby first: in a narrow gap, the other surface is further away. */
-    for (double reach = b->tolerance / 64; reach <= 2 * b->tolerance; reach *= 128) {
+    for (double height = b->tolerance / 64; height <= 2 * b->tolerance; height *= 128) {
         struct ray ray = {
-            .origin = vec3_add_scaled(point, normal, reach), .direction = vec3_negate(normal), .t_max = 2 * reach};
+            .origin = vec3_add_scaled(point, normal, height), .direction = vec3_negate(normal), .t_max = 2 * height};
         if (!world_nearest_surface(world, &ray, scratch, &hit))
             continue;
         material_inputs_at(&world->surfaces, &world->surfaces.materials[hit.material], &hit, &inputs);
