@@ -4,6 +4,7 @@
 #include "csg/csg_build.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
+#include "export/triangles_internal.h"
 #include "image/png_write.h"
 #include "material/material_eval.h"
 #include "mesh/mesh.h"
@@ -88,11 +89,9 @@ static void find_clusters(const struct model_builder *b) {
 /* Names in files: of the material if it has one, and different. */
 static void name_material(const struct model_builder *b, uint32_t number, uint32_t index, char out[64]) {
     const struct material *material = b->input->world->authored.materials[index];
-    (void)snprintf(out, 64, "m%u%s%.40s", number + 1, material->name ? "_" : "", material->name ? material->name : "");
-    for (char *at = out; *at; at++) {
-        bool fine = (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9');
-        *at = fine || strchr("_-.", *at) ? *at : '_';
-    }
+    char name[64];
+    (void)snprintf(name, 64, "m%u%s%.40s", number + 1, material->name ? "_" : "", material->name ? material->name : "");
+    (void)export_plain_name(name, out);
 }
 
 static void encode(const struct model_builder *b, struct colour colour, uint8_t out[3]) {
@@ -138,27 +137,27 @@ static void colour_corner(const struct model_builder *b, struct world_scratch *s
 }
 
 /* Corners have the colour a little inside of their triangle, since the next one may have another material. */
-static void colour_part(const struct model_builder *b, struct world_scratch *scratch, const struct export_part *part) {
-    const struct export_material *materials = b->out->materials.items;
-    for (size_t t = 0; t < part->triangles.count && !pool_cancelled(b->input->pool); t++) {
-        struct export_triangle *at = &export_triangles(part)[t];
-        struct vec3 c[3];
-        export_corners(part, t, c);
-        struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
-        struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-        for (int k = 0; k < 3; k++) {
-            memcpy(at->display[k], materials[at->material].display, 3);
-            if (b->input->corners && materials[at->material].textured)
-                colour_corner(b, scratch, vec3_add_scaled(c[k], vec3_sub(middle, c[k]), 0.01), normal, at->display[k]);
-        }
+static void colour_triangle(const struct model_builder *b, struct world_scratch *scratch,
+                            const struct export_part *part, size_t triangle) {
+    struct export_triangle *at = &export_triangles(part)[triangle];
+    const struct export_material *material = (struct export_material *)b->out->materials.items + at->material;
+    struct vec3 c[3];
+    export_corners(part, triangle, c);
+    struct vec3 normal = vec3_normalize(triangle_normal(c));
+    struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
+    for (int k = 0; k < 3; k++) {
+        memcpy(at->display[k], material->display, 3);
+        if (material->textured)
+            colour_corner(b, scratch, vec3_add_scaled(c[k], vec3_sub(middle, c[k]), 0.01), normal, at->display[k]);
     }
 }
 
-static bool colour_all_parts(const struct model_builder *b, struct error *error) {
+static bool colour_corners(const struct model_builder *b, struct error *error) {
     struct world_scratch scratch;
     bool ok = world_scratch_init(&scratch, b->input->world);
     for (size_t i = 0; ok && i < b->out->parts.count; i++)
-        colour_part(b, &scratch, &export_parts(b->out)[i]);
+        for (size_t t = 0; t < export_parts(b->out)[i].triangles.count && !pool_cancelled(b->input->pool); t++)
+            colour_triangle(b, &scratch, &export_parts(b->out)[i], t);
     ok = ok && !scratch.failed;
     world_scratch_destroy(&scratch);
     if (!ok)
@@ -351,8 +350,8 @@ bool model_build(const struct model_build_input *input, struct export_model *out
     for (uint32_t i = 0; i < input->world->primitive_count; i++)
         if (!check_primitive(input->world, i, error))
             return false;
-    bool ok =
-        choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error) && colour_all_parts(&b, error);
+    bool ok = choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error) &&
+              (!input->corners || colour_corners(&b, error));
     mem_free(b.cluster);
     mem_free(b.material_of);
     mem_free(b.leaves);

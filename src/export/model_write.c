@@ -4,6 +4,7 @@
 #include "export/model_write.h"
 
 #include "export/key_map_internal.h"
+#include "export/triangles_internal.h"
 #include "export/zip_internal.h"
 
 #include <stdarg.h>
@@ -65,8 +66,7 @@ static size_t count_of(const struct export_model *model, bool points) {
     return count;
 }
 
-/* A name that text files can hold: other bytes become '_'. */
-static const char *plain_name(const char *name, char out[64]) {
+const char *export_plain_name(const char *name, char out[64]) {
     size_t length = 0;
     for (; name[length] && length < 63; length++) {
         char c = name[length];
@@ -80,7 +80,12 @@ static const char *plain_name(const char *name, char out[64]) {
 static struct vec3 normal_of(const struct export_part *part, size_t triangle) {
     struct vec3 c[3];
     export_corners(part, triangle, c);
-    return vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+    return vec3_normalize(triangle_normal(c));
+}
+
+static void print_points(struct writer *w, const struct export_part *part, const char *format) {
+    for (const struct vec3 *p = export_points(part), *end = p + part->points.count; p < end; p++)
+        print(w, format, p->x, p->y, p->z);
 }
 
 static void write_stl(struct writer *w) {
@@ -104,7 +109,7 @@ static void write_text_stl(struct writer *w) {
     char name[64];
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
-        print(w, "solid %s\n", plain_name(part->name, name));
+        print(w, "solid %s\n", export_plain_name(part->name, name));
         for (size_t t = 0; t < part->triangles.count; t++) {
             const struct export_triangle *triangle = &export_triangles(part)[t];
             struct vec3 n = normal_of(part, t);
@@ -126,10 +131,8 @@ static void write_obj(struct writer *w) {
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         uint32_t material = UINT32_MAX;
-        print(w, "o %s\n", plain_name(part->name, name));
-        for (size_t v = 0; v < part->points.count; v++)
-            print(w, "v %.9g %.9g %.9g\n", export_points(part)[v].x, export_points(part)[v].y,
-                  export_points(part)[v].z);
+        print(w, "o %s\n", export_plain_name(part->name, name));
+        print_points(w, part, "v %.9g %.9g %.9g\n");
         for (size_t t = 0; t < part->triangles.count; t++) {
             const struct export_triangle *triangle = &export_triangles(part)[t];
             if (triangle->material != material)
@@ -145,9 +148,8 @@ static void write_obj(struct writer *w) {
 static void write_mtl(struct writer *w) {
     print(w, "%s\n", model_obj_header);
     for (uint32_t i = 0; i < w->model->materials.count; i++) {
-        const struct export_material *material = material_at(w, i);
-        print(w, "newmtl %s\nKd %.6g %.6g %.6g\n", material->name, material->diffuse.r, material->diffuse.g,
-              material->diffuse.b);
+        struct colour kd = material_at(w, i)->diffuse;
+        print(w, "newmtl %s\nKd %.6g %.6g %.6g\n", material_at(w, i)->name, kd.r, kd.g, kd.b);
     }
 }
 
@@ -227,9 +229,7 @@ static void write_object(struct writer *w, const struct export_part *part, size_
     print(w, "<object id=\"%zu\" type=\"model\" pid=\"1\" pindex=\"%u\" name=\"", id, triangles[0].material);
     print_escaped(w, part->name);
     print(w, "\"><mesh><vertices>\n");
-    for (size_t v = 0; v < part->points.count; v++)
-        print(w, "<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>\n", export_points(part)[v].x, export_points(part)[v].y,
-              export_points(part)[v].z);
+    print_points(w, part, "<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>\n");
     print(w, "</vertices><triangles>\n");
     for (size_t t = 0; t < part->triangles.count; t++) {
         print(w, "<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"", triangles[t].vertex[0], triangles[t].vertex[1],
@@ -253,9 +253,9 @@ static void write_3mf_model(struct writer *w) {
           "<metadata name=\"Application\">gray</metadata>\n<resources><basematerials id=\"1\">\n",
           units[w->options->unit]);
     for (uint32_t i = 0; i < w->model->materials.count; i++) {
-        const struct export_material *material = material_at(w, i);
-        print(w, "<base name=\"%s\" displaycolor=\"#%02X%02X%02X\"/>\n", material->name, material->display[0],
-              material->display[1], material->display[2]);
+        const uint8_t *display = material_at(w, i)->display;
+        print(w, "<base name=\"%s\" displaycolor=\"#%06X\"/>\n", material_at(w, i)->name,
+              (unsigned)key_of(display) - 1);
     }
     print(w, "</basematerials>\n");
     write_colours(w);

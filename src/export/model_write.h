@@ -31,6 +31,8 @@ struct export_model {
     struct list parts, materials; /* struct export_part, struct export_material */
     double tolerance;
 };
+/* A name that text files can hold: other bytes than letters, digits, '_', '-' and '.' become '_'. */
+const char *export_plain_name(const char *name, char out[64]);
 void export_model_destroy(struct export_model *model);
 static inline struct export_part *export_parts(const struct export_model *model) {
     return model->parts.items;

@@ -1,7 +1,7 @@
 #include "export/print_check.h"
 
 #include "export/solid_cast_internal.h"
-#include "export/solid_mesh_internal.h"
+#include "export/triangles_internal.h"
 #include "math/elementary.h"
 
 /* Of faces at 45 degrees, which printers can build without support, and a little more. */
@@ -20,7 +20,7 @@ struct sums {
 
 static void add_triangle(struct sums *sums, const struct vec3 c[3]) {
     struct print_report *report = sums->report;
-    struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
+    struct vec3 normal = triangle_normal(c);
     double area = 0.5 * vec3_length(normal), volume = vec3_dot(c[0], vec3_cross(c[1], c[2])) / 6;
     struct vec3 sum = vec3_add(c[0], vec3_add(c[1], c[2]));
     report->volume += volume;
@@ -100,7 +100,7 @@ static void measure_sample(struct wall_search *search, const struct vec3 c[3], u
     double u = sqrt(fmod(sample * 0.7548776662466927 + 0.5, 1)), v = fmod(sample * 0.5698402909980532 + 0.5, 1);
     struct vec3 point = vec3_scale(c[0], 1 - u);
     point = vec3_add_scaled(vec3_add_scaled(point, c[1], u * (1 - v)), c[2], u * v);
-    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+    struct vec3 normal = vec3_normalize(triangle_normal(c));
     struct solid_crossing surface;
     if (!(vec3_length(normal) > 0) || !solid_cast_near(&search->probe, point, normal, 2 * search->tolerance, &surface))
         return;
@@ -115,10 +115,6 @@ static void measure_sample(struct wall_search *search, const struct vec3 c[3], u
     }
 }
 
-static double area_of(const struct vec3 c[3]) {
-    return 0.5 * vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
-}
-
 /* Each triangle has the samples that begin in it, where all triangles lie one after the other. */
 static bool measure_part(struct wall_search *search, const struct export_part *part, struct pool *pool,
                          struct error *error) {
@@ -129,11 +125,11 @@ static bool measure_part(struct wall_search *search, const struct export_part *p
         return error_no_memory(error, "the walls of a model");
     for (size_t t = 0; t < part->triangles.count; t++) {
         export_corners(part, t, c);
-        area += area_of(c);
+        area += vec3_length(triangle_normal(c));
     }
     for (size_t t = 0; t < part->triangles.count; t++) {
         export_corners(part, t, c);
-        before += area_of(c);
+        before += vec3_length(triangle_normal(c));
         for (; (sample + 0.5) * area < before * SAMPLES && !pool_cancelled(pool); sample++)
             measure_sample(search, c, sample);
     }
