@@ -1,5 +1,5 @@
-/* A second supervisor, in a process of its own, runs the script as it is on the disk. The window is free meanwhile, and
- * whatever ends that process leaves the old file or the new one. */
+/* A second supervisor, in a process of its own, runs the script with the edits of the window before it. The window is
+ * free meanwhile, and whatever ends that process leaves the old file or the new one. */
 #define _GNU_SOURCE
 #include "host/supervisor_export.h"
 
@@ -7,7 +7,6 @@
 #include "base/fault.h"
 #include "host/supervisor_child.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -21,6 +20,17 @@ static void show(struct supervisor *supervisor, bool ok, const char *text) {
     viewer_show_notice(&supervisor->viewer, text, !ok);
 }
 
+static bool put_line(void *list, const char *line) {
+    return list_add_bytes(list, line, strlen(line));
+}
+
+static bool note_edits(const struct viewer *viewer, struct list *out) {
+    const struct camera camera = fly_camera_current(&viewer->fly_camera);
+    return edits_write_lua(&viewer->edit.steps.now, viewer->request.file, viewer->camera_moved ? &camera : NULL, NULL,
+                           put_line, out) &&
+           list_add_bytes(out, "", 1);
+}
+
 /* The options of the other process: one script, and the picture or frame in the window. */
 static struct options options_of(const struct supervisor *supervisor) {
     const struct viewer *viewer = &supervisor->viewer;
@@ -29,6 +39,7 @@ static struct options options_of(const struct supervisor *supervisor) {
     options.scripts += supervisor->next_script < last ? supervisor->next_script : last;
     options.picture = options.script_count == 1 ? (int)viewer->window.number : 0;
     options.script_count = 1;
+    options.script.edits = supervisor->model.edits.items;
     options.model = supervisor->model.name;
     options.output = options.display = options.checkpoint = options.targets_prefix = options.first_pass_prefix = NULL;
     options.animation = ANIMATION_NONE;
@@ -64,18 +75,20 @@ void supervisor_begin_export(struct supervisor *supervisor) {
         show(supervisor, false, error.text);
         return;
     }
+    bool noted = note_edits(&supervisor->viewer, &model->edits);
     (void)snprintf(model->name, sizeof model->name, "%s", supervisor->viewer.save_as);
     model->began = clock_now();
     model->shown = -1;
     (void)fflush(NULL);
     pid_t parent = getpid();
-    model->process = MAY_FAIL(fork());
+    model->process = noted ? MAY_FAIL(fork()) : -1;
     if (model->process == 0)
         write_model(supervisor, parent);
+    list_destroy(&model->edits);
     if (model->process > 0)
         return;
     share_destroy(&model->text);
-    show(supervisor, false, strerror(errno));
+    show(supervisor, false, "the process that writes the model cannot be started");
 }
 
 /* The last line that is not part of a traceback. */
@@ -99,10 +112,10 @@ void supervisor_show_export(struct supervisor *supervisor) {
         model->shown = seconds;
         return;
     }
-    bool ok = WIFEXITED(how) && WEXITSTATUS(how) == 0, edited = supervisor->viewer.edit.steps.at > 0;
+    bool ok = WIFEXITED(how) && WEXITSTATUS(how) == 0;
     text[EXPORT_TEXT - 1] = '\0';
     if (ok)
-        (void)snprintf(line, sizeof line, "%s is written%s", model->name, edited ? ", without the edits" : "");
+        (void)snprintf(line, sizeof line, "%s is written", model->name);
     else if (WIFEXITED(how) && text[0] != '\0')
         (void)snprintf(line, sizeof line, "%s", last_line(text));
     else

@@ -1,4 +1,4 @@
-/* The model that the window writes: what `gray SCRIPT -o MODEL` writes, by a process like that one. */
+/* The model that the window writes: what `gray SCRIPT -o MODEL` writes with the edits, by a process like that one. */
 #ifndef GRAY_HOST_SUPERVISOR_EXPORT_H
 #define GRAY_HOST_SUPERVISOR_EXPORT_H
 

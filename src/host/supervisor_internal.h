@@ -5,6 +5,7 @@
 #define GRAY_HOST_SUPERVISOR_INTERNAL_H
 
 #include "base/share.h"
+#include "formats/list.h"
 #include "host/file_watch.h"
 #include "host/supervisor.h"
 #include "output/output_session.h"
@@ -45,6 +46,7 @@ struct script_retry {
 struct window_export {
     pid_t process;     /* 0: none */
     struct share text; /* what it prints on standard error */
+    struct list edits; /* as Lua, while it starts */
     char name[1024];
     double began; /* on clock_now */
     int shown;    /* the seconds since then that the window shows */
