@@ -427,6 +427,21 @@ TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
     }
 }
 
+TEST(a_model_that_does_not_fit_on_the_disk_leaves_the_old_model_and_its_materials) {
+    static const char scene[] =
+        "gr.sphere{radius = 1, material = gr.material{kd = {%d, 0, 0}}}:export('x.obj', {tolerance = 0.1})\n";
+    char text[256];
+    (void)snprintf(text, sizeof text, scene, 0);
+    expect(text, "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("cp x.obj old.obj && cp x.mtl old.mtl", ""), 0);
+    (void)snprintf(text, sizeof text, scene, 1);
+    test_write_text(test_path("scene.lua"), text);
+    test_shell_errors("ulimit -f 2; $gray -q scene.lua", 3, "File too large");
+    CHECK(test_same_files("x.obj", "old.obj") && test_same_files("x.mtl", "old.mtl"));
+    expect(text, "--script-memory 1 scene.lua", 1, "--script-memory is the limit");
+    CHECK(test_same_files("x.obj", "old.obj") && test_same_files("x.mtl", "old.mtl"));
+}
+
 /* 16 solids in other programs (docs/export.md). */
 static void open_in(const char *program) {
     char line[8192];

@@ -53,7 +53,7 @@ static bool ends_scene(enum window_action action) {
 }
 
 /* The window asks for a name first. */
-static bool asks(enum window_action action) {
+static bool asks(int action) {
     return action == DO_EXPORT_MODEL;
 }
 
