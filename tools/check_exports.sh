@@ -14,7 +14,10 @@ fail() {
     failed=1
 }
 
-"$gray" -q "$here/tools/check_exports.lua" || exit 1
+if ! "$gray" -q "$here/tools/check_exports.lua"; then
+    fail "the solids are not written"
+    exit 1
+fi
 for demo in phone_stand gear_box vase gyroid_lamp; do
     for ending in stl 3mf; do
         "$gray" -q "$here/data/print/$demo.lua" --tolerance 0.3 -o "$demo.$ending" || fail "$demo.$ending is not written"

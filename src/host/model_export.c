@@ -63,12 +63,21 @@ static void print_report(const struct print_report *report) {
     text_writer_flush(&writer);
 }
 
-/* Without light of their own, as in the preview of a window; the whole model, in the middle. */
-static struct camera thumbnail_camera(const struct model_work *work, const struct world *world) {
-    const double fov = 30, sine_of_half = 0.25881904510252074;
+/* All vertices are in a circle in the middle. */
+static struct camera thumbnail_camera(const struct model_work *work, const struct world *world,
+                                      const struct export_model *model) {
+    const double fov = 30, slope = 0.255; /* tan(fov / 2), and a rim of 5 % */
     struct box box = world_finite_bounds(world);
     struct vec3 middle = vec3_scale(vec3_add(box.min, box.max), 0.5), view = vec3_normalize(work->view);
-    double distance = 0.5 * vec3_length(vec3_sub(box.max, box.min)) / sine_of_half;
+    double distance = 0;
+    for (size_t i = 0; i < model->parts.count; i++) {
+        const struct export_part *part = &export_parts(model)[i];
+        for (size_t v = 0; v < part->points.count; v++) {
+            struct vec3 to = vec3_sub(export_points(part)[v], middle);
+            double along = vec3_dot(to, view), across = vec3_length(vec3_add_scaled(to, view, -along));
+            distance = fmax(distance, across / slope - along);
+        }
+    }
     return (struct camera){vec3_add_scaled(middle, view, -distance), view, work->up, fov};
 }
 
@@ -101,7 +110,7 @@ static bool put_into_list(void *list, const void *bytes, size_t size, struct err
 }
 
 /* The bytes of a PNG file. */
-static bool make_thumbnail(const struct model_work *work, const struct world *world, struct list *png,
+static bool make_thumbnail(struct model_work *work, const struct world *world, const struct export_model *model,
                            struct error *error) {
     const struct film_record record = {0};
     struct render_statistics statistics = {0};
@@ -115,7 +124,7 @@ static bool make_thumbnail(const struct model_work *work, const struct world *wo
     film_layout(&thumbnail.film, block, 2 * THUMBNAIL, 2 * THUMBNAIL, record);
     thumbnail.film.full_width = thumbnail.film.full_height = 2 * THUMBNAIL;
     const struct render_job job = {.world = world,
-                                   .camera = thumbnail_camera(work, world),
+                                   .camera = thumbnail_camera(work, world, model),
                                    .settings = settings_default(),
                                    .width = 2 * THUMBNAIL,
                                    .height = 2 * THUMBNAIL,
@@ -125,7 +134,7 @@ static bool make_thumbnail(const struct model_work *work, const struct world *wo
     bool ok = render_headlight(&job, HEADLIGHT_SURFACES, work->process->pool, &statistics, error);
     if (ok)
         halve(&thumbnail.film);
-    ok = ok && png_encode(&source, NULL, put_into_list, png, error);
+    ok = ok && png_encode(&source, NULL, put_into_list, &work->write.thumbnail, error);
     mem_free(block);
     return ok;
 }
@@ -160,7 +169,7 @@ static bool build_model(struct model_work *work, struct export_model *model, str
     if (ok && process->options->check_print)
         print_report(&report);
     if (ok && is_3mf && !process->options->check_print)
-        ok = make_thumbnail(work, &world, &work->write.thumbnail, error);
+        ok = make_thumbnail(work, &world, model, error);
     world_destroy(&world);
     return ok;
 }
