@@ -217,16 +217,6 @@ static void note_separation(const struct model_builder *b, const char *name, con
     b->input->notice(b->input->context, text);
 }
 
-static void note_far_points(const struct model_builder *b, const char *name, uint32_t count) {
-    char text[512];
-    (void)snprintf(
-        text, sizeof text,
-        "node '%.100s': %u points of the model may be further than %.3g from the solid; another tolerance may "
-        "help",
-        name, count, b->tolerance);
-    b->input->notice(b->input->context, text);
-}
-
 static bool add_solid(struct model_builder *b, struct export_part *about, struct error *error) {
     const struct solid_input input = {about->csg, about->name, b->tolerance, b->input->pool};
     struct solid_mesh mesh;
@@ -235,8 +225,6 @@ static bool add_solid(struct model_builder *b, struct export_part *about, struct
         return false;
     if (findings.separated > 0 && b->input->notice)
         note_separation(b, about->name, &findings);
-    if (findings.far_points > 0 && b->input->notice)
-        note_far_points(b, about->name, findings.far_points);
     bool ok = add_part(b, about, &mesh, material_of_leaf, error);
     solid_mesh_destroy(&mesh);
     return ok;
