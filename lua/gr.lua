@@ -1985,6 +1985,7 @@ function gr.medium(scattering, absorption) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2072,6 +2073,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2271,6 +2273,7 @@ function node:translate(x, y, z) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render with this node.
 ---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.

@@ -146,6 +146,11 @@ static int run_scene(lua_State *L) {
     lua_settop(L, 0);
     limits_open(L);
     dialect_run(L);
+    if (script->context.sandbox.options->edits) {
+        if (luaL_loadstring(L, script->context.sandbox.options->edits) != LUA_OK)
+            return lua_error(L);
+        lua_call(L, 0, 0);
+    }
     if (script->context.scene.is_model) {
         model_scene_run(L);
     } else {
