@@ -345,12 +345,13 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
-        if (viewer->command.change.kind == CHANGE_ADD || viewer->command.change.kind == CHANGE_ADD_LIGHT)
+        if (reply->added != viewer->nodes.added || reply->light_count != viewer->lights.count)
             viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
+        viewer->nodes.added = reply->added;
         if (!reply->unbuilt || reply->light_count > 0)
             viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
-            viewer_show_message(viewer, reply->text);
+            viewer_take_back(viewer, reply->text);
         viewer->pass.outdated = true;
         viewer_invalidate_overlay(viewer);
         return;

@@ -257,7 +257,7 @@ static void describe(struct viewer *viewer, double now) {
     state->busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer));
     state->playing = viewer->player.playing;
     state->loops = viewer->player.loops;
-    state->unsaved = viewer->edit.steps.at != viewer->edit.saved_at;
+    state->unsaved = edits_differ(&viewer->edit.steps, viewer->edit.saved_at);
     state->frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0;
     state->frame_count = viewer->player.count;
     state->types = viewer->edit.tool != TOOL_NONE && !viewer->edit.handle;
@@ -274,7 +274,8 @@ static void describe(struct viewer *viewer, double now) {
         state->selected = viewer->edit.selection.picked.path;
     state->hidden_count = 0;
     for (uint32_t i = 0; i < viewer->edit.steps.now.count && state->hidden_count < WINDOW_HIDDEN; i++) {
-        if (viewer->edit.steps.now.items[i].kind == CHANGE_GONE)
+        enum change_kind kind = viewer->edit.steps.now.items[i].kind;
+        if (kind == CHANGE_GONE || kind == CHANGE_HIDDEN)
             state->hidden[state->hidden_count++] = viewer->edit.steps.now.items[i].serial;
     }
     viewer_make_form(viewer, state);

@@ -16,6 +16,7 @@ static void send_field(struct gui *gui, struct form_row *row) {
                                  .field = row->field.number,
                                  .joins = gui->last_field == row->field.number && now - gui->last_change < same_edit};
     memcpy(event.numbers, row->field.numbers, sizeof event.numbers);
+    (void)g_strlcpy(event.text, row->field.text, sizeof event.text);
     gui->last_field = row->field.number;
     gui->last_change = now;
     gui_send_event(gui, &event);
@@ -30,6 +31,9 @@ static void show_values(struct gui *gui, struct form_row *row) {
     switch (field->kind) {
     case FIELD_TEXT:
         gtk_label_set_text(GTK_LABEL(row->inputs[0]), field->text);
+        break;
+    case FIELD_ENTRY:
+        gtk_editable_set_text(GTK_EDITABLE(row->inputs[0]), field->text);
         break;
     case FIELD_NUMBER:
     case FIELD_VECTOR:
@@ -85,6 +89,34 @@ static void colour_changed(GtkWidget *widget, gpointer data) {
     for (int i = 0; i < 3; i++)
         row->field.numbers[i] = fmin(fmax(parts[i] * factor, row->field.low), row->field.high);
     send_field(gui, row);
+}
+
+/* When Return is pressed, or the keyboard leaves it. */
+static void text_changed(GtkWidget *entry, gpointer data) {
+    struct gui *gui = g_object_get_data(G_OBJECT(entry), "gui");
+    struct form_row *row = data;
+    const char *text = gtk_editable_get_text(GTK_EDITABLE(entry));
+    if (gui->updates || strcmp(text, row->field.text) == 0)
+        return;
+    (void)g_strlcpy(row->field.text, text, sizeof row->field.text);
+    send_field(gui, row);
+}
+
+static void text_left(GtkEventControllerFocus *focus, gpointer data) {
+    text_changed(gtk_event_controller_get_widget(GTK_EVENT_CONTROLLER(focus)), data);
+}
+
+static GtkWidget *text_input(struct gui *gui, struct form_row *row) {
+    GtkWidget *entry = gtk_entry_new();
+    GtkEventController *focus = gtk_event_controller_focus_new();
+    gtk_editable_set_width_chars(GTK_EDITABLE(entry), 8);
+    gtk_entry_set_max_length(GTK_ENTRY(entry), FORM_TEXT - 1);
+    gtk_widget_set_hexpand(entry, TRUE);
+    g_object_set_data(G_OBJECT(entry), "gui", gui);
+    g_signal_connect(entry, "activate", G_CALLBACK(text_changed), row);
+    g_signal_connect(focus, "leave", G_CALLBACK(text_left), row);
+    gtk_widget_add_controller(entry, focus);
+    return entry;
 }
 
 /* Of a choice or a flag: the property that has changed. */
@@ -197,6 +229,8 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
     }
     if (field->kind == FIELD_CHOICE || field->kind == FIELD_FLAG)
         row->inputs[0] = choice_input(gui, row);
+    if (field->kind == FIELD_ENTRY)
+        row->inputs[0] = text_input(gui, row);
     if (!row->inputs[0]) {
         row->inputs[0] = gtk_label_new(NULL);
         gtk_label_set_xalign(GTK_LABEL(row->inputs[0]), 0);

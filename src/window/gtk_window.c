@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "window/gtk_window.h"
 
+#include "script/addable.h"
 #include "window/gtk_form_internal.h"
 #include "window/gtk_picture_internal.h"
 #include "window/gtk_settings_internal.h"
@@ -137,10 +138,21 @@ static void filter_changed(GtkSearchEntry *entry, gpointer list) {
     gtk_list_box_invalidate_filter(list);
 }
 
+static void send_call(struct gui *gui, const char *call) {
+    struct window_event event = {.kind = WINDOW_ADD};
+    (void)g_strlcpy(event.text, call, sizeof event.text);
+    gui_send_event(gui, &event);
+}
+
 static void choose_row(GtkListBox *list, GtkListBoxRow *row, gpointer data) {
     GtkWidget *popover = gtk_widget_get_ancestor(GTK_WIDGET(list), GTK_TYPE_POPOVER);
     gtk_popover_popdown(GTK_POPOVER(popover));
-    gui_send_action(data, (enum window_action)GPOINTER_TO_INT(g_object_get_data(G_OBJECT(row), "action")));
+    send_call(data, g_object_get_data(G_OBJECT(row), "call"));
+}
+
+static void choose_call(GSimpleAction *action, GVariant *value, gpointer data) {
+    (void)action;
+    send_call(data, g_variant_get_string(value, NULL));
 }
 
 /* Return takes the first row that is shown. */
@@ -154,27 +166,27 @@ static void choose_first(GtkSearchEntry *entry, gpointer list) {
 static void show_add_list(GSimpleAction *action, GVariant *value, gpointer data) {
     struct gui *gui = data;
     GtkWidget *popover = gtk_popover_new(), *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 4);
-    GtkWidget *entry = gtk_search_entry_new(), *list = gtk_list_box_new();
+    GtkWidget *entry = gtk_search_entry_new(), *list = gtk_list_box_new(), *scrolled = gtk_scrolled_window_new();
     (void)action, (void)value;
-    for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
-        if (window_action_table[i].menu != MENU_ADD)
-            continue;
-        char **words = g_strsplit(window_action_table[i].title, "_", -1), *title = g_strjoinv("", words);
+    for (const char *const *add = addable_txt; *add; add += ADDABLE_COLUMNS) {
+        char *title = g_strdup_printf("%s  (%s)", add[ADDABLE_TITLE], add[ADDABLE_GROUP]);
         GtkWidget *row = gtk_list_box_row_new(), *label = gtk_label_new(title);
         gtk_label_set_xalign(GTK_LABEL(label), 0);
         gtk_list_box_row_set_child(GTK_LIST_BOX_ROW(row), label);
-        g_object_set_data(G_OBJECT(row), "action", GINT_TO_POINTER(i));
+        g_object_set_data(G_OBJECT(row), "call", (char *)(uintptr_t)add[ADDABLE_CALL]);
         g_object_set_data_full(G_OBJECT(row), "title", title, g_free);
         gtk_list_box_append(GTK_LIST_BOX(list), row);
-        g_strfreev(words);
     }
+    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(scrolled), list);
+    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scrolled), GTK_POLICY_NEVER, GTK_POLICY_AUTOMATIC);
+    gtk_scrolled_window_set_min_content_height(GTK_SCROLLED_WINDOW(scrolled), 240);
     gui_name(entry, "Search what to add");
     gtk_list_box_set_filter_func(GTK_LIST_BOX(list), filter_action, entry, NULL);
     g_signal_connect(entry, "search-changed", G_CALLBACK(filter_changed), list);
     g_signal_connect(entry, "activate", G_CALLBACK(choose_first), list);
     g_signal_connect(list, "row-activated", G_CALLBACK(choose_row), gui);
     gtk_box_append(GTK_BOX(box), entry);
-    gtk_box_append(GTK_BOX(box), list);
+    gtk_box_append(GTK_BOX(box), scrolled);
     gtk_popover_set_child(GTK_POPOVER(popover), box);
     gtk_widget_set_parent(popover, gui->picture);
     gtk_popover_set_pointing_to(GTK_POPOVER(popover), &(GdkRectangle){(int)gui->mouse_x, (int)gui->mouse_y, 1, 1});
@@ -285,6 +297,20 @@ static GMenu *add_menu(GMenu *bar, const char *title) {
     return menu;
 }
 
+/* A menu for each group of what can be added. */
+static void add_calls(GMenu *menu) {
+    GMenu *group = NULL;
+    const char *name = "";
+    for (const char *const *add = addable_txt; *add; add += ADDABLE_COLUMNS) {
+        group = strcmp(name, add[ADDABLE_GROUP]) == 0 ? group : add_menu(menu, add[ADDABLE_GROUP]);
+        name = add[ADDABLE_GROUP];
+        GMenuItem *item = g_menu_item_new(add[ADDABLE_TITLE], NULL);
+        g_menu_item_set_action_and_target(item, "win.add-call", "s", add[ADDABLE_CALL]);
+        g_menu_append_item(group, item);
+        g_object_unref(item);
+    }
+}
+
 static void make_menus(struct gui *gui) {
     static const char *const titles[] = {WINDOW_MENUS(LIST_WORD)};
     GMenu *bar = g_menu_new(), *menus[G_N_ELEMENTS(titles)];
@@ -301,6 +327,7 @@ static void make_menus(struct gui *gui) {
         g_free(key);
     }
     add_item(menus[MENU_ADD], "_Search…", "win.add", "<Shift>a");
+    add_calls(menus[MENU_ADD]);
     add_item(menus[MENU_VIEW], "_Dark Theme", "win.dark", NULL);
     GMenu *help = add_menu(bar, "_Help");
     add_item(help, "_Keys and Mouse", "win.keys-help", "F1");
@@ -317,6 +344,7 @@ static void add_actions(struct gui *gui) {
         {.name = "save-edits-as", .activate = choose_name},
         {.name = "keys-help", .activate = show_keys},
         {.name = "add", .activate = show_add_list},
+        {.name = "add-call", .parameter_type = "s", .activate = choose_call},
         {.name = "dark", .state = "false", .change_state = choose_dark},
         {.name = "keys", .parameter_type = "s", .state = "'Blender'", .change_state = choose_keys}};
     g_action_map_add_action_entries(G_ACTION_MAP(gui->window), entries, G_N_ELEMENTS(entries), gui);
