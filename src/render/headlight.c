@@ -48,9 +48,11 @@ static struct colour heat(const struct headlight *headlight, uint64_t work) {
 static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
     struct colour colour = bsdf->albedo;
+    double share =
+        glossy * fmax(0, 1 - colour_max_abs(colour)); /* what a coat reflects does not hide the colour below */
     for (int i = 0; i < bsdf->count; i++) {
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
-            colour = colour_add_scaled(colour, bsdf->lobes[i].weight, glossy);
+            colour = colour_add_scaled(colour, bsdf->lobes[i].weight, share);
     }
     double largest = colour_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
     double light = headlight->brightness * (ambient + (1 - ambient) * facing) / fmax(1, largest);

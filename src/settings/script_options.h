@@ -31,6 +31,7 @@ struct script_options {
     bool lenient;
     const char *dialect; /* --dialect: a name or a file, or NULL */
     const char *sky;     /* --sky: a picture file, or NULL */
+    const char *edits;   /* --edits: a Lua file, or NULL */
     const char *camera;  /* --camera: its name or number in the model, or NULL */
     enum model_up up;    /* --up, of models */
     uint64_t seed;       /* math.random starts from it */

@@ -576,6 +576,11 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     }
     if (viewer->pass.state == PASS_WAITING && viewer->next && viewer->written)
         return VIEWER_NEXT_PICTURE;
+    if (viewer->pass.state == PASS_WAITING && viewer_plays(viewer) && viewer->nodes.count > 0) {
+        command_nodes(viewer); /* the tree is filled between two frames */
+        viewer->pass.state = PASS_BUSY;
+        return VIEWER_SEND_COMMAND;
+    }
     switch (viewer_player_decide(viewer, now)) {
     case PLAYER_GOES:
         return VIEWER_NEXT_FRAME;

@@ -228,13 +228,15 @@ static void describe_work(const struct viewer *viewer, struct window_state *stat
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
     (void)snprintf(text, sizeof state->figures, "%ux%u", viewer->request.width, viewer->request.height);
+    state->frame[0] = '\0';
+    if (report->threads == 0)
+        return;
     add_count(text, sizeof state->figures, seconds > 0 ? traced / seconds : 0, "rays/s");
     add_count(text, sizeof state->figures, (double)report->triangles, "triangles");
     add_count(text, sizeof state->figures, voxels, voxels > 1 ? "voxels" : "voxel");
     double rate = viewer_plays(viewer) ? viewer->player.rate : seconds > 0 ? 1 / seconds : 0;
     size_t used = strlen(text);
     (void)snprintf(text + used, sizeof state->figures - used, ", %.*f frames/s", rate < 10 ? 2 : rate < 100, rate);
-    state->frame[0] = '\0';
     if (frame->number > 0)
         (void)snprintf(state->frame, sizeof state->frame, "frame %*u/%u %7.2f s", snprintf(NULL, 0, "%u", frame->count),
                        frame->number, frame->count, frame_time(frame));
@@ -270,7 +272,9 @@ static void describe(struct viewer *viewer, double now) {
     (void)snprintf(state->notice, sizeof state->notice, "%s", viewer->window.notice.text);
     (void)snprintf(state->trace, sizeof state->trace, "%s", viewer->trace.text);
     state->selected = (struct node_query){0};
-    if (viewer->edit.selection.kind == SELECTED_NODE)
+    if (viewer->edit.selection.kind == SELECTED_LIGHT)
+        state->selected = (struct node_query){.depth = 2, .path = {SECTION_LIGHTS, viewer->edit.selection.light - 1}};
+    else if (viewer->edit.selection.kind != SELECTED_NOTHING)
         state->selected = viewer->edit.selection.picked.path;
     state->hidden_count = 0;
     for (uint32_t i = 0; i < viewer->edit.steps.now.count && state->hidden_count < WINDOW_HIDDEN; i++) {

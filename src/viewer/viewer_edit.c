@@ -542,7 +542,7 @@ void viewer_frame(struct viewer *viewer, bool selection) {
         struct vec3 at = viewer_selection_position(viewer), half = vec3_all(0.25 * viewer->fly_camera.speed);
         box = (struct box){vec3_sub(at, half), vec3_add(at, half)};
     }
-    fly_camera_frame(&viewer->fly_camera, &box);
+    fly_camera_frame(&viewer->fly_camera, &box, (double)viewer->request.full_width / viewer->request.full_height);
 }
 
 void viewer_select_up(struct viewer *viewer, bool down) {
@@ -686,16 +686,17 @@ static void add_light(struct viewer *viewer, const char *call, uint32_t source, 
     viewer_select_light(viewer, viewer->lights.count + 1);
 }
 
-/* The lengths of a light of size 1. */
-static void scale_call(char *call, double size) {
-    static const char *const lengths[] = {"radius", "corner", "v1", "v2"};
+/* The lengths of a light of size 1; what has an axis shines that way. */
+static void fit_call(char *call, double size, struct vec3 way) {
+    static const char *const lengths[] = {"radius", "corner", "v1", "v2", "normal", "direction"};
     char text[CHANGE_CALL], out[CHANGE_CALL];
     double n[3];
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        bool axis = i >= 4;
         if (!call_field(call, lengths[i], text, sizeof text) || !call_numbers(text, n))
             continue;
-        (void)snprintf(text, sizeof text, i == 0 ? "%.4g" : "{%.4g, %.4g, %.4g}", n[0] * size, n[1] * size,
-                       n[2] * size);
+        struct vec3 v = axis ? way : vec3_scale(vec3_make(n[0], n[1], n[2]), size);
+        (void)snprintf(text, sizeof text, i == 0 ? "%.4g" : "{%.4g, %.4g, %.4g}", v.x, v.y, v.z);
         if (call_set_field(call, lengths[i], text, out, sizeof out))
             (void)snprintf(call, CHANGE_CALL, "%s", out);
     }
@@ -712,8 +713,10 @@ void viewer_add(struct viewer *viewer, const char *call) {
         add_object(viewer, call, size);
         return;
     }
-    scale_call(sized, size);
-    add_light(viewer, sized, 0, vec3_add_scaled(at, toward, 0.5));
+    /* Before what was clicked, and above it. */
+    struct vec3 by = vec3_add(vec3_scale(toward, 0.5), vec3_make(0, 4 * size, 0));
+    fit_call(sized, size, vec3_negate(vec3_normalize(by)));
+    add_light(viewer, sized, 0, vec3_add(at, by));
 }
 
 bool viewer_added(const struct viewer *viewer, struct change *out) {

@@ -663,6 +663,8 @@ void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
         add_picture(viewer, form);
     if (viewer->name[0] != '\0' && viewer->edit.selection.kind == SELECTED_NOTHING)
         add_settings(viewer, form);
+    for (uint32_t i = 0; i < form->count; i++)
+        form->fields[i].linear = settings_linear(&viewer->request.settings);
 }
 
 /* Fields of the selection. */

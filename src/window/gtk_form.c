@@ -2,6 +2,8 @@
  * a widget in which the user types. */
 #include "window/gtk_form_internal.h"
 
+#include "image/tone.h"
+#include "image/transfer.h"
 #include "window/gtk_window_internal.h"
 
 #include <math.h>
@@ -42,8 +44,11 @@ static void show_values(struct gui *gui, struct form_row *row) {
         break;
     case FIELD_COLOUR: {
         double top = fmax(1, fmax(field->numbers[0], fmax(field->numbers[1], field->numbers[2])));
-        GdkRGBA colour = {(float)(field->numbers[0] / top), (float)(field->numbers[1] / top),
-                          (float)(field->numbers[2] / top), 1};
+        const struct tone srgb = {.srgb = true};
+        double shown[3];
+        for (int i = 0; i < 3; i++)
+            shown[i] = field->linear ? tone_apply(&srgb, field->numbers[i] / top) : field->numbers[i] / top;
+        GdkRGBA colour = {(float)shown[0], (float)shown[1], (float)shown[2], 1};
         gtk_color_chooser_set_rgba(GTK_COLOR_CHOOSER(row->inputs[0]), &colour);
         gtk_spin_button_set_value(GTK_SPIN_BUTTON(row->inputs[1]), top);
         break;
@@ -80,6 +85,7 @@ static void number_changed(GtkSpinButton *button, gpointer data) {
 static void colour_changed(GtkWidget *widget, gpointer data) {
     struct gui *gui = g_object_get_data(G_OBJECT(widget), "gui");
     struct form_row *row = data;
+    const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     GdkRGBA colour;
     if (gui->updates)
         return;
@@ -87,7 +93,9 @@ static void colour_changed(GtkWidget *widget, gpointer data) {
     double factor = gtk_spin_button_get_value(GTK_SPIN_BUTTON(row->inputs[1]));
     const double parts[3] = {(double)colour.red, (double)colour.green, (double)colour.blue};
     for (int i = 0; i < 3; i++)
-        row->field.numbers[i] = fmin(fmax(parts[i] * factor, row->field.low), row->field.high);
+        row->field.numbers[i] =
+            fmin(fmax((row->field.linear ? transfer_decode(srgb, parts[i]) : parts[i]) * factor, row->field.low),
+                 row->field.high);
     send_field(gui, row);
 }
 

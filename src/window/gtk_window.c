@@ -195,6 +195,14 @@ static void show_add_list(GSimpleAction *action, GVariant *value, gpointer data)
     gtk_widget_grab_focus(entry);
 }
 
+/* It begins where gray was started. */
+static void show_dialog(GtkFileChooserNative *dialog) {
+    GFile *here = g_file_new_for_path(".");
+    (void)gtk_file_chooser_set_current_folder(GTK_FILE_CHOOSER(dialog), here, NULL);
+    g_object_unref(here);
+    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+}
+
 static void finish_open(GtkNativeDialog *dialog, int answer, gpointer data) {
     if (answer == GTK_RESPONSE_ACCEPT) {
         GFile *file = gtk_file_chooser_get_file(GTK_FILE_CHOOSER(dialog));
@@ -216,7 +224,7 @@ static void choose_scene(GSimpleAction *action, GVariant *value, gpointer data) 
         gtk_file_filter_add_suffix(filter, suffixes[i]);
     gtk_file_chooser_add_filter(GTK_FILE_CHOOSER(dialog), filter);
     g_signal_connect(dialog, "response", G_CALLBACK(finish_open), gui);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    show_dialog(dialog);
 }
 
 /* A name for what is saved; the viewer replaces no file. */
@@ -246,7 +254,7 @@ static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
     gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), picture ? "view.png" : "changes.lua");
     g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(picture ? DO_SAVE_PICTURE : DO_SAVE_CHANGES));
     g_signal_connect(dialog, "response", G_CALLBACK(finish_save), gui);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    show_dialog(dialog);
 }
 
 static void choose_dark(GSimpleAction *action, GVariant *value, gpointer data) {
@@ -268,6 +276,12 @@ static void choose_keys(GSimpleAction *action, GVariant *value, gpointer data) {
     }
     make_menus(gui);
     make_key_list(gui);
+}
+
+static void find_node(GSimpleAction *action, GVariant *value, gpointer data) {
+    struct gui *gui = data;
+    (void)action, (void)value;
+    gtk_widget_grab_focus(gui->node_search);
 }
 
 static void show_keys(GSimpleAction *action, GVariant *value, gpointer data) {
@@ -328,6 +342,7 @@ static void make_menus(struct gui *gui) {
     }
     add_item(menus[MENU_ADD], "_Search…", "win.add", "<Shift>a");
     add_calls(menus[MENU_ADD]);
+    add_item(menus[MENU_EDIT], "_Find a Node", "win.find", "<Control>f");
     add_item(menus[MENU_VIEW], "_Dark Theme", "win.dark", NULL);
     GMenu *help = add_menu(bar, "_Help");
     add_item(help, "_Keys and Mouse", "win.keys-help", "F1");
@@ -343,6 +358,7 @@ static void add_actions(struct gui *gui) {
         {.name = "save-picture-as", .activate = choose_name},
         {.name = "save-edits-as", .activate = choose_name},
         {.name = "keys-help", .activate = show_keys},
+        {.name = "find", .activate = find_node},
         {.name = "add", .activate = show_add_list},
         {.name = "add-call", .parameter_type = "s", .activate = choose_call},
         {.name = "dark", .state = "false", .change_state = choose_dark},
@@ -356,6 +372,7 @@ static void add_actions(struct gui *gui) {
         g_object_unref(action);
     }
     gtk_application_set_accels_for_action(gui->application, "win.open", (const char *[]){"<Control>o", NULL});
+    gtk_application_set_accels_for_action(gui->application, "win.find", (const char *[]){"<Control>f", NULL});
     gtk_application_set_accels_for_action(gui->application, "win.keys-help", (const char *[]){"F1", NULL});
 }
 
@@ -595,6 +612,7 @@ static GtkWidget *make_bottom(struct gui *gui) {
     gtk_progress_bar_set_ellipsize(GTK_PROGRESS_BAR(gui->progress), PANGO_ELLIPSIZE_END);
     gtk_widget_set_size_request(gui->progress, 260, -1);
     gtk_widget_set_valign(gui->progress, GTK_ALIGN_CENTER);
+    gtk_widget_set_visible(gui->progress, FALSE);
     gtk_label_set_ellipsize(GTK_LABEL(gui->figures), PANGO_ELLIPSIZE_END);
     gtk_label_set_ellipsize(GTK_LABEL(gui->notice), PANGO_ELLIPSIZE_MIDDLE);
     gtk_label_set_xalign(GTK_LABEL(gui->figures), 0);
@@ -617,6 +635,8 @@ static GtkWidget *make_trace(struct gui *gui) {
     gui->trace_text = gtk_text_view_get_buffer(GTK_TEXT_VIEW(view));
     gtk_text_view_set_editable(GTK_TEXT_VIEW(view), FALSE);
     gtk_text_view_set_monospace(GTK_TEXT_VIEW(view), TRUE);
+    gtk_text_view_set_left_margin(GTK_TEXT_VIEW(view), 8);
+    gtk_text_view_set_top_margin(GTK_TEXT_VIEW(view), 6);
     gui_label(view, "How the pixel got its colour");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(gui->trace_box), view);
     gtk_widget_set_size_request(gui->trace_box, -1, 180);
@@ -715,6 +735,7 @@ static void show_timeline(struct gui *gui) {
 
 static void show_page(struct gui *gui) {
     gtk_stack_set_visible_child_name(GTK_STACK(gui->pages), gui->state.has_scene ? "scene" : "start");
+    gtk_widget_set_visible(gui->progress, gui->state.has_scene);
     if (!gui->state.has_scene)
         return;
     gtk_widget_grab_focus(gui->picture);

@@ -66,6 +66,7 @@ struct window_field {
     enum window_field_kind kind;
     uint32_t number;                       /* what the field is, to the receiver of its events */
     bool resets;                           /* it has a default: the number `initial` */
+    bool linear;                           /* a colour is light, and shown as the screen shows it */
     bool acts;                             /* a number is not a state: it does something, and the field is as before */
     char group[32], name[32], unit[16];    /* unit #: whole numbers */
     double numbers[3], initial, low, high; /* low and high may be infinite */

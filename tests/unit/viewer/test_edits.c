@@ -378,6 +378,21 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
     change_list_destroy(&list);
 }
 
+/* Of a script, and of a model, which cannot require a file. */
+TEST(edits_of_the_command_line_apply_to_scripts_and_models) {
+    test_write_text(test_path("scene.lua"), SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT));
+    test_write_text(test_path("ball.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    test_write_text(test_path("edits.lua"),
+                    "gr.change_add_light({0, 9, 9}, {3, 3, 3})\ngr.change_add('', 1, 'gr.sphere{}')\n");
+    const char *line =
+        "{ echo \"require 'edits'\"; cat scene.lua; } >again.lua && $gray -q again.lua -o a.png && "
+        "$gray -q scene.lua --edits edits.lua -o b.png && cmp a.png b.png && $gray -q scene.lua -o c.png && "
+        "! cmp -s a.png c.png && $gray -q --size 64x48 --spp 1 ball.obj -o d.png && "
+        "$gray -q --size 64x48 --spp 1 ball.obj --edits edits.lua -o e.png && ! cmp -s d.png e.png";
+    CHECK_EQ_INT(test_run_shell(line, ">out.txt 2>err.txt"), 0);
+    CHECK_EQ_INT(test_run_shell("$gray scene.lua --edits none.lua", ">out.txt 2>err.txt"), 1);
+}
+
 /* Clicks. */
 
 TEST(camera_projects_a_point_to_where_its_ray_goes_through) {
