@@ -687,7 +687,7 @@ static void add_light(struct viewer *viewer, const char *call, uint32_t source, 
 }
 
 /* The lengths of a light of size 1; what has an axis shines that way. */
-static void fit_call(char *call, double size, struct vec3 way) {
+static void fit_call(char *call, double size, struct vec3 toward) {
     static const char *const lengths[] = {"radius", "corner", "v1", "v2", "normal", "direction"};
     char text[CHANGE_CALL], out[CHANGE_CALL];
     double n[3];
@@ -695,7 +695,7 @@ static void fit_call(char *call, double size, struct vec3 way) {
         bool axis = i >= 4;
         if (!call_field(call, lengths[i], text, sizeof text) || !call_numbers(text, n))
             continue;
-        struct vec3 v = axis ? way : vec3_scale(vec3_make(n[0], n[1], n[2]), size);
+        struct vec3 v = axis ? toward : vec3_scale(vec3_make(n[0], n[1], n[2]), size);
         (void)snprintf(text, sizeof text, i == 0 ? "%.4g" : "{%.4g, %.4g, %.4g}", v.x, v.y, v.z);
         if (call_set_field(call, lengths[i], text, out, sizeof out))
             (void)snprintf(call, CHANGE_CALL, "%s", out);
