@@ -124,7 +124,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .request = *request,
                               .block = picture->block,
                               .script_exposure = request->settings.tone.exposure,
-                              .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
+                              .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE, .began = now},
                               .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
                               .stepped = now,

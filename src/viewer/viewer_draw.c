@@ -22,6 +22,8 @@ void viewer_resize(struct viewer *viewer, int width, int height, double density)
     if (width < 1 || height < 1)
         return;
     double fit = fmin(width / w, height / h);
+    if (layout->width == 0 && viewer->built > 0) /* the picture had to wait for the window */
+        viewer->built = clock_now();
     *layout = (struct window_layout){.width = width,
                                      .height = height,
                                      .density = density,
