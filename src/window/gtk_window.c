@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "window/gtk_window.h"
 
-#include "script/addable.h"
+#include "window/gtk_add_internal.h"
 #include "window/gtk_form_internal.h"
 #include "window/gtk_picture_internal.h"
 #include "window/gtk_settings_internal.h"
@@ -122,79 +122,6 @@ static void choose_action(GSimpleAction *action, GVariant *value, gpointer data)
     }
 }
 
-/* The actions of a menu, found by their words. */
-
-static gboolean filter_action(GtkListBoxRow *row, gpointer data) {
-    const char *title = g_object_get_data(G_OBJECT(row), "title");
-    char *text = g_utf8_casefold(gtk_editable_get_text(GTK_EDITABLE(data)), -1), *in = g_utf8_casefold(title, -1);
-    bool found = strstr(in, text) != NULL;
-    g_free(text);
-    g_free(in);
-    return found;
-}
-
-static void filter_changed(GtkSearchEntry *entry, gpointer list) {
-    (void)entry;
-    gtk_list_box_invalidate_filter(list);
-}
-
-static void send_call(struct gui *gui, const char *call) {
-    struct window_event event = {.kind = WINDOW_ADD};
-    (void)g_strlcpy(event.text, call, sizeof event.text);
-    gui_send_event(gui, &event);
-}
-
-static void choose_row(GtkListBox *list, GtkListBoxRow *row, gpointer data) {
-    GtkWidget *popover = gtk_widget_get_ancestor(GTK_WIDGET(list), GTK_TYPE_POPOVER);
-    gtk_popover_popdown(GTK_POPOVER(popover));
-    send_call(data, g_object_get_data(G_OBJECT(row), "call"));
-}
-
-static void choose_call(GSimpleAction *action, GVariant *value, gpointer data) {
-    (void)action;
-    send_call(data, g_variant_get_string(value, NULL));
-}
-
-/* Return takes the first row that is shown. */
-static void choose_first(GtkSearchEntry *entry, gpointer list) {
-    (void)entry;
-    GtkListBoxRow *row = gtk_list_box_get_row_at_y(list, 4);
-    if (row)
-        g_signal_emit_by_name(list, "row-activated", row);
-}
-
-static void show_add_list(GSimpleAction *action, GVariant *value, gpointer data) {
-    struct gui *gui = data;
-    GtkWidget *popover = gtk_popover_new(), *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 4);
-    GtkWidget *entry = gtk_search_entry_new(), *list = gtk_list_box_new(), *scrolled = gtk_scrolled_window_new();
-    (void)action, (void)value;
-    for (const char *const *add = addable_txt; *add; add += ADDABLE_COLUMNS) {
-        char *title = g_strdup_printf("%s  (%s)", add[ADDABLE_TITLE], add[ADDABLE_GROUP]);
-        GtkWidget *row = gtk_list_box_row_new(), *label = gtk_label_new(title);
-        gtk_label_set_xalign(GTK_LABEL(label), 0);
-        gtk_list_box_row_set_child(GTK_LIST_BOX_ROW(row), label);
-        g_object_set_data(G_OBJECT(row), "call", (char *)(uintptr_t)add[ADDABLE_CALL]);
-        g_object_set_data_full(G_OBJECT(row), "title", title, g_free);
-        gtk_list_box_append(GTK_LIST_BOX(list), row);
-    }
-    gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(scrolled), list);
-    gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scrolled), GTK_POLICY_NEVER, GTK_POLICY_AUTOMATIC);
-    gtk_scrolled_window_set_min_content_height(GTK_SCROLLED_WINDOW(scrolled), 240);
-    gui_name(entry, "Search what to add");
-    gtk_list_box_set_filter_func(GTK_LIST_BOX(list), filter_action, entry, NULL);
-    g_signal_connect(entry, "search-changed", G_CALLBACK(filter_changed), list);
-    g_signal_connect(entry, "activate", G_CALLBACK(choose_first), list);
-    g_signal_connect(list, "row-activated", G_CALLBACK(choose_row), gui);
-    gtk_box_append(GTK_BOX(box), entry);
-    gtk_box_append(GTK_BOX(box), scrolled);
-    gtk_popover_set_child(GTK_POPOVER(popover), box);
-    gtk_widget_set_parent(popover, gui->picture);
-    gtk_popover_set_pointing_to(GTK_POPOVER(popover), &(GdkRectangle){(int)gui->mouse_x, (int)gui->mouse_y, 1, 1});
-    g_signal_connect_after(popover, "closed", G_CALLBACK(gtk_widget_unparent), NULL);
-    gtk_popover_popup(GTK_POPOVER(popover));
-    gtk_widget_grab_focus(entry);
-}
-
 /* It begins where gray was started. */
 static void show_dialog(GtkFileChooserNative *dialog) {
     GFile *here = g_file_new_for_path(".");
@@ -304,32 +231,18 @@ static void add_item(GMenu *menu, const char *title, const char *action, const c
     g_object_unref(item);
 }
 
-static GMenu *add_menu(GMenu *bar, const char *title) {
+GMenu *gui_add_menu(GMenu *bar, const char *title) {
     GMenu *menu = g_menu_new();
     g_menu_append_submenu(bar, title, G_MENU_MODEL(menu));
     g_object_unref(menu);
     return menu;
 }
 
-/* A menu for each group of what can be added. */
-static void add_calls(GMenu *menu) {
-    GMenu *group = NULL;
-    const char *name = "";
-    for (const char *const *add = addable_txt; *add; add += ADDABLE_COLUMNS) {
-        group = strcmp(name, add[ADDABLE_GROUP]) == 0 ? group : add_menu(menu, add[ADDABLE_GROUP]);
-        name = add[ADDABLE_GROUP];
-        GMenuItem *item = g_menu_item_new(add[ADDABLE_TITLE], NULL);
-        g_menu_item_set_action_and_target(item, "win.add-call", "s", add[ADDABLE_CALL]);
-        g_menu_append_item(group, item);
-        g_object_unref(item);
-    }
-}
-
 static void make_menus(struct gui *gui) {
     static const char *const titles[] = {WINDOW_MENUS(LIST_WORD)};
     GMenu *bar = g_menu_new(), *menus[G_N_ELEMENTS(titles)];
     for (size_t i = 0; i < G_N_ELEMENTS(titles); i++)
-        menus[i] = add_menu(bar, titles[i]);
+        menus[i] = gui_add_menu(bar, titles[i]);
     add_item(menus[MENU_FILE], "_Open…", "win.open", "<Control>o");
     add_item(menus[MENU_FILE], "Save Picture _As…", "win.save-picture-as", NULL);
     add_item(menus[MENU_FILE], "Save E_dits As…", "win.save-edits-as", NULL);
@@ -341,10 +254,10 @@ static void make_menus(struct gui *gui) {
         g_free(key);
     }
     add_item(menus[MENU_ADD], "_Search…", "win.add", "<Shift>a");
-    add_calls(menus[MENU_ADD]);
+    gui_add_calls(menus[MENU_ADD]);
     add_item(menus[MENU_EDIT], "_Find a Node", "win.find", "<Control>f");
     add_item(menus[MENU_VIEW], "_Dark Theme", "win.dark", NULL);
-    GMenu *help = add_menu(bar, "_Help");
+    GMenu *help = gui_add_menu(bar, "_Help");
     add_item(help, "_Keys and Mouse", "win.keys-help", "F1");
     add_item(help, "Keys as in _Blender", "win.keys::Blender", NULL);
     add_item(help, "Keys as in _OpenSCAD", "win.keys::OpenSCAD", NULL);
@@ -359,11 +272,10 @@ static void add_actions(struct gui *gui) {
         {.name = "save-edits-as", .activate = choose_name},
         {.name = "keys-help", .activate = show_keys},
         {.name = "find", .activate = find_node},
-        {.name = "add", .activate = show_add_list},
-        {.name = "add-call", .parameter_type = "s", .activate = choose_call},
         {.name = "dark", .state = "false", .change_state = choose_dark},
         {.name = "keys", .parameter_type = "s", .state = "'Blender'", .change_state = choose_keys}};
     g_action_map_add_action_entries(G_ACTION_MAP(gui->window), entries, G_N_ELEMENTS(entries), gui);
+    gui_add_actions(gui);
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         GSimpleAction *action = g_simple_action_new(window_action_table[i].name, NULL);
         g_signal_connect(action, "activate", G_CALLBACK(choose_action), gui);
