@@ -181,7 +181,8 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
 static bool are_equal(const struct medium *a, const struct medium *b) {
     return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density &&
            colour_equal(a->extinction, b->extinction) && colour_equal(a->scattering, b->scattering) &&
-           colour_equal(a->emission, b->emission) && a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
+           colour_equal(a->emission, b->emission) && a->phase.kind == b->phase.kind && a->phase.g == b->phase.g &&
+           (!a->place || !b->place ? a->place == b->place : memcmp(a->place, b->place, sizeof *a->place) == 0);
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {

@@ -32,8 +32,32 @@ bool medium_mix_scatters(const struct medium_mix *mix) {
     return any;
 }
 
+/* --- where --- */
+
+struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time) {
+    if (!place)
+        return p;
+    struct vec3 open = affine_point(&place->open, p), close = affine_point(&place->close, p);
+    return vec3_add_scaled(open, vec3_sub(close, open), time);
+}
+
+struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line) {
+    struct medium_line placed = *line;
+    if (!place)
+        return placed;
+    struct vec3 open = affine_vector(&place->open, line->direction),
+                close = affine_vector(&place->close, line->direction);
+    placed.origin = medium_place_point(place, line->origin, line->time);
+    placed.direction = vec3_add_scaled(open, vec3_sub(close, open), line->time);
+    return placed;
+}
+
+bool medium_needs_solid(const struct medium *medium) {
+    return medium->density && density_fits(medium->density);
+}
+
 double medium_density(const struct medium *medium, struct vec3 p, double time) {
-    return medium->density ? density_value(medium->density, p, time) : 1;
+    return medium->density ? density_value(medium->density, medium_place_point(medium->place, p, time), time) : 1;
 }
 
 /* --- along a line --- */
@@ -44,6 +68,7 @@ struct pieces {
     const struct medium_line *line;
     double from, to;
     double low[MEDIUM_MIX_LIMIT], high[MEDIUM_MIX_LIMIT]; /* of each density */
+    struct medium_line lines[MEDIUM_MIX_LIMIT];           /* where each density is */
     struct density_traversal traversals[MEDIUM_MIX_LIMIT];
     bool inside[MEDIUM_MIX_LIMIT]; /* the traversal has a cell that is not passed */
 };
@@ -57,7 +82,8 @@ static void begin_pieces(struct pieces *pieces, const struct medium_mix *mix, co
         pieces->inside[i] = false;
         if (!mix->media[i]->density)
             continue;
-        density_begin(mix->media[i]->density, line, &pieces->traversals[i]);
+        pieces->lines[i] = medium_place_line(mix->media[i]->place, line);
+        density_begin(mix->media[i]->density, &pieces->lines[i], &pieces->traversals[i]);
         pieces->inside[i] = density_next(&pieces->traversals[i]);
     }
 }
@@ -86,7 +112,7 @@ static bool next_piece(struct pieces *pieces) {
 static double density_of(const struct pieces *pieces, uint32_t i, double t) {
     if (!(pieces->high[i] > pieces->low[i]))
         return pieces->high[i];
-    struct vec3 p = vec3_add_scaled(pieces->line->origin, pieces->line->direction, t);
+    struct vec3 p = vec3_add_scaled(pieces->lines[i].origin, pieces->lines[i].direction, t);
     return density_at(pieces->mix->media[i]->density, p, pieces->line->time, pieces->high[i]);
 }
 
@@ -300,8 +326,9 @@ struct colour medium_mix_dimmed(const struct medium_mix *mix, const struct mediu
     struct colour depth = {0, 0, 0};
     for (uint32_t i = 0; i < mix->count; i++) {
         const struct density *density = mix->media[i]->density;
+        const struct medium_line placed = medium_place_line(mix->media[i]->place, line);
         depth = colour_add(
-            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, line) : line->distance));
+            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, &placed) : line->distance));
     }
     return exponential(depth);
 }

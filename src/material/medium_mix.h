@@ -18,6 +18,11 @@ void medium_stack_mix(const struct medium_stack *stack, struct medium_mix *out);
 /* Whether one of them scatters. */
 bool medium_mix_scatters(const struct medium_mix *mix);
 
+/* A point and a line where the density of the medium is; t remains that of the line. */
+struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time);
+struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line);
+/* Whether its density is that of the box of a solid. */
+bool medium_needs_solid(const struct medium *medium);
 /* The factor of the coefficients of a medium at a point. */
 double medium_density(const struct medium *medium, struct vec3 p, double time);
 

@@ -115,13 +115,14 @@ struct strata {
 
 /* False: nothing is on the line. */
 static bool find_strata(const struct medium_mix *mix, const struct medium_line *line, struct strata *out) {
-    const struct ray ray = {.origin = line->origin, .direction = line->direction, .t_max = line->distance};
     *out = (struct strata){INFINITY, 0, 0};
     for (uint32_t i = 0; i < mix->count; i++) {
         const struct medium *medium = mix->media[i];
         struct colour e = medium->extinction;
         double from = 0, to = line->distance;
         if (medium->density) {
+            const struct medium_line placed = medium_place_line(medium->place, line);
+            const struct ray ray = {.origin = placed.origin, .direction = placed.direction, .t_max = line->distance};
             struct box box = density_box(medium->density);
             if (!box_clip(&box, &ray, &from, &to))
                 continue;

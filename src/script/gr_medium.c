@@ -189,9 +189,8 @@ static bool read_density(struct script_context *context, const struct script_val
     *out = NULL;
     if (!read_box(args, &box, error))
         return false;
-    if ((is_grid || density->program) && !args[MEDIUM_CORNER].given)
-        return error_set(error, ERROR_SCENE, "corner and size are missing: the box in which the density %s",
-                         density->program ? "is a function" : "has its grid");
+    if (density->program && !args[MEDIUM_CORNER].given)
+        return error_set(error, ERROR_SCENE, "corner and size are missing: the box in which the density is a function");
     if (args[MEDIUM_BOUND].given && !density->program)
         return error_set(error, ERROR_SCENE, "bound is for a density that is a function");
     if (args[MEDIUM_CELLS].given && !is_grid)
@@ -204,7 +203,12 @@ static bool read_density(struct script_context *context, const struct script_val
         struct voxels voxels;
         if (!(density->text ? read_file(context, args, &voxels, error) : read_numbers(context, args, &voxels, error)))
             return false;
-        const struct density_grid grid = {box, {voxels.count[0], voxels.count[1], voxels.count[2]}, voxels.values, 1};
+        bool fits = !args[MEDIUM_CORNER].given;
+        const struct density_grid grid = {fits ? (struct box){{0, 0, 0}, {1, 1, 1}} : box,
+                                          {voxels.count[0], voxels.count[1], voxels.count[2]},
+                                          voxels.values,
+                                          1,
+                                          fits};
         return (*out = density_of_grid(arena, &grid, error)) != NULL;
     }
     if (!args[MEDIUM_CORNER].given && !args[MEDIUM_TOP].given)
