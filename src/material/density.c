@@ -41,10 +41,6 @@ const struct density *density_of_box(struct arena *arena, const struct box *box,
     return density_make(arena, DENSITY_BOX, box, error);
 }
 
-static uint64_t cell_count(const struct fog_cells *cells) {
-    return (uint64_t)cells->count[0] * cells->count[1] * cells->count[2];
-}
-
 const struct density *density_of_function(struct arena *arena, const struct density_function *in, struct error *error) {
     const struct box box = {in->field->corner, vec3_add(in->field->corner, in->field->size)};
     struct density *density = density_make(arena, DENSITY_FUNCTION, &box, error);
@@ -54,7 +50,7 @@ const struct density *density_of_function(struct arena *arena, const struct dens
     if (!density->field)
         return NULL;
     const float(*bounds)[2] = fog_field_cells(density->field, &density->cells);
-    uint64_t count = cell_count(&density->cells);
+    uint64_t count = fog_cell_count(&density->cells);
     density->bounds = arena_alloc_array(arena, count, sizeof *density->bounds);
     if (!density->bounds) {
         (void)error_no_memory(error, "a medium");
@@ -113,7 +109,7 @@ const struct density *density_of_grid(struct arena *arena, const struct density_
         density->count[k] = in->count[k];
         density->cells.count[k] = in->count[k] < CELLS ? in->count[k] : CELLS;
     }
-    uint64_t count = cell_count(&density->cells);
+    uint64_t count = fog_cell_count(&density->cells);
     density->bounds = arena_alloc_array(arena, count, sizeof *density->bounds);
     if (!density->bounds) {
         (void)error_no_memory(error, "a medium");
@@ -126,6 +122,13 @@ const struct density *density_of_grid(struct arena *arena, const struct density_
 
 struct box density_box(const struct density *density) {
     return density->box;
+}
+
+const float (*density_cells(const struct density *density, struct fog_cells *cells))[2] {
+    if (density->kind == DENSITY_BOX)
+        return NULL;
+    *cells = density->cells;
+    return (const float(*)[2])density->bounds;
 }
 
 bool density_fits(const struct density *density) {
@@ -160,7 +163,7 @@ static double grid_at(const struct density *density, struct vec3 p) {
     return planes[0] + shares[2] * (planes[1] - planes[0]);
 }
 
-static uint64_t cell_of(const struct density *density, struct vec3 p) {
+uint64_t density_cell(const struct density *density, struct vec3 p) {
     uint64_t cell = 0, stride = 1;
     for (int k = 0; k < 3; k++) {
         double n = density->cells.count[k];
@@ -173,7 +176,7 @@ static uint64_t cell_of(const struct density *density, struct vec3 p) {
 
 /* Of all cells the first one, whatever the order. */
 static void note_excess(const struct density *density, struct vec3 p) {
-    uint64_t cell = cell_of(density, p), first = atomic_load_explicit(density->excess, memory_order_relaxed);
+    uint64_t cell = density_cell(density, p), first = atomic_load_explicit(density->excess, memory_order_relaxed);
     while (cell < first && !atomic_compare_exchange_weak(density->excess, &first, cell))
         continue;
 }
@@ -202,7 +205,7 @@ double density_value(const struct density *density, struct vec3 p, double time) 
     if (!box_contains(&density->box, p))
         return 0;
     bool is_box = density->kind == DENSITY_BOX;
-    return density_at(density, p, time, is_box ? 1 : (double)density->bounds[cell_of(density, p)][1]);
+    return density_at(density, p, time, is_box ? 1 : (double)density->bounds[density_cell(density, p)][1]);
 }
 
 bool density_excess(const struct density *density, struct box *cell, double *bound) {

@@ -24,6 +24,7 @@ enum medium_ray {
 };
 
 struct density;
+struct heat;
 
 /* The map from the world to the space of what is given by place, when the shutter opens and closes; between these,
  * points move straight. */
@@ -41,7 +42,8 @@ struct medium {
     struct colour emission;           /* radiance per unit */
     struct phase phase;               /* of scattering */
     const struct density *density;    /* the factor of these three by place (density.h); NULL: 1 */
-    const struct medium_place *place; /* of the density; NULL: the world */
+    const struct heat *heat;          /* the factor of the emission by place (glow.h); only with a density, or NULL */
+    const struct medium_place *place; /* of these; NULL: the world */
     const struct medium *inner;       /* one more in the same solid, or NULL */
     bool scatters;                    /* scattering is not black */
     bool fills;                       /* inside of solids whose surface is invisible */
@@ -56,6 +58,7 @@ struct medium_input {
     struct colour absorption, scattering, emission;
     struct phase phase;
     const struct density *density; /* or NULL */
+    const struct heat *heat;       /* or NULL */
 };
 struct medium medium_scattering(const struct medium_input *in);
 /* The same in solids whose surface is invisible. */

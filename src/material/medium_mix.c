@@ -53,11 +53,17 @@ struct medium_line medium_place_line(const struct medium_place *place, const str
 }
 
 bool medium_needs_solid(const struct medium *medium) {
-    return medium->density && density_fits(medium->density);
+    return medium->density && (density_fits(medium->density) || (medium->heat && heat_fits(medium->heat)));
 }
 
 double medium_density(const struct medium *medium, struct vec3 p, double time) {
     return medium->density ? density_value(medium->density, medium_place_point(medium->place, p, time), time) : 1;
+}
+
+struct colour medium_emission_at(const struct medium *medium, double density, struct vec3 p, double time) {
+    struct colour emission = colour_scale(medium->emission, density);
+    return medium->heat ? colour_mul(emission, heat_at(medium->heat, medium_place_point(medium->place, p, time), time))
+                        : emission;
 }
 
 /* --- along a line --- */
@@ -145,6 +151,7 @@ struct tracking {
     struct colour odds;
     uint64_t key, drawn;
     double u; /* the next number of the distance */
+    const struct glow_met *met;
 };
 
 static double draw(struct tracking *tracking) {
@@ -239,10 +246,16 @@ static bool track_with_emission(struct tracking *tracking, struct medium_track *
         return track_to(tracking, tracking->pieces.to, out);
     if (track_to(tracking, from + depth, out))
         return true;
-    for (uint32_t i = 0; i < mix->count; i++)
-        if (!colour_is_black(mix->media[i]->emission))
-            emission =
-                colour_add_scaled(emission, mix->media[i]->emission, density_of(&tracking->pieces, i, from + depth));
+    const struct medium_line *line = tracking->pieces.line;
+    const struct vec3 p = vec3_add_scaled(line->origin, line->direction, from + depth);
+    for (uint32_t i = 0; i < mix->count; i++) {
+        const struct medium *medium = mix->media[i];
+        if (colour_is_black(medium->emission))
+            continue;
+        struct colour own = medium_emission_at(medium, density_of(&tracking->pieces, i, from + depth), p, line->time);
+        double weight = tracking->met ? glow_met_weight(tracking->met, medium, p, line->time) : 1;
+        emission = colour_add_scaled(emission, own, weight);
+    }
     struct colour pdf = colour_make(depth_pdf(bound.r, length, depth), depth_pdf(bound.g, length, depth),
                                     depth_pdf(bound.b, length, depth));
     out->emitted = colour_add(out->emitted, over_mean(tracking, emission, pdf));
@@ -266,6 +279,7 @@ void medium_mix_track(const struct medium_mix *mix, const struct medium_line *li
     tracking.key = numbers.key;
     tracking.drawn = 0;
     tracking.u = numbers.u.y;
+    tracking.met = numbers.met;
     tracking.hero = numbers.u.x < tracking.share.r ? 0 : numbers.u.x < tracking.share.r + tracking.share.g ? 1 : 2;
     *out = (struct medium_track){.distance = line->distance};
     begin_pieces(&tracking.pieces, mix, line);

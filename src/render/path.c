@@ -145,6 +145,16 @@ static bool find_sealed(struct path_tracer *tracer, const struct world *world) {
     return count == 0 || sealed;
 }
 
+/* Scattered rays may meet the emission of media. */
+static bool find_glow(struct path_tracer *tracer, const struct world *world, struct error *error) {
+    const uint32_t first = world->media.outside;
+    for (uint32_t i = 0; i <= first; i++)
+        for (const struct medium *medium = &world->media.all[i]; medium; medium = medium->inner)
+            tracer->lights.met = tracer->lights.met || colour_max_abs(medium->emission) > 0;
+    return tracer->strategy == PATH_STRATEGY_BSDF ||
+           glow_build(&tracer->glow, &world->media.all[first], world->placed_count + 1, &tracer->arena, error);
+}
+
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
@@ -175,6 +185,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
     if (tracer->built && (!find_aimed_lights(tracer) || !find_sealed(tracer, world)))
         return error_no_memory(error, "the solids of the scene");
+    if (tracer->built && !find_glow(tracer, world, error))
+        return false;
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;
     if (!find_photon_lights(tracer, world))

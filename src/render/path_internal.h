@@ -8,6 +8,7 @@
 #define GRAY_RENDER_PATH_INTERNAL_H
 
 #include "base/arena.h"
+#include "material/glow.h"
 #include "photon/photon_trace.h"
 #include "render/contour_internal.h"
 #include "render/filter_internal.h"
@@ -31,6 +32,7 @@ struct path_tracer {
     bool disperses;               /* indices of refraction depend on the wavelength */
     const uint32_t *aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
     uint32_t aimed_light_count;
+    const struct glow *glow; /* or NULL */
     const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */

@@ -213,8 +213,9 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const double end = out->distance;
     const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), end, path->ray.time};
+    const struct glow_met met = {tracer->glow, path->scatter.point, path->pdf};
     const struct medium_draw numbers = {sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM),
-                                        medium_key(path)};
+                                        medium_key(path), tracer->glow && path->pdf > 0 ? &met : NULL};
     const struct colour weight = path->weight;
     medium_mix_track(&mix, &line, weight, numbers, &track);
     add_light(state, path, track.emitted);
@@ -441,6 +442,22 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     return true;
 }
 
+/* The light of glowing media at the vertex. */
+static __attribute__((noinline)) void add_glow(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, const struct path_vertex *vertex,
+                                               uint32_t dimension) {
+    struct vec3 direction;
+    struct colour light = colour_mul(path->weight, path_glow_light(tracer, state, path, vertex, dimension, &direction));
+    struct path_parts *parts = parts_of(state);
+    path->light = colour_add(path->light, light);
+    if (!parts || colour_is_black(light))
+        return;
+    struct colour shares[PATH_SCATTERINGS];
+    if (path->depth == 0)
+        path_shares(vertex, vertex->at.lobes, direction, shares);
+    add_to_groups(parts, path->depth + 1, path->depth == 0 ? shares : parts->shares, light);
+}
+
 /* Asks for the light of a light source, and continues. dimension: the first one of the vertex. */
 static inline __attribute__((always_inline)) bool
 light_and_scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -456,6 +473,8 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
         path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
+    if (tracer->glow)
+        add_glow(tracer, state, path, vertex, dimension);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
 

@@ -3,7 +3,7 @@
 #include "world/solids_internal.h"
 
 #include "base/mem.h"
-#include "material/density.h"
+#include "material/medium_mix.h"
 
 #include <string.h>
 
@@ -51,9 +51,14 @@ static bool count_solids(const struct world *world, uint32_t *list, uint32_t *of
 
 /* --- by place --- */
 
-static const struct density *density_of(const struct world *world, uint32_t material) {
+static bool has_places(const struct world *world, uint32_t material) {
     const struct medium *medium = &world->media.all[material];
-    return medium->density || !medium->inner ? medium->density : medium->inner->density;
+    return medium->density || (medium->inner && medium->inner->density);
+}
+
+static bool is_fitted(const struct world *world, uint32_t material) {
+    const struct medium *medium = &world->media.all[material];
+    return medium_needs_solid(medium) || (medium->inner && medium_needs_solid(medium->inner));
 }
 
 /* The operand of a combined solid that has the material: the first one. */
@@ -76,7 +81,7 @@ static bool make_places(struct flattening *f, uint32_t solid_count, struct solid
     struct world *world = f->world;
     uint32_t count = 0, first = world->media.outside + 1;
     for (uint32_t i = 0; i < solid_count; i++)
-        count += density_of(world, solids[i].medium) != NULL;
+        count += has_places(world, solids[i].medium);
     if (count == 0)
         return true;
     struct medium *all = arena_alloc_array(f->arena, (size_t)first + count, sizeof *all);
@@ -86,11 +91,11 @@ static bool make_places(struct flattening *f, uint32_t solid_count, struct solid
     memcpy(all, world->media.all, first * sizeof *all);
     world->media.all = all;
     for (uint32_t i = 0; i < solid_count; i++) {
-        const struct density *density = density_of(world, solids[i].medium);
         struct box box;
-        if (!density)
+        if (!has_places(world, solids[i].medium))
             continue;
-        if (density_fits(density) && (box = own_box(world, i), !vec3_finite(box.min) || !vec3_finite(box.max)))
+        if (is_fitted(world, solids[i].medium) &&
+            (box = own_box(world, i), !vec3_finite(box.min) || !vec3_finite(box.max)))
             return error_set(f->error, ERROR_SCENE,
                              "node '%.100s' has no end, so the grid of its medium needs corner and size",
                              primitive_node(world, solids[i].primitive)->name);
@@ -124,7 +129,7 @@ void solids_place(struct world *world) {
         struct placed_medium *placed = &world->placed[i];
         uint32_t material = world->solid_materials[placed->solid];
         struct medium *medium = &world->media.all[world->media.outside + 1 + i];
-        bool fits = density_fits(density_of(world, material));
+        bool fits = is_fitted(world, material);
         placed->place =
             (struct medium_place){place_of(world, placed->solid, fits, 0), place_of(world, placed->solid, fits, 1)};
         *medium = world->media.all[material];

@@ -48,8 +48,8 @@ static struct means track(const struct medium_mix *mix, const struct medium_line
     struct means means = {.left = {0, 0, 0}};
     for (int i = 0; i < count; i++) {
         uint64_t key = random_combine(77, (uint64_t)i);
-        const struct medium_draw draw = {{random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))},
-                                         random_combine(key, 3)};
+        const struct medium_draw draw = {
+            {random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))}, random_combine(key, 3), NULL};
         struct medium_track out;
         medium_mix_track(mix, line, colour_make(1, 1, 1), draw, &out);
         struct colour *sum = out.scatterer ? &means.scattered : &means.passed;
