@@ -171,10 +171,14 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
-    for (uint32_t i = 0; i < world->material_count; i++)
-        tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
     tracer->in_medium = world_outside(world)->affects != 0;
     tracer->disperses = world_disperses(world);
+    tracer->has_matter = tracer->in_medium || tracer->disperses;
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
+        tracer->has_matter = tracer->has_matter || world->media.all[i].affects != 0 ||
+                             surface_walks(&world->surfaces.materials[i]);
+    }
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||

@@ -27,6 +27,7 @@ struct path_tracer {
     double clamp;                 /* the limit on components of a sample; 0: no limit */
     double bright;                /* of struct path_pixel */
     bool built;                   /* the lights are prepared */
+    bool has_matter;              /* media that affect rays, dispersion, or light that goes under surfaces */
     bool has_fillings;            /* media inside invisible surfaces */
     bool in_medium;               /* the medium around all solids affects rays */
     bool disperses;               /* indices of refraction depend on the wavelength */

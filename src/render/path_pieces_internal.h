@@ -8,8 +8,9 @@
  * A thread calls them for one path after the other. They call no allocator, no function pointer and not themselves;
  * what is below world_nearest_crossing and world_any may.
  *
- * A file that includes this one defines PATH(name), LAYERS and OBSERVED: whether paths record light layers and features
- * (state->parts), and whether they report to an observer.
+ * A file that includes this one defines PATH(name), LAYERS, OBSERVED and MATTER: whether paths record light layers and
+ * features (state->parts), whether they report to an observer, and whether there may be media, dispersion or walks under
+ * surfaces (tracer->has_matter).
  *
  * A path ends at the sky, at the maximum depth, by Russian roulette, or at a visible area light. A *line of sight* is a
  * camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show the background, visible
@@ -261,10 +262,12 @@ static enum travelled travel(const struct path_tracer *tracer, struct integrator
         add_light(state, path, path_area_lights(tracer, &segment, end));
     }
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
-    if (!seen && !path_is_affected(tracer, kind, &path->ray))
+    if (!seen && !(MATTER && path_is_affected(tracer, kind, &path->ray)))
         return ENDS_AT_HIT;
     out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    pass_medium(tracer, state, path, kind, out);
+    out->medium = NULL;
+    if (MATTER)
+        pass_medium(tracer, state, path, kind, out);
     if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
@@ -400,7 +403,7 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
         return watch_end(watch, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
-    if (sample.flags & BSDF_BELOW)
+    if (MATTER && (sample.flags & BSDF_BELOW))
         return walk_below(state, path, vertex, &sample, watch);
     /* A shading normal may reflect into the surface. */
     if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
@@ -470,10 +473,10 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+    if (!(MATTER && vertex->sealed) && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
         path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
-    if (tracer->glow)
+    if (MATTER && tracer->glow)
         add_glow(tracer, state, path, vertex, dimension);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
@@ -525,7 +528,7 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
     const struct material_context context = {.specular = state->job->settings.specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
-                                             .walks = true,
+                                             .walks = MATTER,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
     if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
@@ -634,13 +637,13 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     at.joint.joined = JOINED_NOT;
     shadow->part.light = LIGHT_NONE;
     shadow->sent = false;
-    bool travelled = !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
+    bool travelled = MATTER && !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
     if (travelled && end.medium)
         return meet_medium(tracer, state, path, &end, shadow, watch);
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
-        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+        if (MATTER && tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
             double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
             path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
         }
@@ -773,7 +776,7 @@ struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_st
     for (;;) {
         bool goes_on = shade(tracer, state, &path, &to_light, watch);
         end_vertex(tracer, state, &path, &to_light, watch);
-        while (!goes_on && path.kind == RAY_BELOW && !integrator_cancelled(state)) {
+        while (MATTER && !goes_on && path.kind == RAY_BELOW && !integrator_cancelled(state)) {
             goes_on = come_out(tracer, state, &path, &to_light, watch);
             end_vertex(tracer, state, &path, &to_light, watch);
         }
