@@ -305,6 +305,18 @@ double medium_mix_density(const struct medium_mix *mix, const struct medium_line
     return sum > 0 ? colour_dot(throughput, colour_mul(here, exponential(depth))) / sum : 0;
 }
 
+double medium_mix_haze(const struct medium_mix *mix) {
+    struct fog_cells cells;
+    double sum = 0;
+    for (uint32_t i = 0; i < mix->count; i++) {
+        const struct medium *medium = mix->media[i];
+        const struct colour e = medium->extinction;
+        if (!medium->density || !density_cells(medium->density, &cells))
+            sum += (e.r + e.g + e.b) / 3;
+    }
+    return sum;
+}
+
 /* The lower bounds dim light exactly; what may be above them is tracked by the largest channel. */
 struct colour medium_mix_left(const struct medium_mix *mix, const struct medium_line *line, uint64_t key) {
     struct pieces pieces;

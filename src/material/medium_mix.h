@@ -50,6 +50,9 @@ double medium_mix_density(const struct medium_mix *mix, const struct medium_line
 /* What is left of light along the line: in the mean over the keys. */
 struct colour medium_mix_left(const struct medium_mix *mix, const struct medium_line *line, uint64_t key);
 
+/* The mean extinction, without that of functions and grids. */
+double medium_mix_haze(const struct medium_mix *mix);
+
 /* The same without random numbers: depths of a density are a quadrature. */
 struct colour medium_mix_dimmed(const struct medium_mix *mix, const struct medium_line *line);
 

@@ -93,12 +93,16 @@ static bool find_aimed_lights(struct path_tracer *tracer) {
     struct light_target middle;
     if (!tracer->has_fillings && !tracer->in_medium)
         return true;
-    uint32_t *numbers = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *numbers);
-    for (uint32_t i = 0; numbers && i < lights->count; i++)
-        if (light_middle(&lights->lights[i], &middle) && !middle.distant)
-            numbers[tracer->aimed_light_count++] = i;
-    tracer->aimed_lights = numbers;
-    return numbers != NULL;
+    struct aimed_light *list = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *list);
+    for (uint32_t i = 0; list && i < lights->count; i++) {
+        struct aimed_light *next = &list[tracer->aimed_light_count];
+        next->light = i;
+        if (light_middle(&lights->lights[i], &middle) && !middle.distant &&
+            light_bounds_of(&lights->lights[i], 0, &next->bounds) == LIGHT_EXTENT_BOUNDED)
+            tracer->aimed_light_count++;
+    }
+    tracer->aimed_lights = list;
+    return list != NULL;
 }
 
 /* --- sealed solids --- */
@@ -176,8 +180,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->has_matter = tracer->in_medium || tracer->disperses;
     for (uint32_t i = 0; i < world->material_count; i++) {
         tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
-        tracer->has_matter = tracer->has_matter || world->media.all[i].affects != 0 ||
-                             surface_walks(&world->surfaces.materials[i]);
+        tracer->has_matter =
+            tracer->has_matter || world->media.all[i].affects != 0 || surface_walks(&world->surfaces.materials[i]);
     }
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);

@@ -9,8 +9,8 @@
  * what is below world_nearest_crossing and world_any may.
  *
  * A file that includes this one defines PATH(name), LAYERS, OBSERVED and MATTER: whether paths record light layers and
- * features (state->parts), whether they report to an observer, and whether there may be media, dispersion or walks under
- * surfaces (tracer->has_matter).
+ * features (state->parts), whether they report to an observer, and whether there may be media, dispersion or walks
+ * under surfaces (tracer->has_matter).
  *
  * A path ends at the sky, at the maximum depth, by Russian roulette, or at a visible area light. A *line of sight* is a
  * camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show the background, visible
@@ -154,8 +154,9 @@ static uint64_t medium_key(const struct path *path) {
  * that before the way. */
 static __attribute__((noinline)) void sample_aimed_light(const struct path_tracer *tracer,
                                                          struct integrator_state *state, struct path *path,
-                                                         const struct medium_mix *mix, double distance) {
-    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
+                                                         const struct medium_mix *mix, double distance,
+                                                         struct path_lamps *lamps) {
+    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance, lamps));
     struct path_parts *parts = parts_of(state);
     path->light = colour_add(path->light, light);
     if (!parts || colour_is_black(light))
@@ -170,7 +171,10 @@ static void note_tracked(const struct path *path, const struct medium_mix *mix, 
                          struct path_stretch *out) {
     const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), out->distance,
                                      path->ray.time};
-    out->tracked = (struct path_tracked){&path->ray, end, out->distance, medium_mix_density(mix, &line, weight)};
+    out->tracked.ray = &path->ray;
+    out->tracked.end = end;
+    out->tracked.distance = out->distance;
+    out->tracked.density = medium_mix_density(mix, &line, weight);
 }
 
 /* Passes the medium, up to out->distance. */
@@ -185,7 +189,7 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
         if (aimed)
-            sample_aimed_light(tracer, state, path, &mix, end);
+            sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
@@ -227,7 +231,7 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const bool aimed = path_is_aimed(tracer, path);
     if (aimed)
-        sample_aimed_light(tracer, state, path, &mix, end);
+        sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;

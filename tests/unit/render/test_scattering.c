@@ -322,7 +322,7 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
 }
 
 /* Lamps that are sampled at distances of their own: the same light as by brute force, where only scattered rays find
- * the lamp. */
+ * the lamp. One lamp, or more of unlike brightness than a ray chooses from. */
 TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16) {
     struct arena arena = {0};
     struct error error = {0};
@@ -331,19 +331,20 @@ TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16)
     const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
                                     .scattering = colour_make(0.2, 0.6, 1),
                                     .phase = {PHASE_HENYEY_GREENSTEIN, 0.3}};
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         struct medium_input own = in;
-        own.density = i ? density_of_grid(&arena, &grid, &error) : NULL;
+        own.density = i == 1 ? density_of_grid(&arena, &grid, &error) : NULL;
         const struct medium medium = medium_scattering(&own);
         struct colour means[2];
         for (int brute = 0; brute < 2; brute++) {
             struct stage s;
             (void)begin_room(&s, &medium);
-            s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
-                                                       .position = {0.3, 0.2, -0.4},
-                                                       .radius = 0.25,
-                                                       .colour = {1, 1, 1},
-                                                       .intensity = 1};
+            for (int k = 0; k < (i == 2 ? 18 : 1); k++)
+                s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
+                                                           .position = {0.3 - 0.05 * k, 0.2 - 0.04 * k, -0.4},
+                                                           .radius = 0.25,
+                                                           .colour = {1 + k % 5, 1, 1},
+                                                           .intensity = 1};
             s.settings.path_strategy = brute ? PATH_STRATEGY_BSDF : PATH_STRATEGY_MIS;
             means[brute] = mean_of(&s, 8, 1024 * times, 2);
             stage_end(&s);
