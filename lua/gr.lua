@@ -1898,7 +1898,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
 ---@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
 ---@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
----@field temperature? number temperature (a number, > 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default.
+---@field temperature? number|number[]|string|gr.texture|function temperature (a number or a table of numbers, a function or the name of a file, >= 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default: a number, a function or a grid, as density.
 ---@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
 ---@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
 ---@field density? number|number[]|string|gr.texture|function density (a number or a table of numbers, a function or the name of a file, >= 0; default 1): The factor of absorption, scattering and emission: a number, a function f(p, s) of the point and s.time, or a grid: numbers, or the name of an NRRD file or of a file of plain values.
