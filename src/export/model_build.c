@@ -280,11 +280,6 @@ static bool add_solid(struct model_builder *b, struct export_part *about, struct
              "node '%.100s': its surface touches itself, for example at (%.6g, %.6g, %.6g); the parts are %.3g apart "
              "there in the model",
              about->name, findings.position.x, findings.position.y, findings.position.z, 0.3 * b->tolerance);
-    if (findings.far_points > 0)
-        note(b,
-             "node '%.100s': %u points of the model may be further than %.3g from the solid; another tolerance may "
-             "help",
-             about->name, findings.far_points, b->tolerance);
     bool ok = add_part(b, about, &mesh, material_of_leaf, error);
     solid_mesh_destroy(&mesh);
     return ok;

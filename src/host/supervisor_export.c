@@ -39,7 +39,7 @@ static struct options options_of(const struct supervisor *supervisor) {
     options.scripts += supervisor->next_script < last ? supervisor->next_script : last;
     options.picture = options.script_count == 1 ? (int)viewer->window.number : 0;
     options.script_count = 1;
-    options.script.edits = supervisor->model.edits.items;
+    options.script.edits_text = supervisor->model.edits.items;
     options.model = supervisor->model.name;
     options.output = options.display = options.checkpoint = options.targets_prefix = options.first_pass_prefix = NULL;
     options.animation = ANIMATION_NONE;

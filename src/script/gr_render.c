@@ -4,6 +4,7 @@
 #include "compat/lenient_picture.h"
 #include "image/picture_file.h"
 #include "image/transfer.h"
+#include "material/medium_mix.h"
 #include "record/record_bounds.h"
 #include "scene/node_bounds.h"
 #include "script/gr_materials_internal.h"
@@ -610,6 +611,8 @@ static bool gr_render(struct script_context *context, const struct script_value 
     }
     if (fog && args[RENDER_MEDIUM].given)
         return error_set(error, ERROR_SCENE, "fog and medium are both around the solids; give one of them");
+    if (args[RENDER_MEDIUM].given && medium_needs_solid(args[RENDER_MEDIUM].material->medium))
+        return error_set(error, ERROR_SCENE, "the grid of the medium needs corner and size, for it fills no solid");
     request.outside =
         args[RENDER_MEDIUM].given ? medium_without_solid(args[RENDER_MEDIUM].material->medium) : medium_outside(fog);
     /* Functions, lens, motion, sky and light. */

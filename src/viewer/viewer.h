@@ -95,7 +95,7 @@ struct viewer_motion {
 enum { NODE_QUERIES = 64 };
 struct viewer_nodes {
     struct node_query wanted[NODE_QUERIES];
-    uint32_t count;
+    uint32_t count, added; /* added: nodes that edits have added to the tree */
 };
 
 /* The changes of the scene, and the state for making them. */
