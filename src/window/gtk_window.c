@@ -101,16 +101,6 @@ void gui_open_scene(struct gui *gui, GFile *file) {
     ask_to_leave(gui, file);
 }
 
-static gboolean handle_drop(GtkDropTarget *target, const GValue *value, double x, double y, gpointer data) {
-    (void)target, (void)x, (void)y;
-    GSList *files = gdk_file_list_get_files(g_value_get_boxed(value));
-    bool any = files != NULL;
-    if (any)
-        gui_open_scene(data, files->data);
-    g_slist_free(files);
-    return any;
-}
-
 /* Menus and actions. */
 
 static void choose_action(GSimpleAction *action, GVariant *value, gpointer data) {
@@ -585,7 +575,6 @@ static gboolean ask_close(GtkWindow *window, gpointer data) {
 
 static void make_window(struct gui *gui) {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
-    GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
     GtkCssProvider *css = gtk_css_provider_new();
     gui->window = gtk_application_window_new(gui->application);
 
@@ -616,8 +605,7 @@ static void make_window(struct gui *gui) {
                                                GTK_STYLE_PROVIDER_PRIORITY_APPLICATION);
     g_object_unref(css);
     g_signal_connect(gui->window, "close-request", G_CALLBACK(ask_close), gui);
-    g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
-    gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
+    gui_accept_drops(gui);
     gui_add_keys(gui);
     gui_load_settings(gui);
 }

@@ -162,10 +162,12 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting) 
     const char *overlay = setting->overlay ? setting->overlay : "none";
     char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)option, "--overlay", (char *)(uintptr_t)overlay,
                      "scene.lua"};
-    char before[4096];
+    char before[4096], library[4200];
     CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
+    (void)snprintf(library, sizeof library, "%s/lua", before);
     test_write_text("scene.lua", setting->scene ? setting->scene : scene);
     CHECK(options_parse(&options, 7, words, &arena, &error));
+    options.script.library_folder = library;
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
     if (setting->person)
@@ -810,6 +812,36 @@ TEST(window_changes_the_arguments_of_what_it_has_added) {
     check_contains("out-changes1.lua",
                    (const char *[]){"'gr.torus{major = 2, minor = 0.5}'", "gr.change_material(4294967295, {0.1",
                                     "colour = {1, 1, 1}, outer = 10}'", NULL});
+}
+
+/* Pictures and skies that are dropped, on a surface and beside it. */
+TEST(window_takes_a_picture_as_the_texture_of_what_it_was_dropped_on_and_a_sky_as_light_and_background) {
+    const struct window_event on = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 320, .y = 240, .text = "gr.texture('p.png')"};
+    const struct window_event beside = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 2, .y = 2, .text = "gr.texture('a.png')"};
+    const struct deed deeds[] = {{"ready", beside, 0},
+                                 {"a picture is for a surface", on, 0},
+                                 {"ready", ADD("gr.sky_light{sky = gr.sky_map{image = 'p.png'}}"), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 20},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 0},
+                                 UNDO,
+                                 UNDO,
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 QUIT};
+    struct test_result made = test_gray_scene(
+        "gr.render{node = gr.sphere{}, file = 'p.png', width = 32, height = 16, background = {0.2, 0.9, 0.3}}",
+        "-q scene.lua", NULL);
+    test_free_result(&made);
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT)}), 0);
+    check_saved(1);
+    check_contains("out-changes1.lua", (const char *[]){"gr.change_texture(1, 'gr.texture(", "gr.sky_map{image", NULL});
+    CHECK(test_same_files("out-view2.png", "out.png"));
+    struct test_picture picture = test_read_picture(test_path("out-view1.png")),
+                        plain = test_read_picture(test_path("out.png"));
+    CHECK(memcmp(picture.rgb, plain.rgb, 3) != 0); /* the background */
+    free(picture.rgb);
+    free(plain.rgb);
 }
 
 /* What is hidden is hidden in the window only; a call that is wrong says so. */
