@@ -1908,7 +1908,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
 ---@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
 ---@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
----@field temperature? number temperature (a number, > 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default.
+---@field temperature? number|number[]|string|gr.texture|function temperature (a number or a table of numbers, a function or the name of a file, >= 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default: a number, a function or a grid, as density.
 ---@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
 ---@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
 ---@field density? number|number[]|string|gr.texture|function density (a number or a table of numbers, a function or the name of a file, >= 0; default 1): The factor of absorption, scattering and emission: a number, a function f(p, s) of the point and s.time, or a grid: numbers, or the name of an NRRD file or of a file of plain values.
@@ -1997,6 +1997,7 @@ function gr.medium(scattering, absorption) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2084,6 +2085,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2283,6 +2285,7 @@ function node:translate(x, y, z) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render with this node.
 ---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.

@@ -154,6 +154,11 @@ static int run_scene(lua_State *L) {
     dialect_run(L);
     if (script->context.sandbox.options->edits)
         run_file(L, script->context.sandbox.options->edits);
+    if (script->context.sandbox.options->edits_text) {
+        if (luaL_loadstring(L, script->context.sandbox.options->edits_text) != LUA_OK)
+            return lua_error(L);
+        lua_call(L, 0, 0);
+    }
     if (script->context.scene.is_model)
         model_scene_run(L);
     else

@@ -23,6 +23,7 @@ enum viewer_action {
     VIEWER_SAVE_IMAGE,     /* the displayed image must be saved: viewer->window.image */
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
+    VIEWER_EXPORT_MODEL,   /* a model must be written: viewer->save_as */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
     VIEWER_RUN_AGAIN,      /* the scripts must run again */
     VIEWER_END_SCRIPTS,    /* they must end */

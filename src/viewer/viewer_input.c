@@ -158,6 +158,7 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_SAVE_PICTURE:
     case DO_SAVE_VIEW:
     case DO_SAVE_CHANGES:
+    case DO_EXPORT_MODEL:
         viewer->action = (enum viewer_action)(VIEWER_SAVE_IMAGE + (action - DO_SAVE_PICTURE));
         return;
     case DO_NEXT_PICTURE: /* which comes after this one was written */

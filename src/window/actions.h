@@ -26,6 +26,8 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Save the camera as a Lua file")                                                                                 \
     X(DO_SAVE_CHANGES, "save-changes", "_Save Edits", MENU_FILE, NEEDS_NAME, "<Control>s", "<Control>s",               \
       "Save all edits, the camera and the exposure as a Lua file")                                                     \
+    X(DO_EXPORT_MODEL, "export-model", "_Export Model…", MENU_FILE, NEEDS_NAME, "<Control>e", "F7",                    \
+      "Write the solids for printing: STL, 3MF, OBJ or PLY")                                                           \
     X(DO_NEXT_PICTURE, "next-picture", "_Next Picture", MENU_FILE, NEEDS_PICTURE, "<Control>n", "<Control>n",          \
       "Continue with the next picture of the script")                                                                  \
     X(DO_QUIT, "quit", "_Quit", MENU_FILE, NEEDS_NOTHING, "<Control>q", "<Control>q", "Close the window")              \

@@ -82,6 +82,8 @@ static void ask_to_leave(struct gui *gui, GFile *next) {
     gtk_window_present(GTK_WINDOW(dialog));
 }
 
+static void choose_model(struct gui *gui);
+
 void gui_send_action(struct gui *gui, enum window_action action) {
     struct window_event event = {.kind = WINDOW_ACTION, .action = action, .x = gui->mouse_x, .y = gui->mouse_y};
     bool tool = action == DO_MOVE || action == DO_TURN || action == DO_SIZE;
@@ -89,6 +91,8 @@ void gui_send_action(struct gui *gui, enum window_action action) {
         gui->tool_begun = g_get_monotonic_time();
     if (action == DO_QUIT)
         ask_to_leave(gui, NULL);
+    else if (action == DO_EXPORT_MODEL)
+        choose_model(gui);
     else
         gui_send_event(gui, &event);
 }
@@ -144,7 +148,7 @@ static void choose_scene(GSimpleAction *action, GVariant *value, gpointer data) 
     show_dialog(dialog);
 }
 
-/* A name for what is saved; the viewer replaces no file. */
+/* A name for what is saved; the viewer replaces no file but models. */
 
 static void finish_save(GtkNativeDialog *dialog, int answer, gpointer data) {
     struct gui *gui = data;
@@ -161,17 +165,38 @@ static void finish_save(GtkNativeDialog *dialog, int answer, gpointer data) {
     g_object_unref(dialog);
 }
 
-static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
-    struct gui *gui = data;
-    bool picture = strcmp(g_action_get_name(G_ACTION(action)), "save-picture-as") == 0;
+static void ask_name(struct gui *gui, const char *title, const char *name, enum window_action action) {
+    static const char *const models[] = {"stl", "3mf", "obj", "ply"};
     GtkFileChooserNative *dialog =
-        gtk_file_chooser_native_new(picture ? "Save the Picture" : "Save the Edits", GTK_WINDOW(gui->window),
-                                    GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
-    (void)value;
-    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), picture ? "view.png" : "changes.lua");
-    g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(picture ? DO_SAVE_PICTURE : DO_SAVE_CHANGES));
+        gtk_file_chooser_native_new(title, GTK_WINDOW(gui->window), GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
+    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), name);
+    if (action == DO_EXPORT_MODEL) {
+        GtkFileFilter *filter = gtk_file_filter_new();
+        gtk_file_filter_set_name(filter, "Models: .stl, .3mf, .obj, .ply");
+        for (size_t i = 0; i < G_N_ELEMENTS(models); i++)
+            gtk_file_filter_add_suffix(filter, models[i]);
+        gtk_file_chooser_add_filter(GTK_FILE_CHOOSER(dialog), filter);
+    }
+    g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(action));
     g_signal_connect(dialog, "response", G_CALLBACK(finish_save), gui);
     show_dialog(dialog);
+}
+
+static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
+    (void)value;
+    if (strcmp(g_action_get_name(G_ACTION(action)), "save-picture-as") == 0)
+        ask_name(data, "Save the Picture", "view.png", DO_SAVE_PICTURE);
+    else
+        ask_name(data, "Save the Edits", "changes.lua", DO_SAVE_CHANGES);
+}
+
+/* The kind of the file follows from its name. */
+static void choose_model(struct gui *gui) {
+    char *file = g_path_get_basename(gui->state.file), *dot = strrchr(file, '.');
+    char *name = g_strdup_printf("%.*s.stl", (int)(dot ? dot - file : (gssize)strlen(file)), file);
+    ask_name(gui, "Export a Model", name, DO_EXPORT_MODEL);
+    g_free(name);
+    g_free(file);
 }
 
 static void choose_dark(GSimpleAction *action, GVariant *value, gpointer data) {

@@ -272,17 +272,20 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
     }
 }
 
-/* Fog around a lamp, a spot and a floor; and smoke in a ball: Whitted's strata against paths cut to one scattering. */
+/* Fog around a lamp, a spot and a floor; and smoke in a ball: Whitted's strata against paths cut to one scattering.
+ * Emission, whose light Whitted's integrator does not scatter, is compared without the lamp and without scattering. */
 TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
     struct arena arena = {0};
     struct error error = {0};
     const struct box box = {{-5, -0.5, -5}, {5, 1.2, 5}};
     const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
-    const struct density_grid grid = {{{-1, 0, -1}, {1, 1.5, 1}}, {2, 2, 2}, values, 1};
-    for (int i = 0; i < 4; i++) {
+    const struct density_grid grid = {{{-1, 0, -1}, {1, 1.5, 1}}, {2, 2, 2}, values, 1, false};
+    for (int k = 0; k < 8; k++) {
+        const int i = k / 2;
+        const bool glows = k & 1;
         const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
                                         .scattering = colour_make(0.2, 0.3, 0.1),
-                                        .emission = colour_make(0, 0.01, 0.02),
+                                        .emission = glows ? colour_make(0.005, 0.01, 0.02) : colour_all(0),
                                         .phase = {PHASE_HENYEY_GREENSTEIN, 0.3},
                                         .density = i == 1   ? density_of_box(&arena, &box, &error)
                                                    : i == 2 ? density_of_grid(&arena, &grid, &error)
@@ -300,14 +303,15 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
             s.camera.eye = vec3_make(0, 1, 4);
             s.camera.view = vec3_make(0, -0.1, -1);
             s.camera.fov = 60;
+            s.light_count = !glows;
             s.medium = i < 3 ? &outside : NULL;
             if (i == 3)
                 stage_move(&s, stage_sphere(&s, s.root, filled(&s, &inside)), 0, 1, 0);
             s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
-            s.settings.medium_samples = 16;
+            s.settings.medium_samples = 16 * times;
             s.settings.full = true;
             s.settings.samples = 4;
-            means[path] = mean_of(&s, 16, 64 * times, 1);
+            means[path] = mean_of(&s, 16, 64 * times, !glows);
             stage_end(&s);
         }
         CHECK_NEAR(means[0].r, means[1].r, 0.05 * means[1].r);
@@ -318,28 +322,29 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
 }
 
 /* Lamps that are sampled at distances of their own: the same light as by brute force, where only scattered rays find
- * the lamp. */
+ * the lamp. One lamp, or more of unlike brightness than a ray chooses from. */
 TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16) {
     struct arena arena = {0};
     struct error error = {0};
     const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
-    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1, false};
     const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
                                     .scattering = colour_make(0.2, 0.6, 1),
                                     .phase = {PHASE_HENYEY_GREENSTEIN, 0.3}};
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         struct medium_input own = in;
-        own.density = i ? density_of_grid(&arena, &grid, &error) : NULL;
+        own.density = i == 1 ? density_of_grid(&arena, &grid, &error) : NULL;
         const struct medium medium = medium_scattering(&own);
         struct colour means[2];
         for (int brute = 0; brute < 2; brute++) {
             struct stage s;
             (void)begin_room(&s, &medium);
-            s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
-                                                       .position = {0.3, 0.2, -0.4},
-                                                       .radius = 0.25,
-                                                       .colour = {1, 1, 1},
-                                                       .intensity = 1};
+            for (int k = 0; k < (i == 2 ? 18 : 1); k++)
+                s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
+                                                           .position = {0.3 - 0.05 * k, 0.2 - 0.04 * k, -0.4},
+                                                           .radius = 0.25,
+                                                           .colour = {1 + k % 5, 1, 1},
+                                                           .intensity = 1};
             s.settings.path_strategy = brute ? PATH_STRATEGY_BSDF : PATH_STRATEGY_MIS;
             means[brute] = mean_of(&s, 8, 1024 * times, 2);
             stage_end(&s);
@@ -358,7 +363,7 @@ TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
     static const float values[8] = {0, 5, 2, 1, 0.5, 0, 30, 1};
     struct arena arena = {0};
     struct error error = {0};
-    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 3};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 3, false};
     const struct box box = {vec3_all(-2), {2, 0.3, 2}};
     const struct medium_input cloud = {.scattering = colour_make(0.3, 1, 3),
                                        .phase = {PHASE_HENYEY_GREENSTEIN, 0.6},
@@ -385,6 +390,50 @@ TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
         stage_end(&s);
     }
     arena_destroy(&arena);
+}
+
+/* A cube that is moved, turned and scaled, with a grid in its own space or one that fits it, and the same in the world.
+ */
+TEST(a_density_moves_with_its_solid) {
+    static const float own[8] = {0, 1, 2, 3, 0.5, 0, 4, 1}, turned[8] = {2, 0, 3, 1, 4, 0.5, 1, 0};
+    struct colour means[3], one[3];
+    for (int i = 0; i < 3; i++) {
+        struct arena arena = {0};
+        struct error error = {0};
+        const struct density_grid grid = {i == 0 ? (struct box){{-1, -2, -8}, {3, 2, -4}}
+                                                 : (struct box){vec3_all(0), vec3_all(1)},
+                                          {2, 2, 2},
+                                          i == 0 ? turned : own,
+                                          1,
+                                          i == 2};
+        const struct medium_input in = {.absorption = colour_make(0.1, 0.3, 0.6),
+                                        .density = density_of_grid(&arena, &grid, &error)};
+        const struct medium outside = medium_scattering(&in), inside = medium_filling(&in);
+        struct stage s;
+        stage_begin(&s, 2);
+        if (i > 0) {
+            struct node *cube = stage_cube(&s, s.root, filled(&s, &inside));
+            stage_scale(&s, cube, 4, 4, 4);
+            stage_rotate(&s, cube, 2, 90);
+            stage_move(&s, cube, 3, -2, -8);
+        }
+        s.medium = i == 0 ? &outside : NULL;
+        s.sky.colour = colour_all(1);
+        s.camera.eye = vec3_make(0, 1, 0);
+        for (int path = 0; path < 2; path++) {
+            s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+            (path ? means : one)[i] = mean_of(&s, 16, path ? 64 : 1, 10);
+        }
+        CHECK_NEAR(means[i].g, one[i].g, 0.005);
+        stage_end(&s);
+        arena_destroy(&arena);
+    }
+    for (int i = 1; i < 3; i++) {
+        CHECK(means[i].b < 0.9);
+        CHECK_NEAR(means[i].g, means[0].g, 0.005);
+        CHECK_NEAR(one[i].r, one[0].r, 1e-6);
+        CHECK_NEAR(one[i].b, one[0].b, 1e-6);
+    }
 }
 
 /* The index is 1, so the surface is there in name only. */

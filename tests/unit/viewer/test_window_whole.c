@@ -288,6 +288,44 @@ TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
     free(said);
 }
 
+TEST(window_exports_the_model_that_the_command_line_writes_and_says_what_is_wrong) {
+#define EXPORT(name)                                                                                                   \
+    { .kind = WINDOW_ACTION, .action = DO_EXPORT_MODEL, .text = name }
+    static const char ball[] =
+        "for i = 1, 2 do\n"
+        "    gr.render{node = gr.sphere{radius = i}, file = 'ball' .. i .. '.png', width = 64, eye = {0, "
+        "0, 9}, view = {0, 0, -1}}\n"
+        "end\n";
+    const struct deed deeds[] = {{"ready", ACTION(DO_NEXT_PICTURE), 0},
+                                 {"ball2.png", ACTION(DO_HIDE), 0},
+                                 {"ready", EXPORT("ball.stl"), 0},
+                                 {"ball.stl is written", EXPORT("ball.wrl"), 0},
+                                 {"ball.wrl: the name of a model ends in", EXPORT("notes.stl"), 0},
+                                 {"notes.stl: exists already and is not a model", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("notes.stl"), "my notes\n");
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = ball}), 0);
+    struct test_result result = test_gray(NULL, "-q scene.lua -o same.stl --picture 2");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("ball.stl", "same.stl"));
+    /* A deleted ball is not there. */
+    static const char two[] =
+        "local all = gr.node{name = 'all', children = {gr.sphere{name = 'near', radius = 1},\n"
+        "    gr.sphere{name = 'far', centre = {5, 0, 0}, radius = 1}}}\n"
+        "gr.render{node = all, file = 'two.png', width = 64, eye = {0, 0, 9}, view = {0, 0, -1}}\n";
+    const struct window_event press = PRESS, release = RELEASE;
+    const struct deed edit[] = {{"ready", press, 0},
+                                {NULL, release, 0},
+                                {"ready", ACTION(DO_DELETE), 0},
+                                {"ready", EXPORT("two.stl"), 0},
+                                {"two.stl is written", ACTION(DO_QUIT), 0}};
+    CHECK_EQ_INT(viewer_that(edit, &(struct setting){.scene = two}), 0);
+    result = test_gray(NULL, "-q scene.lua -o same.stl --node far");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("two.stl", "same.stl"));
+}
+
 /* Frames that depend on those before. */
 #define ANIMATION(colour, file)                                                                                        \
     "local r = gr.node('root')\n"                                                                                      \
