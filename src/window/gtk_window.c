@@ -799,6 +799,19 @@ static void choose_renderer(void) {
     g_clear_error(&error);
 }
 
+/* Without one, GTK gives its widgets sizes without sense. */
+static bool has_font(void) {
+    PangoFontMap *map = pango_cairo_font_map_get_default();
+    PangoContext *context = pango_font_map_create_context(map);
+    PangoFontDescription *any = pango_font_description_from_string("Sans 10");
+    PangoFont *font = pango_font_map_load_font(map, context, any);
+    bool has = font != NULL;
+    g_clear_object(&font);
+    pango_font_description_free(any);
+    g_object_unref(context);
+    return has;
+}
+
 int gtk_window_run(struct channel channel) {
     static struct gui gui;
     sigset_t none;
@@ -814,6 +827,10 @@ int gtk_window_run(struct channel channel) {
     (void)g_setenv("GTK_A11Y", g_getenv("DBUS_SESSION_BUS_ADDRESS") ? "atspi" : "none", FALSE);
     if (!gtk_init_check()) {
         (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "there is no display (DISPLAY or WAYLAND_DISPLAY)");
+        return 1;
+    }
+    if (!has_font()) {
+        (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "fontconfig finds no font (Debian: fonts-dejavu-core)");
         return 1;
     }
     choose_renderer();

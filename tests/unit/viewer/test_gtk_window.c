@@ -140,6 +140,27 @@ TEST(gtk_window_without_a_display_says_so) {
     free(said);
 }
 
+TEST(gtk_window_without_any_font_says_so) {
+    need_display();
+    gives(
+        "echo '<fontconfig></fontconfig>' >none.conf; FONTCONFIG_FILE=$PWD/none.conf xvfb-run -a $gray -gui scene.lua",
+        3);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "-gui: no window can be opened: fontconfig finds no font"));
+    free(said);
+}
+
+/* A resize while the mouse holds the selection loses neither. */
+TEST(gtk_window_keeps_an_edit_during_a_resize) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1 key g mousemove 650 460 sleep 0.3\n"
+          "xdotool search --onlyvisible --name out.png windowsize 900 650 sleep 0.5; xdotool click 1 sleep 0.5\n"
+          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          0);
+    gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
+}
+
 /* A script with an error stays in the window, which renders it as soon as it is mended. */
 TEST(gtk_window_shows_an_error_and_renders_the_mended_script) {
     need_display();
