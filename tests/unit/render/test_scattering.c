@@ -1,6 +1,7 @@
 /* Light that a medium scatters, along paths: against closed forms and integrals. */
 #include "tests/harness.h"
 
+#include "light/light_bounds.h"
 #include "material/density.h"
 #include "tests/stage.h"
 
@@ -65,10 +66,11 @@ TEST(white_media_are_invisible_in_uniform_light) {
     }
 }
 
-/* Along -z through a lamp's light: the integral of scattering, phase function and attenuation in the room. */
+/* Along -z through the light of a lamp, at last of a spot: the integral of scattering, phase function and attenuation
+ * in the room. */
 TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_sight) {
-    const double g[] = {0, 0.7, -0.6};
-    for (int i = 0; i < 3; i++) {
+    const double g[] = {0, 0.7, -0.6, 0.2};
+    for (int i = 0; i < 4; i++) {
         const struct medium medium = medium_of(colour_all(0.2), colour_make(0.5, 0.25, 1.5), g[i]);
         struct stage s;
         (void)begin_room(&s, &medium);
@@ -77,7 +79,12 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                                                    .position = lamp,
                                                    .colour = {1, 1, 1},
                                                    .attenuation = ATTENUATION_INVERSE_SQUARE,
+                                                   .direction = {-1, 0, 0},
+                                                   .cos_inner = 0.95,
+                                                   .cos_outer = 0.85,
                                                    .intensity = 1};
+        s.lights[0].kind = i == 3 ? LIGHT_SPOT : LIGHT_POINT;
+        const struct light lamp_there = s.lights[0];
         s.camera.fov = 0.01;
         struct colour mean = mean_of(&s, 4, 8192, 1);
         enum { STEPS = 20000 };
@@ -87,7 +94,8 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                 double t = (k + 0.5) / STEPS, z = -t, r2 = lamp.x * lamp.x + (lamp.z - z) * (lamp.z - z), r = sqrt(r2);
                 double cosine = -(lamp.z - z) / r, q = 1 + g[i] * g[i] - 2 * g[i] * cosine;
                 double phase = (1 - g[i] * g[i]) / (4 * pi * q * sqrt(q));
-                sum += scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
+                double cone = i == 3 ? light_cone(&lamp_there, vec3_make(-lamp.x / r, 0, (z - lamp.z) / r)) : 1;
+                sum += cone * scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
             }
             CHECK_NEAR(colour_get(mean, axis) / pi, sum, 0.015 * sum);
         }
