@@ -70,7 +70,7 @@ function M.studio(fields, _, integrator)
         local sheet = gr.openpbr_material { base_color = fields.floor or { 0.6, 0.6, 0.6 }, specular_weight = 0, classic = true }
         root:add_child(sweep(sheet, 4 * radius, 2.5 * radius):rotate('y', around):translate(middle[1], middle[2] - height, middle[3]))
     end
-    out.node = root
+    out.node, out.model = root, fields.model or fields.node
 
     -- A soft box: a square towards the middle, from `azimuth` to the right of the camera, whose light on a white surface
     -- that faces it is `light`.

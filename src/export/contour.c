@@ -136,7 +136,7 @@ static bool build(struct contour *contour, const struct contour_input *input, st
     return ok;
 }
 
-bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct error *error) {
+bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct list *known, struct error *error) {
     struct contour contour = {.tolerance = input->tolerance};
     struct vec3 extent = vec3_sub(input->csg->bounds.max, input->csg->bounds.min);
     *out = (struct solid_mesh){0};
@@ -144,6 +144,8 @@ bool contour_build(const struct contour_input *input, struct solid_mesh *out, st
     if (!solid_probe_init(&contour.probe, input->csg))
         return error_no_memory(error, "the mesh of a solid");
     bool ok = build(&contour, input, out, error);
+    *known = contour.grid.known;
+    contour.grid.known = (struct list){0};
     solid_probe_destroy(&contour.probe);
     line_grid_destroy(&contour.grid);
     list_destroy(&contour.vertices);

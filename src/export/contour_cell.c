@@ -6,6 +6,8 @@
  * A diagonal between two points of one face, or a triangle in a face, is never made: the neighbour may make the same
  * one, and the edge would have four triangles. */
 #include "export/contour_cell_internal.h"
+
+#include "base/hash.h"
 #include "export/contour_face_internal.h"
 #include "export/triangles_internal.h"
 
@@ -500,15 +502,27 @@ static bool some_missed(const struct cell_work *work, const struct cell *cell, s
     return false;
 }
 
-/* What was found good once stays good: triangles only change where cells beyond are divided. */
+/* The arcs of a cell change where cells beyond are divided. */
+static uint32_t hash_arcs(const struct cell_work *work) {
+    uint64_t hash = 0;
+    for (int i = 0; i < work->count; i++)
+        hash = hash_bytes(&work->arcs[i].arc.from, sizeof work->arcs[i].arc.from, hash);
+    return (uint32_t)hash;
+}
+
+/* What was found good once stays good while its arcs are the same. */
 static bool passes(const struct cell_work *work, const struct cell *cell, size_t first) {
     struct contour *contour = work->contour;
     uint64_t key = cell_key(cell->at, cell->size, 0);
-    if (key_map_find(&contour->passed, key))
+    uint32_t *passed = key_map_find(&contour->passed, key), hash = hash_arcs(work);
+    if (passed && *passed == hash)
         return true;
     if ((is_mixed(contour, first) && some_stray(contour, first)) || some_missed(work, cell, first))
         return false;
-    contour->failed = contour->failed || !key_map_add(&contour->passed, key, 0);
+    if (passed)
+        *passed = hash;
+    else
+        contour->failed = contour->failed || !key_map_add(&contour->passed, key, hash);
     return true;
 }
 

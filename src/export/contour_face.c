@@ -12,6 +12,13 @@ enum { BOUNDARY_LIMIT = 64, EDGE_LIMIT = 16, FEATURE_LIMIT = 4, FEATURE_STEPS = 
 /* Two normals whose cosine is above these are of a smooth surface: of one piece, of two that join. */
 static const double smooth_cosine = 0.9, join_cosine = 0.9995;
 
+/* Of the distance to another point: where parts of the surface touch, they are taken as so far apart. */
+static const double touch_share = 1e-5;
+
+static struct vec3 vec3_towards(struct vec3 from, struct vec3 to, double share) {
+    return vec3_add_scaled(from, vec3_sub(to, from), share);
+}
+
 /* A place on the boundary of a face. */
 struct boundary_point {
     uint32_t vertex;
@@ -128,6 +135,21 @@ static bool is_within(const struct face_search *search, struct vec3 point) {
     return true;
 }
 
+/* Where another part of the solid touches an edge, the line that looks for the edge goes from one part to the other. A
+ * line beside it meets both sides near the edge. */
+static bool is_touched_edge(struct face_search *search, const struct side *a, const struct side *b, struct vec3 at) {
+    struct solid_probe *probe = &search->contour->probe;
+    struct vec3 middle = vec3_scale(vec3_add(a->point, b->point), 0.5);
+    double near = 20 * touch_share * vec3_length(vec3_sub(middle, at));
+    bool found[2] = {false, false};
+    solid_cast(probe, vec3_towards(at, middle, touch_share), vec3_normalize(vec3_sub(b->point, a->point)));
+    for (uint32_t i = 0; i < probe->count; i++)
+        for (int k = 0; k < 2; k++)
+            found[k] =
+                found[k] || (fabs(probe->found[i].t) < near && probe->found[i].surface == (k == 0 ? a : b)->surface);
+    return found[0] && found[1];
+}
+
 /* One edge between the two sides. */
 static bool find_feature(struct face_search *search, struct side a, struct side b, struct feature *out) {
     const struct contour *contour = search->contour;
@@ -139,9 +161,12 @@ static bool find_feature(struct face_search *search, struct side a, struct side 
         struct vec3 start, direction;
         struct solid_crossing met;
         bool tangents = meet_tangents(search, &a, &b, &start, &direction);
-        if (!(vec3_length(direction) > 0) ||
-            !solid_cast_near(&search->contour->probe, start, direction, search->size, &met))
+        if (!(vec3_length(direction) > 0))
             return false;
+        if (!solid_cast_near(&search->contour->probe, start, direction, search->size, &met)) {
+            *out = (struct feature){start, a, b};
+            return tangents && is_within(search, start) && is_touched_edge(search, &a, &b, start);
+        }
         met.point = vec3_with(met.point, search->axis, search->plane);
         if (tangents && vec3_length(vec3_sub(met.point, start)) < 1e-10 * contour->size) {
             *out = (struct feature){start, a, b};
@@ -217,19 +242,26 @@ static struct arc make_arc(struct face_search *search, struct boundary_point p, 
     return arc;
 }
 
-/* Which of the two ways to join four points is right: is the place where their diagonals meet inside? */
+/* Which of the two ways to join four points is right: is the place where their diagonals meet inside? Where parts touch
+ * there, it is not: it is a little beside it, towards the points that are outside between two of the four. */
 static bool joins_first(struct face_search *search, const struct boundary_point p[4]) {
+    struct vec3 point[4];
     double x[4], y[4];
     for (int i = 0; i < 4; i++) {
-        struct vec3 point = contour_vertex(search->contour, p[i].vertex)->point;
-        x[i] = vec3_get(point, search->u);
-        y[i] = vec3_get(point, search->v);
+        point[i] = contour_vertex(search->contour, p[i].vertex)->point;
+        x[i] = vec3_get(point[i], search->u);
+        y[i] = vec3_get(point[i], search->v);
     }
     double ax = x[2] - x[0], ay = y[2] - y[0], bx = x[3] - x[1], by = y[3] - y[1], turn = ax * by - ay * bx;
     double t = fabs(turn) > 1e-300 ? ((x[1] - x[0]) * by - (y[1] - y[0]) * bx) / turn : 0.5;
     struct vec3 middle = vec3_with(vec3_all(0), search->axis, search->plane);
     middle = vec3_with(vec3_with(middle, search->u, x[0] + t * ax), search->v, y[0] + t * ay);
-    return solid_contains(&search->contour->probe, middle) != p[0].enter;
+    bool inside = solid_contains(&search->contour->probe, middle);
+    for (int i = p[0].enter ? 1 : 0; inside && i < 4; i += 2) {
+        struct vec3 between = vec3_scale(vec3_add(point[i], point[(i + 1) % 4]), 0.5);
+        inside = solid_contains(&search->contour->probe, vec3_towards(middle, between, touch_share));
+    }
+    return inside != p[0].enter;
 }
 
 static double misfit(const struct contour *contour, const struct boundary_point *p, const struct boundary_point *q) {
@@ -268,12 +300,19 @@ static double turn_of(const double a[2], const double b[2], const double c[2]) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* The points of an arc in the face. */
+/* The points of an arc in the face; those on edges of the surface a little nearer to its ends, for arcs that touch do
+ * not cross. */
 static int arc_points(const struct face_search *search, const struct arc *arc, double out[FEATURE_LIMIT + 2][2]) {
+    const struct contour *contour = search->contour;
+    struct vec3 from = contour_vertex(contour, arc->from)->point, to = contour_vertex(contour, arc->to)->point;
+    struct vec3 middle = vec3_scale(vec3_add(from, to), 0.5);
     int count = 0;
     for (uint32_t i = 0; i < arc->features + 2; i++) {
-        uint32_t vertex = i == 0 ? arc->from : i <= arc->features ? arc->feature + i - 1 : arc->to;
-        struct vec3 point = contour_vertex(search->contour, vertex)->point;
+        uint32_t feature = arc->feature + i - 1;
+        struct vec3 point = i == 0 ? from
+                            : i > arc->features
+                                ? to
+                                : vec3_towards(contour_vertex(contour, feature)->point, middle, touch_share);
         out[count][0] = vec3_get(point, search->u);
         out[count++][1] = vec3_get(point, search->v);
     }

@@ -150,10 +150,20 @@ static bool cast_axis(struct line_rows *work, struct pool *pool, struct error *e
     return ok;
 }
 
+/* So many lines of each axis along an edge of a base cell: what is between them may be missed, such as the tip of one
+ * leaf that another one hides but for that. Lines through implicit solids take long. */
+static int lines_per_base(const struct csg *csg) {
+    bool fast = csg->leaf_count > 1;
+    for (uint32_t i = 0; i < csg->leaf_count; i++)
+        fast = fast && csg->leaves[i].shape.kind != SHAPE_IMPLICIT;
+    return fast ? 8 : 4;
+}
+
 static bool cast_base_lines(struct contour *contour, struct pool *pool, struct error *error) {
     int workers = pool_workers(pool), ready = 0;
+    int step = contour->grid.base / lines_per_base(contour->probe.csg);
     struct line_rows work = {.contour = contour,
-                             .step = contour->grid.base > 1 ? contour->grid.base / 2 : 1,
+                             .step = step > 0 ? step : 1,
                              .probes = mem_alloc_zero((size_t)workers, sizeof *work.probes)};
     while (work.probes && ready < workers && solid_probe_init(&work.probes[ready], contour->probe.csg))
         ready++;

@@ -109,7 +109,8 @@ struct contour_input {
     struct pool *pool;
 };
 
-/* Everything is within about a quarter of the tolerance of the surface. Errors: no memory, cancelled. */
-bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct error *error);
+/* Everything is within about a quarter of the tolerance of the surface. `known`: points of the surface, struct
+ * known_point; the caller destroys it. Errors: no memory, cancelled. */
+bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct list *known, struct error *error);
 
 #endif

@@ -16,15 +16,17 @@ enum { RING_LIMIT = 64, PASS_LIMIT = 60 };
 
 static const double growth = 1.7;       /* of the limit of the length, in a pass */
 static const double sliver_share = 0.3; /* of the tolerance, for triangles without a height */
+static const double close_share = 0.1;  /* of the tolerance, for vertices near others of the surface */
 
 struct sample {
     struct vec3 point;
     uint32_t next;
-    bool crease;
+    bool crease, close;
 };
-/* A piece of the surface, as far as the vertices show: a plane if it is not curved. */
+/* A piece of the surface, as far as the vertices show: a plane if it is not curved. Vertices that receded from another
+ * part lie in no plane. */
 struct piece {
-    struct vec3 normal;
+    struct vec3 point, normal;
     bool curved;
 };
 /* Corners are numbers: three times the triangle, and the place of the vertex in it. */
@@ -41,6 +43,7 @@ struct simplifier {
     struct list samples;
     struct key_map piece_numbers; /* by surface + 1 */
     struct list pieces;
+    uint32_t *piece; /* by triangle */
     uint32_t *mark, stamp;
     struct list moved; /* struct moved_sample */
 };
@@ -100,25 +103,30 @@ static void detach(struct simplifier *s, uint32_t corner) {
 
 /* --- pieces of the surface --- */
 
-static bool note_piece(struct simplifier *s, uint32_t surface, struct vec3 normal) {
+/* Distances from planes below it are rounding. */
+static double plane_slack(const struct simplifier *s) {
+    return 1e-6 * s->input->size + s->input->resolution;
+}
+
+static bool note_piece(struct simplifier *s, uint32_t surface, struct vec3 point, struct vec3 normal) {
     uint32_t *number = key_map_find(&s->piece_numbers, (uint64_t)surface + 1);
     if (number) {
         struct piece *piece = (struct piece *)s->pieces.items + *number;
-        piece->curved = piece->curved || vec3_dot(piece->normal, normal) < 1 - 1e-9;
+        piece->curved = piece->curved || vec3_dot(piece->normal, normal) < 1 - 1e-9 ||
+                        fabs(vec3_dot(piece->normal, vec3_sub(point, piece->point))) > plane_slack(s);
         return true;
     }
     struct piece *room = list_room(&s->pieces, 1, sizeof *room);
     if (!room || !key_map_add(&s->piece_numbers, (uint64_t)surface + 1, (uint32_t)s->pieces.count))
         return false;
-    *room = (struct piece){normal, false};
+    *room = (struct piece){point, normal, false};
     s->pieces.count++;
     return true;
 }
 
 /* The plane of a triangle's piece, or NULL. */
 static const struct piece *plane_of(const struct simplifier *s, uint32_t triangle) {
-    uint64_t key = (uint64_t)solid_triangle_at(s->mesh, triangle)->surface + 1;
-    const struct piece *piece = (struct piece *)s->pieces.items + *key_map_find(&s->piece_numbers, key);
+    const struct piece *piece = (struct piece *)s->pieces.items + s->piece[triangle];
     return piece->curved ? NULL : piece;
 }
 
@@ -127,13 +135,17 @@ static bool note_pieces(struct simplifier *s) {
     for (uint32_t i = 0; i < s->mesh->vertices.count; i++) {
         const struct solid_vertex *vertex = solid_vertex_at(s->mesh, i);
         for (int k = 0; k <= vertex->sharp; k++)
-            ok = ok && note_piece(s, vertex->surface[k], vertex->normal[k]);
+            ok = ok && note_piece(s, vertex->surface[k], vertex->point, vertex->normal[k]);
     }
     /* A triangle may be of a piece that no vertex names: it counts as curved. */
-    for (uint32_t i = 0; i < s->mesh->triangles.count; i++) {
+    for (uint32_t i = 0; ok && i < s->mesh->triangles.count; i++) {
         uint32_t surface = solid_triangle_at(s->mesh, i)->surface;
-        if (!key_map_find(&s->piece_numbers, (uint64_t)surface + 1))
-            ok = ok && note_piece(s, surface, vec3_all(0)) && note_piece(s, surface, vec3_all(0));
+        uint64_t key = (uint64_t)surface + 1;
+        if (!key_map_find(&s->piece_numbers, key))
+            ok = ok && note_piece(s, surface, vec3_all(0), vec3_all(0)) &&
+                 note_piece(s, surface, vec3_all(0), vec3_all(0));
+        if (ok)
+            s->piece[i] = *key_map_find(&s->piece_numbers, key);
     }
     return ok;
 }
@@ -167,7 +179,7 @@ static void find_creases(struct simplifier *s) {
         int creases = 0;
         for (uint32_t c = s->head[i]; c != NOTHING; c = s->next[c])
             creases += is_crease(s, c);
-        bool corner = solid_vertex_at(s->mesh, i)->sharp == VERTEX_CORNER || (s->input->fixed && s->input->fixed[i]) ||
+        bool corner = solid_vertex_at(s->mesh, i)->sharp == VERTEX_CORNER || s->input->keep[i] == KEEP_VERTEX ||
                       (creases != 0 && creases != 2);
         s->kind[i] = corner ? VERTEX_CORNER : creases ? VERTEX_EDGE : VERTEX_SMOOTH;
     }
@@ -297,9 +309,8 @@ static bool fits_surface(const struct simplifier *s, struct collapse *collapse, 
         return false;
     normal = vec3_scale(normal, 1 / twice_area);
     if (plane) {
-        double slack = 1e-6 * s->input->size + s->input->resolution;
         double off = vec3_dot(plane->normal, vec3_sub(ring->point[0], ring->point[1]));
-        return vec3_dot(normal, plane->normal) > 0.9 && fabs(off) < slack;
+        return vec3_dot(normal, plane->normal) > 0.9 && fabs(off) < plane_slack(s);
     }
     collapse->is_planar = false;
     double fine = 0.05 * s->input->tolerance;
@@ -309,15 +320,17 @@ static bool fits_surface(const struct simplifier *s, struct collapse *collapse, 
 }
 
 /* The new triangle that is nearest to a sample, or -1. */
-static int nearest_target(const struct simplifier *s, const struct collapse *collapse, struct vec3 point, bool crease) {
-    double limit = s->tolerance * s->tolerance, minimum = INFINITY;
+static int nearest_target(const struct simplifier *s, const struct collapse *collapse, const struct sample *sample) {
+    double distance_limit = s->tolerance * (sample->close ? close_share : 1), limit = distance_limit * distance_limit;
+    double minimum = INFINITY;
     int best = -1;
     for (int i = 0; i < collapse->count && minimum > 1e-4 * limit; i++) {
         const struct ring_triangle *ring = &collapse->ring[i];
-        double distance = crease ? INFINITY : triangle_distance_squared(point, ring->point);
-        for (int k = 0; crease && k < 3; k++)
+        double distance = sample->crease ? INFINITY : triangle_distance_squared(sample->point, ring->point);
+        for (int k = 0; sample->crease && k < 3; k++)
             if (ring->crease >> k & 1)
-                distance = fmin(distance, segment_distance_squared(point, ring->point[k], ring->point[(k + 1) % 3]));
+                distance =
+                    fmin(distance, segment_distance_squared(sample->point, ring->point[k], ring->point[(k + 1) % 3]));
         if (distance < minimum) {
             minimum = distance;
             best = i;
@@ -327,8 +340,7 @@ static int nearest_target(const struct simplifier *s, const struct collapse *col
 }
 
 static bool move_sample(struct simplifier *s, const struct collapse *collapse, uint32_t sample) {
-    const struct sample *at = (struct sample *)s->samples.items + sample;
-    int target = nearest_target(s, collapse, at->point, at->crease);
+    int target = nearest_target(s, collapse, (struct sample *)s->samples.items + sample);
     struct moved_sample *room = target >= 0 ? list_room(&s->moved, 1, sizeof *room) : NULL;
     if (!room)
         return false;
@@ -345,7 +357,8 @@ static bool keeps_samples(struct simplifier *s, const struct collapse *collapse)
         struct sample *room = list_room(&s->samples, 1, sizeof *room);
         if (!room)
             return false;
-        *room = (struct sample){point_of(s, collapse->from), NOTHING, edge};
+        *room =
+            (struct sample){point_of(s, collapse->from), NOTHING, edge, s->input->keep[collapse->from] == KEEP_CLOSE};
         s->samples.count++;
         if (!move_sample(s, collapse, (uint32_t)s->samples.count - 1)) {
             s->samples.count--;
@@ -468,7 +481,7 @@ static void remove_slivers(struct simplifier *s) {
             continue;
         for (int k = 0; k < 3; k++) {
             double opposite = vec3_length(vec3_sub(c.point[(k + 1) % 3], c.point[(k + 2) % 3]));
-            if (opposite < length)
+            if (opposite < length || s->input->keep[c.vertex[k]] == KEEP_VERTEX)
                 continue;
             if (!collapse_edge(s, c.vertex[k], c.vertex[(k + 1) % 3]))
                 (void)collapse_edge(s, c.vertex[k], c.vertex[(k + 2) % 3]);
@@ -524,9 +537,11 @@ static bool begin(struct simplifier *s) {
     s->kind = mem_alloc_zero(vertices, 1);
     s->waiting = mem_alloc(vertices);
     s->crease = mem_alloc_zero(triangles, 1);
+    s->piece = mem_alloc(triangles * sizeof *s->piece);
     s->first_sample = mem_alloc(triangles * sizeof *s->first_sample);
     s->mark = mem_alloc_zero(vertices, sizeof *s->mark);
-    if (!s->head || !s->next || !s->degree || !s->kind || !s->waiting || !s->crease || !s->first_sample || !s->mark)
+    if (!s->head || !s->next || !s->degree || !s->kind || !s->waiting || !s->crease || !s->piece || !s->first_sample ||
+        !s->mark)
         return false;
     memset(s->head, 0xff, vertices * sizeof *s->head);
     memset(s->first_sample, 0xff, triangles * sizeof *s->first_sample);
@@ -558,6 +573,7 @@ bool simplify_mesh(struct solid_mesh *mesh, const struct simplify_input *input) 
     mem_free(s.kind);
     mem_free(s.waiting);
     mem_free(s.crease);
+    mem_free(s.piece);
     mem_free(s.first_sample);
     mem_free(s.mark);
     list_destroy(&s.samples);

@@ -4,11 +4,14 @@
 
 #include "export/solid_mesh_internal.h"
 
+/* How near a vertex is kept: within the tolerance, much nearer, in its place. */
+enum { KEEP_NEAR, KEEP_CLOSE, KEEP_VERTEX };
+
 struct simplify_input {
     double tolerance;
-    double size;          /* of the solid */
-    double resolution;    /* the coordinates are multiples of about this number: triangles are at least so high */
-    const uint8_t *fixed; /* by vertex: not 0: it stays */
+    double size;         /* of the solid */
+    double resolution;   /* the coordinates are multiples of about this number: triangles are at least so high */
+    const uint8_t *keep; /* by vertex */
 };
 
 /* The vertices that stay are those of the fine mesh; edges and corners of the solid keep their places, and no removed

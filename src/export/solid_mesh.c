@@ -1,6 +1,6 @@
 /* From the contour of a solid to its mesh. Triangles are removed without tests for intersections, which would take most
- * of the time; afterwards all are tested, and their middles against the solid. Where something is wrong the vertices
- * around it are kept, and it is done again. The last resort is another grid. */
+ * of the time; afterwards all are tested, points of them against the solid, and points of the solid against them. Where
+ * something is wrong the vertices around it are kept, and it is done again. The last resort is another grid. */
 #include "export/solid_mesh_internal.h"
 
 #include "base/hash.h"
@@ -147,11 +147,11 @@ bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct er
 struct verification {
     const struct solid_input *input;
     const struct solid_mesh *mesh;
+    struct list known; /* struct known_point */
     double size;
     int round;
-    uint32_t intersections, strays;
     struct solid_probe *probes; /* of the workers */
-    uint8_t *stray;             /* by triangle, bits */
+    uint64_t *stray;            /* by triangle, bits */
     struct list boxes;
     bool failed;
 };
@@ -165,35 +165,42 @@ static void add_fault(struct verification *v, struct box box, double margin) {
     v->boxes.count++;
 }
 
+static void add_far_point(struct verification *v, struct vec3 point) {
+    add_fault(v, (struct box){point, point}, 10 * v->input->tolerance * (1 << v->round));
+}
+
 static void add_intersection(void *context, uint32_t one, uint32_t other) {
     struct verification *v = context;
     struct corners a = corners_of(v->mesh, one), b = corners_of(v->mesh, other);
-    v->intersections++;
     add_fault(v, box_meet(corners_box(&a), corners_box(&b)), 2 * v->input->tolerance + 0.02 * v->size * v->round);
 }
 
-enum { CHUNK = 256 };
+enum { CHUNK = 256, TEST_POINTS = 6, KNOWN_TESTS = 200000 };
 
-enum { TEST_POINTS = 7 };
-
-/* The middles of its edges, its own, and points between that and the corners. */
-static struct vec3 test_point(const struct corners *c, int number) {
-    struct vec3 middle = vec3_scale(vec3_add(c->point[0], vec3_add(c->point[1], c->point[2])), 1.0 / 3);
-    if (number < 3)
-        return vec3_scale(vec3_add(c->point[number], c->point[(number + 1) % 3]), 0.5);
-    return number == 3 ? middle : vec3_scale(vec3_add(middle, c->point[number - 4]), 0.5);
+/* Points of a regular grid on a triangle, and the same on its edges, which the triangle beyond has too: one of them is
+ * enough. */
+static bool test_point(const struct corners *c, int number, struct vec3 *out) {
+    int i = number / TEST_POINTS, k = number % TEST_POINTS, rest = TEST_POINTS - i - k;
+    const int share[3] = {i, k, rest};
+    *out = vec3_all(0);
+    for (int n = 0; n < 3; n++) {
+        int next = (n + 1) % 3;
+        if (share[n] < 0 || share[n] == TEST_POINTS || (share[n] == 0 && c->vertex[next] > c->vertex[(n + 2) % 3]))
+            return false;
+        *out = vec3_add_scaled(*out, c->point[n], (double)share[n] / TEST_POINTS);
+    }
+    return true;
 }
 
 /* Bits of the points that are not near to the solid. */
-static uint8_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
-    struct vec3 normal = vec3_normalize(triangle_normal(c->point));
-    uint8_t out = 0;
+static uint64_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
+    struct vec3 normal = vec3_normalize(triangle_normal(c->point)), at;
+    uint64_t out = 0;
     if (!(vec3_length(normal) > 0))
         return 8;
-    for (int i = 0; i < TEST_POINTS; i++) {
-        if (!solid_is_near_for_sure(probe, test_point(c, i), normal, tolerance))
-            out |= (uint8_t)(1 << i);
-    }
+    for (int i = 0; i < TEST_POINTS * TEST_POINTS; i++)
+        if (test_point(c, i, &at) && !solid_is_near_for_sure(probe, at, normal, tolerance))
+            out |= UINT64_C(1) << i;
     return out;
 }
 
@@ -208,20 +215,17 @@ static void test_chunk(void *context, uint32_t item, int worker) {
 
 static bool find_strays(struct verification *v, struct error *error) {
     uint32_t count = (uint32_t)v->mesh->triangles.count;
-    v->stray = mem_alloc_zero(count, 1);
+    v->stray = mem_alloc_zero(count, sizeof *v->stray);
     if (!v->stray)
         return error_no_memory(error, "the mesh of a solid");
     bool ok = pool_run(v->input->pool, (count + CHUNK - 1) / CHUNK, test_chunk, v) ||
               error_set(error, ERROR_CANCELLED, "stopped while a mesh was tested");
     for (uint32_t i = 0; ok && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
-        for (int k = 0; k < TEST_POINTS; k++) {
-            struct vec3 at = test_point(&corners, k);
-            if (!(v->stray[i] >> k & 1))
-                continue;
-            v->strays++;
-            add_fault(v, (struct box){at, at}, 10 * v->input->tolerance * (1 << v->round));
-        }
+        struct vec3 at;
+        for (int k = 0; k < TEST_POINTS * TEST_POINTS; k++)
+            if ((v->stray[i] >> k & 1) && test_point(&corners, k, &at))
+                add_far_point(v, at);
     }
     mem_free(v->stray);
     return ok;
@@ -229,10 +233,13 @@ static bool find_strays(struct verification *v, struct error *error) {
 
 static bool verify(struct verification *v, struct error *error) {
     struct box_tree tree;
-    v->intersections = v->strays = 0;
+    const struct known_point *known = v->known.items;
     if (!triangle_tree_build(&tree, v->mesh, v->input->pool, error))
         return false;
     find_intersections(v->mesh, &tree, 1e-13 * v->size, add_intersection, v);
+    for (size_t i = 0, step = 1 + v->known.count / KNOWN_TESTS; i < v->known.count; i += step)
+        if (!mesh_is_near(v->mesh, &tree, known[i].point, v->input->tolerance))
+            add_far_point(v, known[i].point);
     box_tree_destroy(&tree);
     if (!find_strays(v, error))
         return false;
@@ -250,35 +257,39 @@ static void round_coordinates(struct solid_mesh *mesh) {
     }
 }
 
-static void mark_fixed(const struct verification *v, const struct solid_mesh *mesh, uint8_t *fixed) {
+/* Vertices near the faults of the last round are kept better than before. */
+static void mark_kept(struct verification *v, const struct solid_mesh *mesh, uint8_t *keep) {
     const struct box *boxes = v->boxes.items;
-    for (uint32_t i = 0; i < mesh->vertices.count; i++)
-        for (size_t k = 0; k < v->boxes.count && !fixed[i]; k++)
-            fixed[i] = box_contains(&boxes[k], solid_vertex_at(mesh, i)->point);
+    for (uint32_t i = 0; i < mesh->vertices.count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < v->boxes.count && !found && keep[i] != KEEP_VERTEX; k++)
+            found = box_contains(&boxes[k], solid_vertex_at(mesh, i)->point);
+        keep[i] = (uint8_t)(keep[i] + found);
+    }
+    v->boxes.count = 0;
 }
 
 /* *good: it has no faults. */
 static bool simplify_and_test(struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
-                              uint8_t *fixed, bool *good, struct error *error) {
+                              uint8_t *keep, bool *good, struct error *error) {
     const struct simplify_input input = {
         .tolerance = v->input->tolerance,
         .size = v->size,
         .resolution = 0x1p-22 * fmax(vec3_max_abs(v->input->csg->bounds.min), vec3_max_abs(v->input->csg->bounds.max)),
-        .fixed = fixed};
+        .keep = keep};
     *good = false;
     for (v->round = 0; v->round < ROUNDS && !*good; v->round++) {
         if (pool_cancelled(v->input->pool))
             return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
         solid_mesh_destroy(out);
-        mark_fixed(v, fine, fixed);
+        mark_kept(v, fine, keep);
         bool memory = solid_mesh_copy(fine, out) && simplify_mesh(out, &input);
         if (!memory)
             return error_no_memory(error, "the mesh of a solid");
         v->mesh = out;
         if (!verify(v, error))
             return false;
-        /* What is not proved to be near may be near: in the end it is good. */
-        *good = v->intersections == 0 && (v->strays == 0 || v->round == ROUNDS - 1);
+        *good = v->boxes.count == 0;
     }
     if (!solid_mesh_compact(out))
         return error_no_memory(error, "the mesh of a solid");
@@ -299,26 +310,23 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
     struct verification v = {.input = input, .size = size};
     struct solid_mesh fine;
     *good = false;
-    if (!contour_build(&contour, &fine, error))
-        return false;
-    if (fine.triangles.count == 0) {
-        solid_mesh_destroy(&fine);
-        return is_empty(input, error);
-    }
+    bool ok = contour_build(&contour, &fine, &v.known, error);
+    if (ok && fine.triangles.count == 0)
+        ok = is_empty(input, error);
     round_coordinates(&fine);
-    bool ok = separate_parts(&fine, input, findings, error);
-    uint8_t *fixed = mem_alloc_zero(fine.vertices.count, 1);
+    ok = ok && separate_parts(&fine, input, findings, error);
+    uint8_t *keep = mem_alloc_zero(fine.vertices.count, 1);
     v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
     while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
         ready++;
-    ok = ok && ((fixed && ready == workers) || error_no_memory(error, "the mesh of a solid"));
-    ok = ok && simplify_and_test(&v, &fine, out, fixed, good, error);
-    findings->far_points = v.strays;
+    ok = ok && ((keep && ready == workers) || error_no_memory(error, "the mesh of a solid"));
+    ok = ok && simplify_and_test(&v, &fine, out, keep, good, error);
     while (ready > 0)
         solid_probe_destroy(&v.probes[--ready]);
     mem_free(v.probes);
-    mem_free(fixed);
+    mem_free(keep);
     list_destroy(&v.boxes);
+    list_destroy(&v.known);
     solid_mesh_destroy(&fine);
     return ok;
 }

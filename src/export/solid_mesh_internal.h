@@ -44,12 +44,11 @@ struct solid_input {
 struct solid_findings {
     uint32_t separated;   /* vertices that were moved because parts of the solid touch there */
     struct vec3 position; /* of one of them */
-    uint32_t far_points;  /* points of triangles that may be further from the solid than the tolerance */
 };
 
-/* A closed, oriented mesh whose coordinates are numbers of single precision and whose triangles do not intersect;
- * within the tolerance of the solid, but for the findings. Errors: the solid is empty, or too fine for this; no memory;
- * cancelled. */
+/* A closed, oriented mesh whose coordinates are numbers of single precision and whose triangles do not intersect; at
+ * all points that are tested the distance from the solid, and of the solid from it, is below the tolerance. Errors: the
+ * solid is empty, or too fine for this; no memory; cancelled. */
 bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, struct solid_findings *findings,
                       struct error *error);
 /* The triangles of a mesh under a map, with one vertex for each position; `surface` is the material slot. False: no

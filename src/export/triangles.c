@@ -134,6 +134,19 @@ bool region_search_next(struct region_search *search, uint32_t *item) {
     return false;
 }
 
+bool mesh_is_near(const struct solid_mesh *mesh, const struct box_tree *tree, struct vec3 point, double distance) {
+    struct vec3 margin = vec3_all(distance);
+    struct region_search search;
+    uint32_t triangle;
+    region_search_begin(&search, tree, (struct box){vec3_sub(point, margin), vec3_add(point, margin)});
+    while (region_search_next(&search, &triangle)) {
+        struct corners corners = corners_of(mesh, triangle);
+        if (triangle_distance_squared(point, corners.point) < distance * distance)
+            return true;
+    }
+    return false;
+}
+
 void find_intersections(const struct solid_mesh *mesh, const struct box_tree *tree, double slack,
                         intersection_found *found, void *context) {
     for (uint32_t i = 0; i < mesh->triangles.count; i++) {

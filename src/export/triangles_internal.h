@@ -32,6 +32,8 @@ struct region_search {
 };
 void region_search_begin(struct region_search *search, const struct box_tree *tree, struct box region);
 bool region_search_next(struct region_search *search, uint32_t *item);
+/* Whether a triangle is nearer to the point. */
+bool mesh_is_near(const struct solid_mesh *mesh, const struct box_tree *tree, struct vec3 point, double distance);
 
 /* Calls `found` for each pair of triangles that intersect. */
 typedef void intersection_found(void *context, uint32_t one, uint32_t other);

@@ -23,6 +23,7 @@ enum viewer_action {
     VIEWER_SAVE_IMAGE,     /* the displayed image must be saved: viewer->window.image */
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
+    VIEWER_EXPORT_MODEL,   /* a model must be written: viewer->save_as */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
     VIEWER_RUN_AGAIN,      /* the scripts must run again */
     VIEWER_END_SCRIPTS,    /* they must end */
@@ -94,7 +95,7 @@ struct viewer_motion {
 enum { NODE_QUERIES = 64 };
 struct viewer_nodes {
     struct node_query wanted[NODE_QUERIES];
-    uint32_t count;
+    uint32_t count, added; /* added: nodes that edits have added to the tree */
 };
 
 /* The changes of the scene, and the state for making them. */

@@ -52,6 +52,11 @@ static bool ends_scene(enum window_action action) {
     return action == DO_QUIT || action == DO_NEXT_PICTURE;
 }
 
+/* The window asks for a name first. */
+static bool asks(int action) {
+    return action == DO_EXPORT_MODEL;
+}
+
 /* The same key again takes it back; what was deleted is undone. */
 static bool repeats(enum window_action action) {
     return action == DO_DELETE || action == DO_FULL_SCREEN || action == DO_HIDE || action == DO_PLAY ||
@@ -180,6 +185,16 @@ TEST(gtk_window_asks_before_edits_are_lost) {
     gives("grep -q \"gr.change_delete('ball'\" out-changes1.lua", 0);
 }
 
+TEST(gtk_window_exports_a_model_under_the_name_that_is_typed) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 key ctrl+e; titled 'Export a Model'\n"
+          "xdotool sleep 0.5 key ctrl+a type --delay 20 $PWD/part.3mf; xdotool key Return; until_file part.3mf\n"
+          "sleep 0.5; xdotool key ctrl+q",
+          0);
+    gives("$gray scene.lua -o same.3mf && cmp part.3mf same.3mf", 0);
+}
+
 /* Without input: it opens, draws, writes the picture, and ends by a signal. */
 TEST(gtk_window_opens_under_wayland) {
     need_display();
@@ -233,7 +248,7 @@ static void press_every_key(enum window_key_set set) {
     for (int last = 0; last < 2; last++) {
         for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
             const struct window_action_row *row = &window_action_table[i];
-            for (const char *at = row->keys[set]; *at && ends_scene((enum window_action)i) == last;) {
+            for (const char *at = row->keys[set]; *at && ends_scene((enum window_action)i) == last && !asks(i);) {
                 size_t length = strcspn(at, " ");
                 key_for_tool(at, length, key, sizeof key);
                 used += i == DO_QUIT ? (size_t)snprintf(commands + used, SIZE - used, "xdotool key %s\n", key)
@@ -324,7 +339,7 @@ TEST_LONG(gtk_window_does_every_action_of_its_menus) {
         "/usr/bin/python3 reader.py");
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         enum action_need need = window_action_table[i].need;
-        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i))
+        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i) && !asks(i))
             used += (size_t)snprintf(line + used, SIZE - used, " %s", window_action_table[i].name);
     }
     (void)snprintf(line + used, SIZE - used,
@@ -335,7 +350,7 @@ TEST_LONG(gtk_window_does_every_action_of_its_menus) {
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         enum action_need need = window_action_table[i].need;
         (void)snprintf(pattern, sizeof pattern, "window: %s\n", window_action_table[i].name);
-        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i) &&
+        if (need != NEEDS_SELECTION && need != NEEDS_FRAMES && !ends_scene((enum window_action)i) && !asks(i) &&
             (!said || !strstr(said, pattern)))
             test_fail(__FILE__, __LINE__, "%s was not done", window_action_table[i].name);
     }

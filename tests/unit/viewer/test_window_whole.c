@@ -3,6 +3,7 @@
  * are tried), overlay lines, outlines, edits whose saved calls give the same bytes without a window. */
 #define _GNU_SOURCE
 #include "host/supervisor.h"
+#include "script/addable.h"
 #include "tests/harness.h"
 
 #include <math.h>
@@ -283,6 +284,44 @@ TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
     char *said = test_read_file(test_path("said.txt"), &size);
     CHECK_TEXT(said, "");
     free(said);
+}
+
+TEST(window_exports_the_model_that_the_command_line_writes_and_says_what_is_wrong) {
+#define EXPORT(name)                                                                                                   \
+    { .kind = WINDOW_ACTION, .action = DO_EXPORT_MODEL, .text = name }
+    static const char ball[] =
+        "for i = 1, 2 do\n"
+        "    gr.render{node = gr.sphere{radius = i}, file = 'ball' .. i .. '.png', width = 64, eye = {0, "
+        "0, 9}, view = {0, 0, -1}}\n"
+        "end\n";
+    const struct deed deeds[] = {{"ready", ACTION(DO_NEXT_PICTURE), 0},
+                                 {"ball2.png", ACTION(DO_HIDE), 0},
+                                 {"ready", EXPORT("ball.stl"), 0},
+                                 {"ball.stl is written", EXPORT("ball.wrl"), 0},
+                                 {"ball.wrl: the name of a model ends in", EXPORT("notes.stl"), 0},
+                                 {"notes.stl: exists already and is not a model", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("notes.stl"), "my notes\n");
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = ball}), 0);
+    struct test_result result = test_gray(NULL, "-q scene.lua -o same.stl --picture 2");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("ball.stl", "same.stl"));
+    /* A deleted ball is not there. */
+    static const char two[] =
+        "local all = gr.node{name = 'all', children = {gr.sphere{name = 'near', radius = 1},\n"
+        "    gr.sphere{name = 'far', centre = {5, 0, 0}, radius = 1}}}\n"
+        "gr.render{node = all, file = 'two.png', width = 64, eye = {0, 0, 9}, view = {0, 0, -1}}\n";
+    const struct window_event press = PRESS, release = RELEASE;
+    const struct deed edit[] = {{"ready", press, 0},
+                                {NULL, release, 0},
+                                {"ready", ACTION(DO_DELETE), 0},
+                                {"ready", EXPORT("two.stl"), 0},
+                                {"two.stl is written", ACTION(DO_QUIT), 0}};
+    CHECK_EQ_INT(viewer_that(edit, &(struct setting){.scene = two}), 0);
+    result = test_gray(NULL, "-q scene.lua -o same.stl --node far");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("two.stl", "same.stl"));
 }
 
 /* Frames that depend on those before. */
@@ -743,4 +782,86 @@ TEST(window_changes_a_material_of_the_list_and_saves_under_a_chosen_name) {
     CHECK(person.seen_nodes[1] >= 1 && test_same_files("mine.png", "out-view1.png"));
     check_saved(1);
     check_contains("out-changes1.lua", (const char *[]){"gr.change_material(", NULL});
+}
+
+/* Adding. */
+
+#define ADD(lua)                                                                                                       \
+    { .kind = WINDOW_ADD, .text = lua }
+
+/* All at once: the file has every call, and no edit was skipped. */
+static void add_all(int rows) {
+    enum { LIMIT = 128 };
+    static struct deed deeds[LIMIT];
+    static struct person person;
+    const struct setting setting = {.scene = BALL RENDER(LIGHT), .person = &person};
+    int count = 0, step = 0;
+    while (addable_txt[ADDABLE_COLUMNS * step])
+        step++;
+    step = step / rows > 0 ? step / rows : 1;
+    for (const char *const *row = addable_txt; *row && count < LIMIT - 4; row++) {
+        bool call = (row - addable_txt) % ADDABLE_COLUMNS == ADDABLE_CALL;
+        if (!call || (row - addable_txt) / ADDABLE_COLUMNS % step != 0)
+            continue;
+        deeds[count] = (struct deed){"ready", ADD(""), 10};
+        (void)snprintf(deeds[count++].event.text, 1024, "%s", *row);
+    }
+    int added = count;
+    deeds[count++] = (struct deed){"ready", ACTION(DO_SAVE_CHANGES), 10};
+    deeds[count++] = (struct deed){"ready", ACTION(DO_SAVE_PICTURE), 0};
+    deeds[count++] = (struct deed)QUIT;
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    check_saved(1);
+    char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
+    int calls = 0;
+    for (const char *at = saved; at && (at = strstr(at, "gr.change_add")); at++)
+        calls++;
+    CHECK_EQ_INT(calls, added);
+    free(saved);
+    CHECK_EQ_INT(test_run_shell("! grep -q skipped err.txt", ">>out.txt"), 0);
+}
+
+TEST(window_that_adds_from_its_list_saves_what_gives_the_same_bytes) {
+    add_all(5);
+}
+
+TEST_LONG(window_that_adds_everything_of_its_list_saves_what_gives_the_same_bytes) {
+    add_all(1000);
+}
+
+/* The inspector has the arguments of the call; what the function refuses goes back to what was there. */
+TEST(window_changes_the_arguments_of_what_it_has_added) {
+    const struct deed deeds[] = {
+        {"ready", ADD("gr.torus{major = 2, minor = 0.25}"), 0},
+        {"ready", FIELD(0.5), 10, "minor"},
+        {"ready", FIELD(0.1, 0.6, 0.2), 10, "kd"},
+        {"ready", FIELD(1e9), 10, "major"},
+        {"minor must be at least", ADD("gr.spot_light{position = {0, 0, 0}, colour = {1, 1, 1}}"), 0},
+        {"ready", FIELD(10), 20, "outer"},
+        {"ready", FIELD(20), 20, "outer"},
+        UNDO,
+        {"ready", ACTION(DO_SAVE_CHANGES), 20},
+        {"ready", ACTION(DO_SAVE_PICTURE), 0},
+        QUIT};
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT)}), 0);
+    check_saved(1);
+    check_contains("out-changes1.lua",
+                   (const char *[]){"'gr.torus{major = 2, minor = 0.5}'", "gr.change_material(4294967295, {0.1",
+                                    "colour = {1, 1, 1}, outer = 10}'", NULL});
+}
+
+/* What is hidden is hidden in the window only; a call that is wrong says so. */
+TEST(window_hides_without_deleting_in_what_it_saves) {
+    const struct window_event hide = {.kind = WINDOW_HIDE, .node.serial = 2, .text = "ball"};
+    const struct deed deeds[] = {{"ready", hide, 0},
+                                 {"ready", ADD("gr.no_such_shape{}"), 20},
+                                 {"no_such_shape does not exist", ACTION(DO_UNDO), 0},
+                                 {"ready", ACTION(DO_UNDO), 0},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 0},
+                                 QUIT};
+    static struct person person;
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT), .person = &person}), 0);
+    CHECK(!test_same_files("out-view1.png", "out.png") && !person.state.unsaved);
+    CHECK_EQ_INT(test_run_shell("! grep '^gr' out-changes1.lua", ">>out.txt"), 0);
 }
