@@ -1577,15 +1577,15 @@ function gr.change_delete(name, serial) end
 ---@class gr.change_add.fields
 ---@field name string name (a string): Name of the parent node.
 ---@field serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
----@field shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): Shape of the new node, about the size of a unit sphere, or a copy of a node.
----@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@field shape string shape (a string): The call that makes the new node, such as 'gr.torus{minor = 0.1}', or 'copy'.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Colour of a shape whose call gives it no material.
 ---@field source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the number of the node to copy.
 
 ---Adds a node to all later pictures; gr.change_node places it.
 ---@param name string name (a string): Name of the parent node.
 ---@param serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
----@param shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): Shape of the new node, about the size of a unit sphere, or a copy of a node.
----@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@param shape string shape (a string): The call that makes the new node, such as 'gr.torus{minor = 0.1}', or 'copy'.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Colour of a shape whose call gives it no material.
 ---@param source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the number of the node to copy.
 ---@overload fun(fields: gr.change_add.fields)
 function gr.change_add(name, serial, shape, colour, source) end
@@ -1611,6 +1611,16 @@ function gr.change_material(serial, colour) end
 ---@param value number|number[] value (a number or a table of numbers): New value: three numbers for a colour, else one.
 ---@overload fun(fields: gr.change_look.fields)
 function gr.change_look(serial, part, value) end
+
+---@class gr.change_texture.fields
+---@field serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
+---@field call string call (a string): The call that makes the texture, such as 'gr.texture("wood.png")'.
+
+---Makes a texture the kd of a base material in all later pictures.
+---@param serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
+---@param call string call (a string): The call that makes the texture, such as 'gr.texture("wood.png")'.
+---@overload fun(fields: gr.change_texture.fields)
+function gr.change_texture(serial, call) end
 
 ---@class gr.change_own.fields
 ---@field name string name (a string): Name of the node; gray ignores a node with another name.
@@ -1649,14 +1659,16 @@ function gr.change_light(number, move, factor, linear, colour) end
 function gr.change_delete_light(number) end
 
 ---@class gr.change_add_light.fields
----@field position gr.triple position (a point {x, y, z}): Where it is.
----@field colour gr.triple|string colour (a colour {r, g, b}): Its colour.
+---@field position gr.triple position (a point {x, y, z}): Translation of the light.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Factor of its colour.
+---@field call? string call (a string; default a white point light at the origin): The call that makes it, such as 'gr.spot_light{...}'.
 
----Adds a point light to all later pictures.
----@param position gr.triple position (a point {x, y, z}): Where it is.
----@param colour gr.triple|string colour (a colour {r, g, b}): Its colour.
+---Adds a light to all later pictures.
+---@param position gr.triple position (a point {x, y, z}): Translation of the light.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Factor of its colour.
+---@param call? string call (a string; default a white point light at the origin): The call that makes it, such as 'gr.spot_light{...}'.
 ---@overload fun(fields: gr.change_add_light.fields)
-function gr.change_add_light(position, colour) end
+function gr.change_add_light(position, colour, call) end
 
 ---@class gr.change_copy_light.fields
 ---@field number integer number (a whole number, 1 to 4294967295): Index in the list of lights of gr.render, from 1.
@@ -1896,7 +1908,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field albedo? gr.triple|string albedo (a colour {r, g, b}, 0 to 1; default {1, 1, 1}): With distance, instead of absorption and scattering: the share that is scattered.
 ---@field distance? number distance (a number, > 0; default 1): The mean free path: what light travels between two events, on average.
 ---@field emission? gr.triple|string emission (a colour {r, g, b}, >= 0; default {0, 0, 0}): Light that the medium adds, per unit of length.
----@field temperature? number temperature (a number, > 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default.
+---@field temperature? number|number[]|string|gr.texture|function temperature (a number or a table of numbers, a function or the name of a file, >= 0, in kelvin; optional): The medium glows as a black body, with emission as a factor, {1, 1, 1} by default: a number, a function or a grid, as density.
 ---@field g? number g (a number, > -1 and < 1; default 0): Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward.
 ---@field phase? 'rayleigh' phase ('rayleigh'; optional): Rayleigh's phase function, of very small particles, instead of g.
 ---@field density? number|number[]|string|gr.texture|function density (a number or a table of numbers, a function or the name of a file, >= 0; default 1): The factor of absorption, scattering and emission: a number, a function f(p, s) of the point and s.time, or a grid: numbers, or the name of an NRRD file or of a file of plain values.
@@ -1985,6 +1997,7 @@ function gr.medium(scattering, absorption) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2072,6 +2085,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
@@ -2271,6 +2285,7 @@ function node:translate(x, y, z) end
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
 ---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render with this node.
 ---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.

@@ -70,7 +70,7 @@ function M.studio(fields, _, integrator)
         local sheet = gr.openpbr_material { base_color = fields.floor or { 0.6, 0.6, 0.6 }, specular_weight = 0, classic = true }
         root:add_child(sweep(sheet, 4 * radius, 2.5 * radius):rotate('y', around):translate(middle[1], middle[2] - height, middle[3]))
     end
-    out.node = root
+    out.node, out.model = root, fields.model or fields.node
 
     -- A soft box: a square towards the middle, from `azimuth` to the right of the camera, whose light on a white surface
     -- that faces it is `light`.
@@ -191,6 +191,7 @@ end
 
 function M.glass(fields)
     local colour = fields.colour
+    if fields.glass and fields.ior then check.fail('gr.glass', 'glass has an index of its own: ior is not needed') end
     if type(colour) == 'string' or colour and colour.encoding then colour = gr.linear(colour) end
     return gr.openpbr_material {
         transmission_weight = 1, transmission_color = colour, transmission_depth = colour and not fields.thin and (fields.depth or 1) or nil,

@@ -15,8 +15,8 @@ struct stage {
     struct error error;
     int warnings;
     struct node *root;
-    struct light lights[8];
-    struct scene_light authored[8]; /* what there is to say of them beside the light itself */
+    struct light lights[20];
+    struct scene_light authored[20]; /* what there is to say of them beside the light itself */
     uint32_t light_count;
     struct sky sky;
     struct colour ambient;

@@ -3,8 +3,9 @@
  * Linux 3.15), inspected again under the temporary name, and only then removed. So whatever another process does to the
  * name in between, nothing is removed that was not inspected.
  *
- * A temporary name exists only between linkat and the removal of the old file. A kill in between leaves it; the next
- * run that writes into the folder removes it. Every temporary file is locked (flock) by the process that writes it, so
+ * A temporary name exists only between linkat and the removal of the old file. A kill in between leaves it; the
+ * next run that writes into the folder removes it after a minute, and one that has the folder for itself (a lock) at
+ * its end. Every temporary file is locked (flock) by the process that writes it, so
  * that an unlocked one is a leftover, from any machine. */
 #define _GNU_SOURCE
 #include "base/file_output.h"
@@ -231,18 +232,18 @@ static bool is_temporary_name(const char *name) {
     return true;
 }
 
-static bool is_old_and_ours(const struct stat *status) {
+static bool is_old_and_ours(const struct stat *status, time_t seconds) {
     struct timespec now;
     if (!S_ISREG(status->st_mode) || status->st_uid != geteuid() || clock_gettime(CLOCK_REALTIME, &now) != 0)
         return false;
     time_t changed = status->st_ctim.tv_sec > status->st_mtim.tv_sec ? status->st_ctim.tv_sec : status->st_mtim.tv_sec;
-    return now.tv_sec - changed > LEFTOVER_SECONDS;
+    return now.tv_sec - changed >= seconds;
 }
 
 /* The lock decides: the process that writes the file holds it, on any machine. */
-static void remove_leftover(int folder, const char *name) {
+static void remove_leftover(int folder, const char *name, time_t seconds) {
     struct stat before, after;
-    if (fstatat(folder, name, &before, AT_SYMLINK_NOFOLLOW) != 0 || !is_old_and_ours(&before))
+    if (fstatat(folder, name, &before, AT_SYMLINK_NOFOLLOW) != 0 || !is_old_and_ours(&before, seconds))
         return;
     int descriptor = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0)
@@ -254,13 +255,8 @@ static void remove_leftover(int folder, const char *name) {
     (void)close(descriptor);
 }
 
-static void remove_leftovers(const struct file_output *file) {
-    struct file_guard *guard = file->rules->guard;
-    struct file_identity identity;
-    if (!guard || !file_identity_of_descriptor(file->folder, &identity) || file_set_has(&guard->cleaned, identity) ||
-        !file_set_add(&guard->cleaned, identity))
-        return;
-    int descriptor = openat(file->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+static void remove_leftovers(int folder, time_t seconds) {
+    int descriptor = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     DIR *stream = descriptor < 0 ? NULL : fdopendir(descriptor);
     if (!stream) {
         if (descriptor >= 0)
@@ -269,9 +265,17 @@ static void remove_leftovers(const struct file_output *file) {
     }
     for (struct dirent *entry; (entry = readdir(stream)) != NULL;) {
         if (is_temporary_name(entry->d_name))
-            remove_leftover(file->folder, entry->d_name);
+            remove_leftover(folder, entry->d_name, seconds);
     }
     (void)closedir(stream);
+}
+
+static void clean_folder(const struct file_output *file) {
+    struct file_guard *guard = file->rules->guard;
+    struct file_identity identity;
+    if (guard && file_identity_of_descriptor(file->folder, &identity) && !file_set_has(&guard->cleaned, identity) &&
+        file_set_add(&guard->cleaned, identity))
+        remove_leftovers(file->folder, LEFTOVER_SECONDS);
 }
 
 /* The temporary file. */
@@ -427,7 +431,7 @@ bool file_output_check(const struct file_target *target, struct error *error) {
     }
     if (!open_folder(&file, error))
         return false;
-    remove_leftovers(&file);
+    clean_folder(&file);
     bool ok = inspect(&file, &there, &status, error) && (open_temporary(&file) || cannot_write(error, &file, errno));
     close_all(&file);
     return ok;
@@ -689,8 +693,10 @@ void file_lock_forget(struct file_lock *lock) {
 
 void file_lock_release(struct file_lock *lock) {
     bool last = lock->open && (flock(lock->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
-    if (last && is_named(lock))
+    if (last && is_named(lock)) {
+        remove_leftovers(lock->folder, 0);
         (void)unlinkat(lock->folder, lock->name, 0);
+    }
     file_lock_forget(lock);
 }
 

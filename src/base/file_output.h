@@ -106,7 +106,8 @@ struct file_lock {
 /* Creates the file, and waits for half a second. False: another process has the lock. True where files cannot be
  * created or locked, too. shared: several processes may have it together. */
 bool file_lock_take(struct file_lock *lock, const struct file_target *target, bool shared);
-void file_lock_release(struct file_lock *lock); /* the last process that has it removes the file */
-void file_lock_forget(struct file_lock *lock);  /* after a fork, in the process that does not have it */
+/* The last process that has it removes the file, and what killed runs left in its folder. */
+void file_lock_release(struct file_lock *lock);
+void file_lock_forget(struct file_lock *lock); /* after a fork, in the process that does not have it */
 
 #endif

@@ -14,7 +14,8 @@
 #include <unistd.h>
 
 static bool no_memory(struct error *error, size_t size, const char *why) {
-    return error_set(error, ERROR_MACHINE, "out of memory: the picture needs %.1f MB: %s", 1e-6 * (double)size, why);
+    return error_set(error, ERROR_MACHINE, "out of memory: the picture or model needs %.1f MB: %s", 1e-6 * (double)size,
+                     why);
 }
 
 /* A size above the machine's memory would not fail in time: the kernel hands out pages until it has to kill a

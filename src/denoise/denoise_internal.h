@@ -14,7 +14,7 @@ enum {
     DENOISE_LANES = 16,                                 /* of a row of a window, of which the last does not count */
     DENOISE_PATCH = 3,                                  /* radius of the patches that are compared */
     DENOISE_STEP = 2,                                   /* between centres of regressions */
-    DENOISE_CHOICE = 2,                                 /* radius of the mean that chooses between candidates */
+    DENOISE_CHOICE = 3,                                 /* radius of the mean that chooses between candidates */
     DENOISE_INNER = DENOISE_BLOCK + 2 * DENOISE_CHOICE, /* side of a block with what this mean reads */
     DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
     DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
@@ -29,7 +29,8 @@ enum {
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
     DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
     DENOISE_REGRESSIONS = 4,
-    DENOISE_WIDE = 2, /* this one uses a large window and needs no margin where candidates are compared */
+    DENOISE_WIDE = 2,  /* this one uses a large window and needs no margin where candidates are compared */
+    DENOISE_SMALL = 3, /* this one the smallest window, and all pixels there alike */
     DENOISE_CANDIDATES = DENOISE_REGRESSIONS + 1, /* the last one is the noisy colour */
 };
 
@@ -63,6 +64,7 @@ struct denoise_scratch {
     /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
     float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
     float doubts[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    float relative[3][DENOISE_INNER][DENOISE_INNER]; /* variance of a half around a pixel, by squared colours */
     uint8_t change[DENOISE_LOCAL * DENOISE_LOCAL];   /* columns to the next pixel where features change */
     uint8_t near[DENOISE_CENTRES * DENOISE_CENTRES]; /* of centres: the radius of the window that reaches one */
     denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */

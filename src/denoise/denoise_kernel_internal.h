@@ -37,10 +37,11 @@ static const float feature_change = 1e-4F; /* the ridge suppresses albedo and no
 static const float similar_limit = 10;
 /* Half of `detail_margin` remains where the largest distance between the features around a pixel is this. */
 static const float change_limit = 0.22F;
-static const float change_seen = 0.05F; /* neighbours whose features have this distance differ */
-static const float detail_margin = 1;   /* added to the error of candidates that use few pixels */
-static const float colour_margin = 1;   /* added to that of the noisy colour */
-static const float doubt_errors = 1.4F; /* standard errors that are added to the error of a candidate */
+static const float change_seen = 0.05F;  /* neighbours whose features have this distance differ */
+static const float detail_margin = 1;    /* added to the error of candidates that use few pixels */
+static const float small_margin = 0.25F; /* added to that of the candidate that uses the fewest, everywhere */
+static const float colour_margin = 1;    /* added to that of the noisy colour */
+static const float doubt_errors = 1.4F;  /* standard errors that are added to the error of a candidate */
 
 typedef int32_t mask __attribute__((vector_size(WIDTH * sizeof(int32_t)))); /* -1 for true, 0 */
 
@@ -601,24 +602,69 @@ static int local_of(int x, int y) {
     return (y + DENOISE_MARGIN - DENOISE_CHOICE) * LOCAL + x + DENOISE_MARGIN - DENOISE_CHOICE;
 }
 
+/* The mean of the variance over the window of a regression, in units of the mean square of the colours there: the
+ * product of the halves has no noise of its own in its mean, and it is at least the square of the mean. Where no sample
+ * found a rare bright path, pixels are dark and their own variance is small: both would speak for a candidate that is
+ * too dark, and leave smears. */
+static void find_relative_variance(struct denoise_scratch *s) {
+    enum { SIDE = DENOISE_INNER, WINDOW = DENOISE_WINDOW, WIDE = SIDE + 2 * WINDOW };
+    const float pixels = DENOISE_SIDE * DENOISE_SIDE;
+    for (int item = 0; item < 3 * SIDE; item++) {
+        int c = item % 3, y = item / 3;
+        float variances[WIDE] = {0}, products[WIDE] = {0}, colours[WIDE] = {0};
+        for (int j = -WINDOW; j <= WINDOW; j++) {
+            int from = local_of(-WINDOW, y + j);
+            const float *a = s->colour[0][c] + from, *b = s->colour[1][c] + from;
+            for (int x = 0; x < WIDE; x++) {
+                variances[x] += s->variance[c][from + x];
+                products[x] += a[x] * b[x];
+                colours[x] += 0.5F * (a[x] + b[x]);
+            }
+        }
+        for (int x = 0; x < SIDE; x++) {
+            float variance = 0, product = 0, colour = 0;
+            for (int i = 0; i < DENOISE_SIDE; i++) {
+                variance += variances[x + i];
+                product += products[x + i];
+                colour += colours[x + i];
+            }
+            float lowest = colour * colour / pixels + FLT_MIN;
+            s->relative[c][y][x] = variance / (product > lowest ? product : lowest);
+        }
+    }
+}
+
+/* The variance of a channel of a half in a row: at least that of the pixels around, scaled to the first estimate. */
+static void floor_variance(const struct denoise_scratch *s, int half, int c, int y, float out[DENOISE_INNER]) {
+    const float *own = s->variance[c] + local_of(0, y), *first = s->estimates[0][half][c] + local_of(0, y);
+    const float *relative = s->relative[c][y], largest = 1e30F;
+    for (int x = 0; x < DENOISE_INNER; x++) {
+        float scaled = relative[x] * (first[x] * first[x]), variance = own[x] > scaled ? own[x] : scaled;
+        out[x] = variance < largest ? variance : largest;
+    }
+}
+
 /* The difference between an estimate of one half and the values of the other half contains the errors of both. So
  * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
  * section 5.4). Here they are those of each candidate and of the first one, in units of the variance. Its noise is that
  * of the other half times twice the difference of the estimates. */
 static void compare_candidates(struct denoise_scratch *s) {
     enum { SIDE = DENOISE_INNER };
+    find_relative_variance(s);
     for (int y = 0; y < SIDE; y++) {
         int from = local_of(0, y);
-        float scale[SIDE];
+        float scale[SIDE], variance[3][2][SIDE];
         /* The unit of errors: the variance of both halves. */
         for (int x = 0; x < SIDE; x++)
             scale[x] = FLT_MIN;
         for (int c = 0; c < 3; c++)
-            for (int h = 0; h < 2; h++)
+            for (int h = 0; h < 2; h++) {
+                floor_variance(s, h, c, y, variance[c][h]);
                 for (int x = 0; x < SIDE; x++) {
                     float other = s->colour[1 - h][c][from + x];
-                    scale[x] += s->variance[c][from + x] + colour_noise * other * other;
+                    scale[x] += variance[c][h][x] + colour_noise * other * other;
                 }
+            }
         /* The error of each candidate beyond that of the first one, and its variance. */
         for (int b = 0; b < DENOISE_CANDIDATES; b++) {
             float *errors = s->errors[b][y], *doubts = s->doubts[b][y];
@@ -631,7 +677,7 @@ static void compare_candidates(struct denoise_scratch *s) {
                     for (int x = 0; x < SIDE; x++) {
                         float a = own[from + x] - other[from + x], e = first[from + x] - other[from + x];
                         errors[x] += (a * a - e * e) / scale[x];
-                        doubts[x] += 4 * (a - e) * (a - e) / scale[x] * (s->variance[c][from + x] / scale[x]);
+                        doubts[x] += 4 * (a - e) * (a - e) / scale[x] * (variance[c][h][x] / scale[x]);
                     }
                 }
             }
@@ -655,12 +701,12 @@ static void compare_surfaces(const struct denoise_scratch *s, int y, int dx, int
     }
 }
 
-/* Means of errors over 5 x 5 pixels, in which pixels with other features count less. Two additions prevent that noise
+/* Means of errors over 7 x 7 pixels, in which pixels with other features count less. Two additions prevent that noise
  * chooses: the standard error of the mean, and a margin for candidates that use few pixels where the features do not
  * change, since such candidates are for silhouettes and small objects. */
 static void score_candidates(const struct denoise_scratch *s, int y, float scores[DENOISE_CANDIDATES][DENOISE_BLOCK]) {
     enum { SIDE = 2 * DENOISE_CHOICE + 1 };
-    static const float kernel[SIDE] = {1, 4, 6, 4, 1};
+    static const float kernel[SIDE] = {1, 6, 15, 20, 15, 6, 1};
     float sums[DENOISE_BLOCK] = {0}, squares[DENOISE_CANDIDATES][DENOISE_BLOCK] = {0}, largest[DENOISE_BLOCK] = {0};
     /* Weighted sums over the window. */
     memset(scores, 0, DENOISE_CANDIDATES * sizeof *scores);
@@ -684,7 +730,8 @@ static void score_candidates(const struct denoise_scratch *s, int y, float score
     }
     /* The mean error, its standard error and the margin. */
     for (int b = 1; b < DENOISE_CANDIDATES; b++) {
-        float margin = b == DENOISE_WIDE ? 0 : detail_margin, always = b == DENOISE_REGRESSIONS ? colour_margin : 0;
+        float margin = b == DENOISE_WIDE ? 0 : detail_margin;
+        float always = b == DENOISE_REGRESSIONS ? colour_margin : b == DENOISE_SMALL ? small_margin : 0;
         for (int x = 0; x < DENOISE_BLOCK; x++) {
             float change = largest[x] / change_limit;
             scores[b][x] = (scores[b][x] + doubt_errors * sqrtf(squares[b][x])) / sums[x] +
@@ -692,7 +739,7 @@ static void score_candidates(const struct denoise_scratch *s, int y, float score
         }
     }
 }
-_Static_assert((int)DENOISE_CHOICE == 2, "the kernel of score_candidates has five numbers");
+_Static_assert((int)DENOISE_CHOICE == 3, "the kernel of score_candidates has seven numbers");
 
 const struct denoise_kernels KERNELS = {filter_features,    compare,         find_changes, regress,
                                         compare_candidates, score_candidates};

@@ -4,9 +4,13 @@
 #include "csg/csg_build.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
-#include "math/elementary.h"
+#include "export/triangles_internal.h"
+#include "image/png_write.h"
+#include "material/material_eval.h"
 #include "mesh/mesh.h"
+#include "world/world_describe.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -39,6 +43,8 @@ static bool check_primitive(const struct world *world, uint32_t primitive, struc
         return error_set(error, ERROR_SCENE, "node '%.100s' is no solid, because it %s", name,
                          geometry->csg ? "is clipped, cut open without caps; intersect it instead"
                                        : shape_why_open(&geometry->shape));
+    if (box_is_empty(box))
+        return error_set(error, ERROR_SCENE, "node '%.100s' is empty: there is nothing to write", name);
     if (!vec3_finite(box->min) || !vec3_finite(box->max) || (geometry->csg && geometry->csg->inside_out))
         return error_set(error, ERROR_SCENE, "node '%.100s' has no end, so it cannot be written as a model", name);
     return true;
@@ -83,15 +89,15 @@ static void find_clusters(const struct model_builder *b) {
 /* Names in files: of the material if it has one, and different. */
 static void name_material(const struct model_builder *b, uint32_t number, uint32_t index, char out[64]) {
     const struct material *material = b->input->world->authored.materials[index];
-    (void)snprintf(out, 64, "m%u%s%.40s", number + 1, material->name ? "_" : "", material->name ? material->name : "");
-    for (char *at = out; *at; at++) {
-        bool fine = (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9');
-        *at = fine || strchr("_-.", *at) ? *at : '_';
-    }
+    char name[64];
+    (void)snprintf(name, 64, "m%u%s%.40s", number + 1, material->name ? "_" : "", material->name ? material->name : "");
+    (void)export_plain_name(name, out);
 }
 
-static double encode_srgb(double light) {
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * el_pow(light, 1 / 2.4) - 0.055;
+static void encode(const struct model_builder *b, struct colour colour, uint8_t out[3]) {
+    const struct tone tone = {.srgb = b->input->linear};
+    for (int k = 0; k < 3; k++)
+        out[k] = png_write_byte(tone_apply(&tone, colour_get(colour, k)));
 }
 
 /* The number in the model of a material of the world; UINT32_MAX: no memory. */
@@ -103,17 +109,60 @@ static uint32_t number_material(struct model_builder *b, uint32_t index) {
     struct export_material *material = list_room(&b->out->materials, 1, sizeof *material);
     if (!material)
         return UINT32_MAX;
-    struct colour diffuse = surface_diffuse(surfaces, &surfaces->materials[index]);
-    const double parts[3] = {diffuse.r, diffuse.g, diffuse.b};
-    material->diffuse = diffuse;
-    for (int k = 0; k < 3; k++) {
-        double shown = b->input->linear ? encode_srgb(parts[k]) : parts[k];
-        material->display[k] = (uint8_t)(fmin(fmax(shown, 0), 1) * 255 + 0.5);
-    }
+    material->diffuse = surface_diffuse(surfaces, &surfaces->materials[index]);
+    material->textured = surface_has_texture(&surfaces->materials[index], INPUT_KD);
+    encode(b, material->diffuse, material->display);
     name_material(b, number, index, material->name);
     b->out->materials.count++;
     b->material_of[index] = number + 1;
     return number;
+}
+
+/* The colour of the surface near a point, on a line against the normal. */
+static void colour_corner(const struct model_builder *b, struct world_scratch *scratch, struct vec3 point,
+                          struct vec3 normal, uint8_t out[3]) {
+    const struct world *world = b->input->world;
+    struct surface_inputs inputs;
+    struct hit hit;
+    /* Nearby first: in a narrow gap, the other surface is further away. */
+    for (double height = b->tolerance / 64; height <= 2 * b->tolerance; height *= 128) {
+        struct ray ray = {
+            .origin = vec3_add_scaled(point, normal, height), .direction = vec3_negate(normal), .t_max = 2 * height};
+        if (!world_nearest_surface(world, &ray, scratch, &hit))
+            continue;
+        material_inputs_at(&world->surfaces, &world->surfaces.materials[hit.material], &hit, &inputs);
+        encode(b, inputs.kd, out);
+        return;
+    }
+}
+
+/* Corners have the colour a little inside of their triangle, since the next one may have another material. */
+static void colour_triangle(const struct model_builder *b, struct world_scratch *scratch,
+                            const struct export_part *part, size_t triangle) {
+    struct export_triangle *at = &export_triangles(part)[triangle];
+    const struct export_material *material = (struct export_material *)b->out->materials.items + at->material;
+    struct vec3 c[3];
+    export_corners(part, triangle, c);
+    struct vec3 normal = vec3_normalize(triangle_normal(c));
+    struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
+    for (int k = 0; k < 3; k++) {
+        memcpy(at->display[k], material->display, 3);
+        if (material->textured)
+            colour_corner(b, scratch, vec3_add_scaled(c[k], vec3_sub(middle, c[k]), 0.01), normal, at->display[k]);
+    }
+}
+
+static bool colour_corners(const struct model_builder *b, struct error *error) {
+    struct world_scratch scratch;
+    bool ok = world_scratch_init(&scratch, b->input->world);
+    for (size_t i = 0; ok && i < b->out->parts.count; i++)
+        for (size_t t = 0; t < export_parts(b->out)[i].triangles.count && !pool_cancelled(b->input->pool); t++)
+            colour_triangle(b, &scratch, &export_parts(b->out)[i], t);
+    ok = ok && !scratch.failed;
+    world_scratch_destroy(&scratch);
+    if (!ok)
+        return error_no_memory(error, "the colours of a model");
+    return !pool_cancelled(b->input->pool) || error_set(error, ERROR_CANCELLED, "stopped while a model was coloured");
 }
 
 /* --- parts --- */
@@ -131,14 +180,14 @@ static bool add_part(struct model_builder *b, const struct export_part *about, c
          list_room(&part->triangles, mesh->triangles.count, sizeof(struct export_triangle)) &&
          solid_mesh_is_closed(mesh, &part->closed, error);
     for (uint32_t i = 0; ok && i < mesh->vertices.count; i++)
-        ((struct vec3 *)part->points.items)[part->points.count++] = solid_vertex_at(mesh, i)->point;
+        export_points(part)[part->points.count++] = solid_vertex_at(mesh, i)->point;
     for (uint32_t i = 0; ok && i < mesh->triangles.count; i++) {
         const struct solid_triangle *at = solid_triangle_at(mesh, i);
         uint32_t material = number_material(b, material_of(b, at->surface));
         ok = material != UINT32_MAX;
         if (ok)
-            ((struct export_triangle *)part->triangles.items)[part->triangles.count++] =
-                (struct export_triangle){{at->vertex[0], at->vertex[1], at->vertex[2]}, material};
+            export_triangles(part)[part->triangles.count++] =
+                (struct export_triangle){.vertex = {at->vertex[0], at->vertex[1], at->vertex[2]}, .material = material};
     }
     return ok || error_no_memory(error, "a model");
 }
@@ -197,6 +246,17 @@ static const struct csg *unite(struct model_builder *b, uint32_t first, struct e
     return csg_build(b->input->arena, b->leaves, b->leaf_count, b->program, b->length, error);
 }
 
+static void note(const struct model_builder *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void note(const struct model_builder *b, const char *format, ...) {
+    char text[512];
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    if (b->input->notice)
+        b->input->notice(b->input->context, text);
+}
+
 /* The triangles of a mesh as they are, with the vertices that its file has. */
 static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct export_part *about, struct error *error) {
     struct solid_mesh own = {0};
@@ -204,17 +264,9 @@ static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct ex
         solid_mesh_of_triangles(mesh, &b->leaves[0].csg_from_leaf.forward, &own) || error_no_memory(error, "a model");
     ok = ok && add_part(b, about, &own, material_of_slot, error);
     solid_mesh_destroy(&own);
+    if (ok && !export_parts(b->out)[b->out->parts.count - 1].closed)
+        note(b, "node '%.100s': surfaces of its mesh meet in edges or vertices; slicers may repair it", about->name);
     return ok;
-}
-
-static void note_separation(const struct model_builder *b, const char *name, const struct solid_findings *findings) {
-    char text[512];
-    struct vec3 at = findings->position;
-    (void)snprintf(text, sizeof text,
-                   "node '%.100s': its surface touches itself, for example at (%.6g, %.6g, %.6g); the parts are %.3g "
-                   "apart there in the model",
-                   name, at.x, at.y, at.z, 0.3 * b->tolerance);
-    b->input->notice(b->input->context, text);
 }
 
 static bool add_solid(struct model_builder *b, struct export_part *about, struct error *error) {
@@ -223,8 +275,11 @@ static bool add_solid(struct model_builder *b, struct export_part *about, struct
     struct solid_findings findings;
     if (!solid_mesh_build(&input, &mesh, &findings, error))
         return false;
-    if (findings.separated > 0 && b->input->notice)
-        note_separation(b, about->name, &findings);
+    if (findings.separated > 0)
+        note(b,
+             "node '%.100s': its surface touches itself, for example at (%.6g, %.6g, %.6g); the parts are %.3g apart "
+             "there in the model",
+             about->name, findings.position.x, findings.position.y, findings.position.z, 0.3 * b->tolerance);
     bool ok = add_part(b, about, &mesh, material_of_leaf, error);
     solid_mesh_destroy(&mesh);
     return ok;
@@ -290,7 +345,8 @@ bool model_build(const struct model_build_input *input, struct export_model *out
     for (uint32_t i = 0; i < input->world->primitive_count; i++)
         if (!check_primitive(input->world, i, error))
             return false;
-    bool ok = choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error);
+    bool ok = choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error) &&
+              (!input->corners || colour_corners(&b, error));
     mem_free(b.cluster);
     mem_free(b.material_of);
     mem_free(b.leaves);

@@ -11,6 +11,7 @@ struct model_build_input {
     const char *name;          /* of the model */
     double tolerance;          /* 0: a thousandth of the size */
     bool linear;               /* the colours of the world are linear light */
+    bool corners;              /* have the colours of textures */
     struct arena *arena;       /* of the world */
     struct pool *pool;
     void (*notice)(void *context, const char *text);

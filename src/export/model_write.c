@@ -1,8 +1,10 @@
 /* STL: 80 bytes, a count, and 50 bytes a triangle. OBJ with MTL, and PLY, as their readers in src/formats describe
- * them. 3MF ("3D Manufacturing Format, Core Specification", 1.3): a zip with a part in XML. */
+ * them. 3MF ("3D Manufacturing Format, Core Specification", 1.3, "Materials and Properties Extension", 1.2): a zip with
+ * a part in XML and a picture. */
 #include "export/model_write.h"
 
-#include "base/mem.h"
+#include "export/key_map_internal.h"
+#include "export/triangles_internal.h"
 #include "export/zip_internal.h"
 
 #include <stdarg.h>
@@ -24,15 +26,11 @@ struct writer {
     const struct model_write_options *options;
     struct list *out;
     bool failed;
+    struct key_map colours; /* of the corners of textured triangles: their numbers in the group */
 };
 
 static void put(struct writer *w, const void *bytes, size_t size) {
-    char *room = list_room(w->out, size, 1);
-    w->failed = w->failed || !room;
-    if (!room)
-        return;
-    memcpy(room, bytes, size);
-    w->out->count += size;
+    w->failed = !list_add_bytes(w->out, bytes, size) || w->failed;
 }
 
 static void print(struct writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -46,9 +44,8 @@ static void print(struct writer *w, const char *format, ...) {
         put(w, line, (size_t)length < sizeof line ? (size_t)length : sizeof line - 1);
 }
 
-static void put_number(struct writer *w, uint32_t number, int bytes) {
-    uint8_t little[4] = {(uint8_t)number, (uint8_t)(number >> 8), (uint8_t)(number >> 16), (uint8_t)(number >> 24)};
-    put(w, little, (size_t)bytes);
+static void put_number(struct writer *w, uint32_t number, size_t bytes) {
+    w->failed = !list_add_number(w->out, number, bytes) || w->failed;
 }
 
 static void put_float(struct writer *w, double value) {
@@ -61,12 +58,6 @@ static void put_float(struct writer *w, double value) {
 static const struct export_material *material_at(const struct writer *w, uint32_t material) {
     return (struct export_material *)w->model->materials.items + material;
 }
-static const struct vec3 *points_of(const struct export_part *part) {
-    return part->points.items;
-}
-static const struct export_triangle *triangles_of(const struct export_part *part) {
-    return part->triangles.items;
-}
 
 static size_t count_of(const struct export_model *model, bool points) {
     size_t count = 0;
@@ -75,8 +66,7 @@ static size_t count_of(const struct export_model *model, bool points) {
     return count;
 }
 
-/* A name that text files can hold: other bytes become '_'. */
-static const char *plain_name(const char *name, char out[64]) {
+const char *export_plain_name(const char *name, char out[64]) {
     size_t length = 0;
     for (; name[length] && length < 63; length++) {
         char c = name[length];
@@ -87,10 +77,15 @@ static const char *plain_name(const char *name, char out[64]) {
     return out;
 }
 
-static struct vec3 normal_of(const struct export_part *part, const struct export_triangle *triangle) {
-    const struct vec3 *points = points_of(part);
-    struct vec3 a = points[triangle->vertex[0]], b = points[triangle->vertex[1]], c = points[triangle->vertex[2]];
-    return vec3_normalize(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+/* The normal and the corners of a triangle. */
+static void facet_of(const struct export_part *part, size_t triangle, struct vec3 out[4]) {
+    export_corners(part, triangle, out + 1);
+    out[0] = vec3_normalize(triangle_normal(out + 1));
+}
+
+static void print_points(struct writer *w, const struct export_part *part, const char *format) {
+    for (const struct vec3 *p = export_points(part), *end = p + part->points.count; p < end; p++)
+        print(w, format, p->x, p->y, p->z);
 }
 
 static void write_stl(struct writer *w) {
@@ -101,10 +96,10 @@ static void write_stl(struct writer *w) {
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &triangles_of(part)[t];
-            struct vec3 normal = normal_of(part, triangle);
+            struct vec3 facet[4];
+            facet_of(part, t, facet);
             for (int k = 0; k < 12; k++)
-                put_float(w, vec3_get(k < 3 ? normal : points_of(part)[triangle->vertex[k / 3 - 1]], k % 3));
+                put_float(w, vec3_get(facet[k / 3], k % 3));
             put_number(w, 0, 2);
         }
     }
@@ -114,15 +109,13 @@ static void write_text_stl(struct writer *w) {
     char name[64];
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
-        print(w, "solid %s\n", plain_name(part->name, name));
+        print(w, "solid %s\n", export_plain_name(part->name, name));
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &triangles_of(part)[t];
-            struct vec3 n = normal_of(part, triangle);
-            print(w, "facet normal %.9g %.9g %.9g\nouter loop\n", n.x, n.y, n.z);
-            for (int k = 0; k < 3; k++) {
-                struct vec3 p = points_of(part)[triangle->vertex[k]];
-                print(w, "vertex %.9g %.9g %.9g\n", p.x, p.y, p.z);
-            }
+            struct vec3 f[4];
+            facet_of(part, t, f);
+            print(w, "facet normal %.9g %.9g %.9g\nouter loop\n", f[0].x, f[0].y, f[0].z);
+            for (int k = 1; k < 4; k++)
+                print(w, "vertex %.9g %.9g %.9g\n", f[k].x, f[k].y, f[k].z);
             print(w, "endloop\nendfacet\n");
         }
         print(w, "endsolid %s\n", name);
@@ -136,11 +129,10 @@ static void write_obj(struct writer *w) {
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         uint32_t material = UINT32_MAX;
-        print(w, "o %s\n", plain_name(part->name, name));
-        for (size_t v = 0; v < part->points.count; v++)
-            print(w, "v %.9g %.9g %.9g\n", points_of(part)[v].x, points_of(part)[v].y, points_of(part)[v].z);
+        print(w, "o %s\n", export_plain_name(part->name, name));
+        print_points(w, part, "v %.9g %.9g %.9g\n");
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &triangles_of(part)[t];
+            const struct export_triangle *triangle = &export_triangles(part)[t];
             if (triangle->material != material)
                 print(w, "usemtl %s\n", material_at(w, triangle->material)->name);
             material = triangle->material;
@@ -154,9 +146,8 @@ static void write_obj(struct writer *w) {
 static void write_mtl(struct writer *w) {
     print(w, "%s\n", model_obj_header);
     for (uint32_t i = 0; i < w->model->materials.count; i++) {
-        const struct export_material *material = material_at(w, i);
-        print(w, "newmtl %s\nKd %.6g %.6g %.6g\n", material->name, material->diffuse.r, material->diffuse.g,
-              material->diffuse.b);
+        struct colour kd = material_at(w, i)->diffuse;
+        print(w, "newmtl %s\nKd %.6g %.6g %.6g\n", material_at(w, i)->name, kd.r, kd.g, kd.b);
     }
 }
 
@@ -170,17 +161,19 @@ static void write_ply(struct writer *w) {
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         for (size_t k = 0; k < 3 * part->points.count; k++)
-            put_float(w, vec3_get(points_of(part)[k / 3], (int)(k % 3)));
+            put_float(w, vec3_get(export_points(part)[k / 3], (int)(k % 3)));
     }
     uint32_t first = 0;
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &triangles_of(part)[t];
+            const struct export_triangle *triangle = &export_triangles(part)[t];
+            const uint8_t(*display)[3] = triangle->display;
             put_number(w, 3, 1);
             for (int k = 0; k < 3; k++)
                 put_number(w, first + triangle->vertex[k], 4);
-            put(w, material_at(w, triangle->material)->display, 3);
+            for (int k = 0; k < 3; k++)
+                put_number(w, (1U + display[0][k] + display[1][k] + display[2][k]) / 3, 1);
         }
         first += (uint32_t)part->points.count;
     }
@@ -198,19 +191,50 @@ static void print_escaped(struct writer *w, const char *text) {
     }
 }
 
+static uint64_t key_of(const uint8_t display[3]) {
+    return 1 + ((uint64_t)display[0] << 16 | (uint64_t)display[1] << 8 | display[2]);
+}
+
+/* The group of the colours of textured triangles, each once. */
+static void write_colours(struct writer *w) {
+    struct key_map *colours = &w->colours;
+    for (size_t i = 0; i < w->model->parts.count; i++) {
+        const struct export_part *part = &export_parts(w->model)[i];
+        for (size_t c = 0; c < 3 * part->triangles.count; c++) {
+            const struct export_triangle *triangle = &export_triangles(part)[c / 3];
+            uint64_t key = key_of(triangle->display[c % 3]);
+            if (!material_at(w, triangle->material)->textured || key_map_find(colours, key))
+                continue;
+            if (colours->count == 0)
+                print(w, "<m:colorgroup id=\"%zu\">\n", w->model->parts.count + 2);
+            print(w, "<m:color color=\"#%06X\"/>\n", (unsigned)key - 1);
+            w->failed = !key_map_add(colours, key, (uint32_t)colours->count) || w->failed;
+        }
+    }
+    print(w, colours->count > 0 ? "</m:colorgroup>\n" : "");
+}
+
+static void write_corners(struct writer *w, const struct export_triangle *triangle) {
+    print(w, " pid=\"%zu\"", w->model->parts.count + 2);
+    for (int k = 0; k < 3; k++) {
+        const uint32_t *number = key_map_find(&w->colours, key_of(triangle->display[k]));
+        print(w, " p%d=\"%u\"", k + 1, number ? *number : 0); /* NULL: no memory, and the writer has failed */
+    }
+}
+
 static void write_object(struct writer *w, const struct export_part *part, size_t id) {
-    const struct export_triangle *triangles = triangles_of(part);
+    const struct export_triangle *triangles = export_triangles(part);
     print(w, "<object id=\"%zu\" type=\"model\" pid=\"1\" pindex=\"%u\" name=\"", id, triangles[0].material);
     print_escaped(w, part->name);
     print(w, "\"><mesh><vertices>\n");
-    for (size_t v = 0; v < part->points.count; v++)
-        print(w, "<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>\n", points_of(part)[v].x, points_of(part)[v].y,
-              points_of(part)[v].z);
+    print_points(w, part, "<vertex x=\"%.9g\" y=\"%.9g\" z=\"%.9g\"/>\n");
     print(w, "</vertices><triangles>\n");
     for (size_t t = 0; t < part->triangles.count; t++) {
         print(w, "<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"", triangles[t].vertex[0], triangles[t].vertex[1],
               triangles[t].vertex[2]);
-        if (triangles[t].material != triangles[0].material)
+        if (material_at(w, triangles[t].material)->textured)
+            write_corners(w, &triangles[t]);
+        else if (triangles[t].material != triangles[0].material)
             print(w, " pid=\"1\" p1=\"%u\"", triangles[t].material);
         print(w, "/>\n");
     }
@@ -222,15 +246,17 @@ static void write_3mf_model(struct writer *w) {
         [MODEL_MM] = "millimeter", [MODEL_CM] = "centimeter", [MODEL_M] = "meter", [MODEL_IN] = "inch"};
     print(w,
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"%s\" xml:lang=\"en-US\" "
-          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+          "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
           "<metadata name=\"Application\">gray</metadata>\n<resources><basematerials id=\"1\">\n",
           units[w->options->unit]);
     for (uint32_t i = 0; i < w->model->materials.count; i++) {
-        const struct export_material *material = material_at(w, i);
-        print(w, "<base name=\"%s\" displaycolor=\"#%02X%02X%02X\"/>\n", material->name, material->display[0],
-              material->display[1], material->display[2]);
+        const uint8_t *display = material_at(w, i)->display;
+        print(w, "<base name=\"%s\" displaycolor=\"#%06X\"/>\n", material_at(w, i)->name,
+              (unsigned)key_of(display) - 1);
     }
     print(w, "</basematerials>\n");
+    write_colours(w);
     for (size_t i = 0; i < w->model->parts.count; i++)
         write_object(w, &export_parts(w->model)[i], i + 2);
     print(w, "</resources><build>\n");
@@ -244,27 +270,33 @@ static bool write_3mf(struct writer *w) {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
         "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
-        "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
+        "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
+        "<Default Extension=\"png\" ContentType=\"image/png\"/></Types>";
     static const char relations[] =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
         "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+        "<Relationship Target=\"/Metadata/thumbnail.png\" Id=\"rel1\" "
+        "Type=\"http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail\"/></Relationships>";
+    const struct list *thumbnail = &w->options->thumbnail;
     struct list model = {0}, *out = w->out;
     w->out = &model;
     write_3mf_model(w);
     w->out = out;
     struct zip_entry entries[] = {{"3D/3dmodel.model", model.items, model.count, 0, 0, 0},
                                   {"[Content_Types].xml", types, sizeof types - 1, 0, 0, 0},
-                                  {"_rels/.rels", relations, sizeof relations - 1, 0, 0, 0}};
-    bool ok = !w->failed && zip_write(entries, 3, out);
+                                  {"_rels/.rels", relations, sizeof relations - 1, 0, 0, 0},
+                                  {"Metadata/thumbnail.png", thumbnail->items, thumbnail->count, 0, 0, 0}};
+    bool ok = !w->failed && zip_write(entries, 4, out);
     list_destroy(&model);
+    key_map_destroy(&w->colours);
     return ok;
 }
 
 bool model_write(const struct export_model *model, const struct model_write_options *options, struct list *bytes,
                  struct list *mtl, struct error *error) {
-    struct writer w = {model, options, bytes, false};
+    struct writer w = {.model = model, .options = options, .out = bytes};
     if (count_of(model, false) > INT32_MAX || count_of(model, true) > INT32_MAX)
         return error_set(error, ERROR_SCENE, "the model has more triangles than its file can count");
     switch (options->format) {

@@ -8,9 +8,10 @@
 #include "math/colour.h"
 #include "math/vec3.h"
 
-/* Numbers of vertices of the part and of a material of the model. */
+/* Numbers of vertices of the part and of a material of the model; the colours of its corners for a display. */
 struct export_triangle {
     uint32_t vertex[3], material;
+    uint8_t display[3][3];
 };
 struct csg;
 struct export_part {
@@ -23,22 +24,36 @@ struct export_material {
     char name[64]; /* in files: only letters, digits, '_', '-' and '.' */
     struct colour diffuse;
     uint8_t display[3]; /* the same for a display */
+    bool textured;      /* they are the average: each corner has its own colour */
 };
 /* Names are borrowed. Zero value: empty. Owner: the caller, export_model_destroy. */
 struct export_model {
     struct list parts, materials; /* struct export_part, struct export_material */
     double tolerance;
 };
+/* A name that text files can hold: other bytes than letters, digits, '_', '-' and '.' become '_'. */
+const char *export_plain_name(const char *name, char out[64]);
 void export_model_destroy(struct export_model *model);
 static inline struct export_part *export_parts(const struct export_model *model) {
     return model->parts.items;
+}
+static inline struct vec3 *export_points(const struct export_part *part) {
+    return part->points.items;
+}
+static inline struct export_triangle *export_triangles(const struct export_part *part) {
+    return part->triangles.items;
+}
+static inline void export_corners(const struct export_part *part, size_t triangle, struct vec3 out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = export_points(part)[export_triangles(part)[triangle].vertex[k]];
 }
 
 struct model_write_options {
     enum model_format format;
     enum model_unit unit;
-    bool text;            /* STL: not binary */
-    const char *mtl_name; /* OBJ: the name of the file of the materials */
+    bool text;             /* STL: not binary */
+    const char *mtl_name;  /* OBJ: the name of the file of the materials */
+    struct list thumbnail; /* 3MF: the bytes of a PNG file, not owned */
 };
 
 /* `bytes`, and of OBJ `mtl` too: lists of bytes that the caller destroys. Errors: no memory, too many triangles. */

@@ -4,27 +4,31 @@
 
 #include <string.h>
 
-static bool put(struct list *out, const void *bytes, size_t size) {
-    char *room = list_room(out, size, 1);
-    if (!room)
-        return false;
-    memcpy(room, bytes, size);
-    out->count += size;
-    return true;
-}
-
 /* 1980-01-01, 0:00: the bytes of a file depend on its contents only. */
 enum { ZIP_DATE = 33, ZIP_VERSION = 20, ZIP_DEFLATED = 8 };
+static const uint32_t zip_local = 0x04034b50, zip_central = 0x02014b50, zip_end = 0x06054b50;
 
-/* A record: numbers of two bytes, or of four where the list of sizes says so. */
-static bool put_record(struct list *out, const uint32_t *numbers, const char *sizes) {
+/* Numbers of two bytes, or of four where the list of sizes says so. */
+static bool put_numbers(struct list *out, const uint32_t *numbers, const char *sizes) {
     bool ok = true;
-    for (int i = 0; sizes[i]; i++) {
-        uint8_t little[4] = {(uint8_t)numbers[i], (uint8_t)(numbers[i] >> 8), (uint8_t)(numbers[i] >> 16),
-                             (uint8_t)(numbers[i] >> 24)};
-        ok = ok && put(out, little, sizes[i] == '4' ? 4 : 2);
-    }
+    for (int i = 0; sizes[i]; i++)
+        ok = ok && list_add_number(out, numbers[i], sizes[i] == '4' ? 4 : 2);
     return ok;
+}
+
+/* What the header of an entry and its record in the directory have in common. */
+static bool put_about(const struct zip_entry *entry, struct list *out) {
+    const uint32_t about[] = {ZIP_VERSION,
+                              0,
+                              ZIP_DEFLATED,
+                              0,
+                              ZIP_DATE,
+                              entry->crc,
+                              entry->packed,
+                              (uint32_t)entry->size,
+                              (uint32_t)strlen(entry->name),
+                              0};
+    return put_numbers(out, about, "2222244422");
 }
 
 static bool compress_entry(struct zip_entry *entry, struct list *out) {
@@ -48,14 +52,11 @@ static bool compress_entry(struct zip_entry *entry, struct list *out) {
 /* The header of an entry comes before its bytes, which are compressed first. */
 static bool put_entry(struct zip_entry *entry, struct list *out) {
     struct list packed = {0};
-    uint32_t name = (uint32_t)strlen(entry->name);
     bool ok = compress_entry(entry, &packed);
     entry->offset = (uint32_t)out->count;
-    const uint32_t header[] = {
-        0x04034b50, ZIP_VERSION, 0, ZIP_DEFLATED, 0, ZIP_DATE, entry->crc, entry->packed, (uint32_t)entry->size, name,
-        0};
-    ok = ok && put_record(out, header, "42222244422") && put(out, entry->name, name) &&
-         put(out, packed.items, packed.count) && out->count < UINT32_MAX;
+    ok = ok && list_add_number(out, zip_local, 4) && put_about(entry, out) &&
+         list_add_bytes(out, entry->name, strlen(entry->name)) && list_add_bytes(out, packed.items, packed.count) &&
+         out->count < UINT32_MAX;
     list_destroy(&packed);
     return ok;
 }
@@ -66,28 +67,12 @@ bool zip_write(struct zip_entry *entries, int count, struct list *out) {
         ok = put_entry(&entries[i], out);
     uint32_t directory = (uint32_t)out->count;
     for (int i = 0; ok && i < count; i++) {
-        const struct zip_entry *entry = &entries[i];
-        uint32_t name = (uint32_t)strlen(entry->name);
-        const uint32_t record[] = {0x02014b50,
-                                   ZIP_VERSION,
-                                   ZIP_VERSION,
-                                   0,
-                                   ZIP_DEFLATED,
-                                   0,
-                                   ZIP_DATE,
-                                   entry->crc,
-                                   entry->packed,
-                                   (uint32_t)entry->size,
-                                   name,
-                                   0,
-                                   0,
-                                   0,
-                                   0,
-                                   0,
-                                   entry->offset};
-        ok = put_record(out, record, "42222224442222244") && put(out, entry->name, name);
+        const uint32_t more[] = {0, 0, 0, 0, entries[i].offset};
+        ok = list_add_number(out, zip_central, 4) && list_add_number(out, ZIP_VERSION, 2) &&
+             put_about(&entries[i], out) && put_numbers(out, more, "22244") &&
+             list_add_bytes(out, entries[i].name, strlen(entries[i].name));
     }
-    const uint32_t end[] = {0x06054b50, 0, 0, (uint32_t)count, (uint32_t)count, (uint32_t)out->count - directory,
-                            directory,  0};
-    return ok && put_record(out, end, "42222442");
+    uint32_t size = (uint32_t)out->count - directory, number = (uint32_t)count;
+    const uint32_t end[] = {zip_end, 0, 0, number, number, size, directory, 0};
+    return ok && put_numbers(out, end, "42222442");
 }

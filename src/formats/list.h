@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Owner: its holder, who calls list_destroy. Zero value: empty. */
 struct list {
@@ -39,6 +40,23 @@ static inline bool list_add_index(struct list *list, uint32_t index) {
     *room = index;
     list->count++;
     return true;
+}
+
+/* Of a list of bytes. False: no memory. */
+static inline bool list_add_bytes(struct list *list, const void *bytes, size_t size) {
+    char *room = list_room(list, size, 1);
+    if (!room)
+        return false;
+    memcpy(room, bytes, size);
+    list->count += size;
+    return true;
+}
+
+/* Little-endian. */
+static inline bool list_add_number(struct list *list, uint32_t number, size_t size) {
+    const uint8_t little[4] = {(uint8_t)number, (uint8_t)(number >> 8), (uint8_t)(number >> 16),
+                               (uint8_t)(number >> 24)};
+    return list_add_bytes(list, little, size);
 }
 
 static inline void list_destroy(struct list *list) {

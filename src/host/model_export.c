@@ -4,9 +4,12 @@
 #include "export/print_check.h"
 #include "formats/model_format.h"
 #include "host/render_reports.h"
+#include "image/png_write.h"
+#include "render/headlight.h"
 #include "scene/traversal.h"
 #include "session/text.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,10 +19,13 @@ struct model_work {
     struct scene *scene;
     const struct node *node;
     const char *file, *where;
-    double tolerance;
+    double tolerance, time; /* seconds since the first frame */
     struct model_write_options write;
+    struct vec3 view, up; /* of the thumbnail */
     bool by_user, linear;
 };
+
+enum { THUMBNAIL = 256 }; /* pixels wide and high */
 
 static void notice(void *context, const char *text) {
     const struct model_work *work = context;
@@ -40,7 +46,10 @@ static void print_report(const struct print_report *report) {
     text_writer_print(&writer, "closed: %s\n", report->closed ? "yes" : "no");
     text_writer_print(&writer, "volume: %.6g, surface: %.6g\n", report->volume, report->area);
     text_writer_print(&writer, "size: %.6g x %.6g x %.6g\n", size.x, size.y, size.z);
-    text_writer_put(&writer, "thinnest wall: %g at %v\n", report->thinnest, report->thinnest_at);
+    if (isfinite(report->thinnest))
+        text_writer_put(&writer, "thinnest wall: %g at %v\n", report->thinnest, report->thinnest_at);
+    else
+        text_writer_print(&writer, "thinnest wall: none is as thick as the tolerance\n");
     if (report->overhang > 0)
         text_writer_put(&writer, "steepest overhang: %g degrees from the vertical at %v; ", report->overhang,
                         report->overhang_at);
@@ -54,23 +63,101 @@ static void print_report(const struct print_report *report) {
     text_writer_flush(&writer);
 }
 
+/* All vertices are in a circle in the middle. */
+static struct camera thumbnail_camera(const struct model_work *work, const struct world *world,
+                                      const struct export_model *model) {
+    const double fov = 30, slope = 0.255; /* tan(fov / 2), and a rim of 5 % */
+    struct box box = world_finite_bounds(world);
+    struct vec3 middle = vec3_scale(vec3_add(box.min, box.max), 0.5), view = vec3_normalize(work->view);
+    double distance = 0;
+    for (size_t i = 0; i < model->parts.count; i++) {
+        const struct export_part *part = &export_parts(model)[i];
+        for (size_t v = 0; v < part->points.count; v++) {
+            struct vec3 to = vec3_sub(export_points(part)[v], middle);
+            double along = vec3_dot(to, view), across = vec3_length(vec3_add_scaled(to, view, -along));
+            distance = fmax(distance, across / slope - along);
+        }
+    }
+    return (struct camera){vec3_add_scaled(middle, view, -distance), view, work->up, fov};
+}
+
+/* The mean of each 2 x 2 pixels. */
+static void halve(struct film *film) {
+    for (uint32_t y = 0; y < THUMBNAIL; y++)
+        for (uint32_t x = 0; x < THUMBNAIL; x++) {
+            const struct film_pixel *four = &film->pixels[(size_t)2 * y * film->width + 2 * x];
+            const struct film_pixel *below = four + film->width;
+            struct film_pixel mean;
+            for (int c = 0; c < 3; c++)
+                mean.rgb[c] = 0.25F * (four[0].rgb[c] + four[1].rgb[c] + below[0].rgb[c] + below[1].rgb[c]);
+            film->pixels[y * THUMBNAIL + x] = mean;
+        }
+    film->width = film->height = THUMBNAIL;
+}
+
+struct thumbnail {
+    struct film film;
+    struct tone tone;
+};
+
+static void thumbnail_row(void *context, uint32_t y, uint8_t *line) {
+    const struct thumbnail *thumbnail = context;
+    film_row_toned(&thumbnail->film, FILM_FINAL, &thumbnail->tone, y, line);
+}
+
+static bool put_into_list(void *list, const void *bytes, size_t size, struct error *error) {
+    return list_add_bytes(list, bytes, size) || error_no_memory(error, "a thumbnail");
+}
+
+/* The bytes of a PNG file. */
+static bool make_thumbnail(struct model_work *work, const struct world *world, const struct export_model *model,
+                           struct error *error) {
+    const struct film_record record = {0};
+    struct render_statistics statistics = {0};
+    struct thumbnail thumbnail = {.tone = {.srgb = work->linear}};
+    size_t size = 0;
+    if (!film_size(2 * THUMBNAIL, 2 * THUMBNAIL, record, &size, error))
+        return false;
+    void *block = mem_alloc_zero(size, 1);
+    if (!block)
+        return error_no_memory(error, "a thumbnail");
+    film_layout(&thumbnail.film, block, 2 * THUMBNAIL, 2 * THUMBNAIL, record);
+    thumbnail.film.full_width = thumbnail.film.full_height = 2 * THUMBNAIL;
+    const struct render_job job = {.world = world,
+                                   .camera = thumbnail_camera(work, world, model),
+                                   .settings = settings_default(),
+                                   .width = 2 * THUMBNAIL,
+                                   .height = 2 * THUMBNAIL,
+                                   .film = &thumbnail.film};
+    const struct png_source source = {
+        .width = THUMBNAIL, .height = THUMBNAIL, .bytes = thumbnail_row, .context = &thumbnail, .srgb = true};
+    bool ok = render_headlight(&job, HEADLIGHT_SURFACES, work->process->pool, &statistics, error);
+    if (ok)
+        halve(&thumbnail.film);
+    ok = ok && png_encode(&source, NULL, put_into_list, &work->write.thumbnail, error);
+    mem_free(block);
+    return ok;
+}
+
 /* The world of the node alone, without lights; then the model of it. */
 static bool build_model(struct model_work *work, struct export_model *model, struct error *error) {
     struct render_process *process = work->process;
-    const struct sky sky = {.kind = SKY_CONSTANT};
+    const struct sky sky = {.kind = SKY_CONSTANT, .colour = colour_all(0.9)}; /* behind the thumbnail */
     const struct world_input world_input = {.scene = work->scene,
                                             .root = work->node,
                                             .sky = &sky,
                                             .accel = process->options->settings.accel,
                                             .linear_colours = work->linear};
+    bool is_3mf = work->write.format == FORMAT_3MF;
     struct world world;
-    scene_set_time(work->scene, 0);
+    scene_set_time(work->scene, work->time);
     if (!world_build(&world, &world_input, &process->job, process->pool, error))
         return false;
     const struct model_build_input input = {.world = &world,
                                             .name = work->node->name,
                                             .tolerance = work->tolerance,
                                             .linear = work->linear,
+                                            .corners = is_3mf || work->write.format == FORMAT_PLY,
                                             .arena = &process->job,
                                             .pool = process->pool,
                                             .notice = notice,
@@ -81,6 +168,8 @@ static bool build_model(struct model_work *work, struct export_model *model, str
         ok = print_check(model, process->pool, &report, error);
     if (ok && process->options->check_print)
         print_report(&report);
+    if (ok && is_3mf && !process->options->check_print)
+        ok = make_thumbnail(work, &world, model, error);
     world_destroy(&world);
     return ok;
 }
@@ -94,6 +183,7 @@ static bool make_bytes(struct model_work *work, struct list *bytes, struct list 
         ok = process->options->check_print || model_write(&model, &work->write, bytes, mtl, error);
     }
     export_model_destroy(&model);
+    list_destroy(&work->write.thumbnail);
     arena_reset(&process->job);
     return ok;
 }
@@ -162,6 +252,8 @@ bool model_export_node(void *context, const struct export_request *request, stru
                               .where = request->where,
                               .tolerance = request->tolerance,
                               .write = {.unit = (enum model_unit)request->unit, .text = request->text},
+                              .view = {-0.4, 1, -0.35}, /* from the front, right and above */
+                              .up = {0, 0, 1},
                               .linear = request->linear};
     process->models++;
     /* With -o MODEL the command line has chosen the model. */
@@ -189,13 +281,18 @@ static const struct node *find_node(const struct node *root, const char *name, s
 
 bool model_export_picture(struct render_process *process, const struct render_request *request, struct error *error) {
     const struct options *options = process->options;
+    const struct camera *camera = &request->camera;
     struct model_work work = {.process = process,
                               .scene = request->scene,
                               .node = request->subject,
                               .file = options->model ? options->model : "check.stl",
                               .where = request->where,
                               .tolerance = options->tolerance,
+                              .time = options->script.frames.turntable > 0 ? 0 : frame_time(&request->frame),
                               .write = {.unit = (enum model_unit)options->unit},
+                              .view =
+                                  request->settings.view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view,
+                              .up = camera->up,
                               .by_user = true,
                               .linear = settings_linear(&request->settings)};
     uint32_t number = ++process->model_pictures;

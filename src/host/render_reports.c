@@ -133,15 +133,15 @@ void render_process_warn_of_nan(struct render_process *process, const struct wor
 void render_process_warn_of_density(struct render_process *process, const struct world *world) {
     for (uint32_t i = 0; i <= world->media.outside; i++) {
         for (const struct medium *medium = &world->media.all[i]; medium; medium = medium->inner) {
-            struct vec3 p;
-            double value;
+            struct box cell;
+            double bound;
             char line[512];
-            if (!medium->density || !density_excess(medium->density, &p, &value))
+            if (!medium->density || !density_excess(medium->density, &cell, &bound))
                 continue;
             (void)snprintf(line, sizeof line,
-                           "the density of a medium is %.6g at p = {%.6g, %.6g, %.6g}, above its bound, which counts "
-                           "there (bound = NUMBER is another one)",
-                           value, p.x, p.y, p.z);
+                           "the density of a medium is above its bound %.6g, which counts there, between p = {%.6g, "
+                           "%.6g, %.6g} and {%.6g, %.6g, %.6g} (bound = NUMBER is another one)",
+                           bound, cell.min.x, cell.min.y, cell.min.z, cell.max.x, cell.max.y, cell.max.z);
             warn_once(process, "density", line);
         }
     }

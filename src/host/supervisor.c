@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "host/supervisor_child.h"
+#include "host/supervisor_export.h"
 #include "host/supervisor_messages.h"
 #include "host/supervisor_signals.h"
 #include "session/text.h"
@@ -318,6 +319,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
         supervisor_note_error(supervisor, &error);
     /* The window closes first: writing files may take long. */
     viewer_end(&supervisor->viewer);
+    supervisor_stop_export(supervisor);
     if (supervisor->quit_at > 0)
         output_say(&supervisor->output, LINE_DETAIL, "gray: the window closed in %.1f ms",
                    1000 * (clock_now() - supervisor->quit_at));

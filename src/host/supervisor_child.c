@@ -110,21 +110,25 @@ bool supervisor_child_is_stalled(struct supervisor *supervisor) {
     return supervisor->stall.seconds >= limit;
 }
 
-/* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
- * gets, and the files that scenes may read: confine_process takes the rest away. */
-static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+void supervisor_leave(struct supervisor *supervisor) {
     standard_streams_end(&supervisor->streams);
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
     display_close(&supervisor->output.display);
     file_lock_forget(&supervisor->output.animation.lock);
+    (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
+}
+
+/* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
+ * gets, and the files that scenes may read: confine_process takes the rest away. */
+static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
     (void)signal(SIGHUP, SIG_IGN);
     (void)signal(SIGUSR1, SIG_IGN);
-    (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
+    supervisor_leave(supervisor);
     /* Without its supervisor the child is of no use. */
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);

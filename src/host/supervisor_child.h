@@ -4,6 +4,8 @@
 
 #include "host/supervisor_internal.h"
 
+/* In a process that was forked: forgets what only the supervisor uses. */
+void supervisor_leave(struct supervisor *supervisor);
 bool supervisor_start_child(struct supervisor *supervisor, struct error *error);
 /* Its status as of waitpid, when it is gone. */
 int supervisor_reap_child(struct supervisor *supervisor);

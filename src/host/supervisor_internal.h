@@ -1,8 +1,11 @@
 /* What the files of the supervisor share. supervisor.c has the order of events, supervisor_child.c the life of the
- * render process, supervisor_messages.c the answers to it, supervisor_signals.c the signals. */
+ * render process, supervisor_messages.c the answers to it, supervisor_signals.c the signals, supervisor_export.c
+ * the models of the window. */
 #ifndef GRAY_HOST_SUPERVISOR_INTERNAL_H
 #define GRAY_HOST_SUPERVISOR_INTERNAL_H
 
+#include "base/share.h"
+#include "formats/list.h"
 #include "host/file_watch.h"
 #include "host/supervisor.h"
 #include "output/output_session.h"
@@ -39,6 +42,16 @@ struct script_retry {
     uint32_t settled_count;
 };
 
+/* The process that writes a model for the window. */
+struct window_export {
+    pid_t process;     /* 0: none */
+    struct share text; /* what it prints on standard error */
+    struct list edits; /* as Lua, while it starts */
+    char name[1024];
+    double began; /* on clock_now */
+    int shown;    /* the seconds since then that the window shows */
+};
+
 struct supervisor {
     const struct options *options;
     struct options *own_options; /* the same; the user may change settings in the window */
@@ -70,6 +83,7 @@ struct supervisor {
     struct script_clock script;
     struct stall_check stall;
     struct script_retry retry;
+    struct window_export model;
 };
 
 /* Seconds that a cancelled child has to end by itself before it is killed. It writes no files, so nothing is lost; and

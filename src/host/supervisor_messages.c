@@ -3,6 +3,7 @@
 #include "host/supervisor_messages.h"
 
 #include "host/supervisor_child.h"
+#include "host/supervisor_export.h"
 
 #include "base/clock.h"
 #include "base/mem.h"
@@ -231,6 +232,7 @@ void supervisor_step_window(struct supervisor *supervisor) {
     if (!supervisor->waits)
         supervisor_open_window(supervisor);
     supervisor->viewer.window.waits = supervisor->waits;
+    supervisor_show_export(supervisor);
     struct viewer *viewer = &supervisor->viewer;
     int nothing = CANCEL_NOTHING;
     if (viewer->player.seeking) /* it may have changed */
@@ -257,6 +259,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
         case VIEWER_SAVE_EDITS:
             if (save_from_window(supervisor, viewer_save_edits))
                 viewer->edit.saved_at = viewer->edit.steps.at;
+            break;
+        case VIEWER_EXPORT_MODEL:
+            supervisor_begin_export(supervisor);
             break;
         case VIEWER_CHANGE_SETTING:
             change_setting(supervisor, &viewer->setting);

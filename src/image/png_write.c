@@ -39,7 +39,8 @@ struct text_writer {
     int workers, in_flight;
     struct packer *packers;
     struct stripe *stripes; /* in flight */
-    struct file_output output;
+    png_sink *put;
+    void *sink;
     uint32_t adler;
 };
 
@@ -118,9 +119,8 @@ static bool write_chunk(struct text_writer *writer, const char *kind, const uint
     put_word(head, (uint32_t)size);
     memcpy(head + 4, kind, 4);
     put_word(tail, crc);
-    return file_output_write(&writer->output, head, sizeof head, error) &&
-           file_output_write(&writer->output, bytes, size, error) &&
-           file_output_write(&writer->output, tail, sizeof tail, error);
+    return writer->put(writer->sink, head, sizeof head, error) && writer->put(writer->sink, bytes, size, error) &&
+           writer->put(writer->sink, tail, sizeof tail, error);
 }
 
 static bool write_small(struct text_writer *writer, const char *kind, const uint8_t *bytes, size_t size,
@@ -144,7 +144,7 @@ static bool write_head(struct text_writer *writer, struct error *error) {
     uint8_t header[13] = {[8] = writer->rows->words ? 16 : 8, [9] = writer->rows->alpha ? 6 : 2 /* red, green, blue */};
     put_word(header, writer->rows->width);
     put_word(header + 4, writer->rows->height);
-    return file_output_write(&writer->output, signature, sizeof signature, error) &&
+    return writer->put(writer->sink, signature, sizeof signature, error) &&
            write_small(writer, "IHDR", header, sizeof header, error) &&
            (!writer->rows->unfinished ||
             write_small(writer, "tEXt", (const uint8_t *)unfinished, sizeof unfinished - 1, error)) &&
@@ -241,22 +241,32 @@ static struct text_writer writer_for(const struct png_source *rows, const struct
     return writer;
 }
 
+bool png_encode(const struct png_source *rows, struct pool *pool, png_sink *put, void *sink, struct error *error) {
+    struct text_writer writer = writer_for(rows, pool);
+    writer.put = put;
+    writer.sink = sink;
+    bool ok = begin(&writer) ? encode(&writer, pool, error) : error_no_memory(error, "a PNG file");
+    end(&writer);
+    return ok;
+}
+
+static bool put_into_file(void *sink, const void *bytes, size_t size, struct error *error) {
+    return file_output_write(sink, bytes, size, error);
+}
+
 bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,
                     struct error *error) {
+    struct file_output output;
     if (rows->width == 0 || rows->height == 0 || rows->width > SIDE_LIMIT / 8 || rows->height > SIDE_LIMIT)
         return error_set(error, ERROR_SCENE, "%s: a PNG file cannot have %u x %u pixels", target->path, rows->width,
                          rows->height);
-    struct text_writer writer = writer_for(rows, pool);
-    if (!file_output_open(&writer.output, target, error))
+    if (!file_output_open(&output, target, error))
         return false;
-    bool ready = begin(&writer);
-    bool ok = ready ? encode(&writer, pool, error) : error_no_memory(error, target->path);
-    end(&writer);
-    if (!ok) {
-        file_output_abandon(&writer.output);
+    if (!png_encode(rows, pool, put_into_file, &output, error)) {
+        file_output_abandon(&output);
         return false;
     }
-    return file_output_commit(&writer.output, error);
+    return file_output_commit(&output, error);
 }
 
 uint8_t png_write_byte(double c) {

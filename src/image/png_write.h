@@ -1,4 +1,4 @@
-/* Writing PNG: RGB through a struct file_output, so the old picture stays until the new one is complete. */
+/* Writing PNG: through a struct file_output the old picture stays until the new one is complete. */
 #ifndef GRAY_IMAGE_PNG_WRITE_H
 #define GRAY_IMAGE_PNG_WRITE_H
 
@@ -21,6 +21,10 @@ struct png_source {
     bool unfinished; /* the file states that, too: png_is_unfinished */
 };
 
+/* Receives the bytes of a file, one piece after the other. */
+typedef bool png_sink(void *sink, const void *bytes, size_t size, struct error *error);
+/* Sides from 1 to 2^28 pixels. */
+bool png_encode(const struct png_source *rows, struct pool *pool, png_sink *put, void *sink, struct error *error);
 /* Creates missing folders of the target. The bytes of the file depend only on the pixels. With a pool, its threads
  * request rows at the same time; without one, each row is requested once, from the top. */
 bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,

@@ -9,14 +9,11 @@ enum density_kind { DENSITY_BOX, DENSITY_FUNCTION, DENSITY_GRID };
 /* CELLS: of a grid, along an axis. STEPS: of the quadrature, in a cell. */
 enum { CELLS = 48, STEPS = 4 };
 
-struct excess {
-    atomic_int noted; /* 1: being written; 2: written */
-    struct vec3 point;
-    double value;
-};
+#define CELL_NONE UINT64_MAX
 
 struct density {
     enum density_kind kind;
+    bool fits;
     struct box box;
     /* Of a function and a grid. */
     struct fog_cells cells;
@@ -24,28 +21,24 @@ struct density {
     const struct fog_field *field;
     uint32_t count[3];
     const float *values;
-    struct excess *excess;
+    _Atomic uint64_t *excess; /* the first cell with a density above its bound; CELL_NONE: there is none */
 };
 
 static struct density *density_make(struct arena *arena, enum density_kind kind, const struct box *box,
                                     struct error *error) {
     struct density *density = arena_alloc(arena, sizeof *density);
-    struct excess *excess = density ? arena_alloc(arena, sizeof *excess) : NULL;
+    _Atomic uint64_t *excess = density ? arena_alloc(arena, sizeof *excess) : NULL;
     if (!excess) {
         (void)error_no_memory(error, "a medium");
         return NULL;
     }
     *density = (struct density){.kind = kind, .box = *box, .excess = excess};
-    atomic_init(&excess->noted, 0);
+    atomic_init(excess, CELL_NONE);
     return density;
 }
 
 const struct density *density_of_box(struct arena *arena, const struct box *box, struct error *error) {
     return density_make(arena, DENSITY_BOX, box, error);
-}
-
-static uint64_t cell_count(const struct fog_cells *cells) {
-    return (uint64_t)cells->count[0] * cells->count[1] * cells->count[2];
 }
 
 const struct density *density_of_function(struct arena *arena, const struct density_function *in, struct error *error) {
@@ -57,7 +50,7 @@ const struct density *density_of_function(struct arena *arena, const struct dens
     if (!density->field)
         return NULL;
     const float(*bounds)[2] = fog_field_cells(density->field, &density->cells);
-    uint64_t count = cell_count(&density->cells);
+    uint64_t count = fog_cell_count(&density->cells);
     density->bounds = arena_alloc_array(arena, count, sizeof *density->bounds);
     if (!density->bounds) {
         (void)error_no_memory(error, "a medium");
@@ -110,12 +103,13 @@ const struct density *density_of_grid(struct arena *arena, const struct density_
     if (!density)
         return NULL;
     density->values = in->values;
+    density->fits = in->fits;
     density->cells = (struct fog_cells){.corner = in->box.min, .size = vec3_sub(in->box.max, in->box.min)};
     for (int k = 0; k < 3; k++) {
         density->count[k] = in->count[k];
         density->cells.count[k] = in->count[k] < CELLS ? in->count[k] : CELLS;
     }
-    uint64_t count = cell_count(&density->cells);
+    uint64_t count = fog_cell_count(&density->cells);
     density->bounds = arena_alloc_array(arena, count, sizeof *density->bounds);
     if (!density->bounds) {
         (void)error_no_memory(error, "a medium");
@@ -128,6 +122,17 @@ const struct density *density_of_grid(struct arena *arena, const struct density_
 
 struct box density_box(const struct density *density) {
     return density->box;
+}
+
+const float (*density_cells(const struct density *density, struct fog_cells *cells))[2] {
+    if (density->kind == DENSITY_BOX)
+        return NULL;
+    *cells = density->cells;
+    return (const float(*)[2])density->bounds;
+}
+
+bool density_fits(const struct density *density) {
+    return density->fits;
 }
 
 /* --- at a point --- */
@@ -158,13 +163,22 @@ static double grid_at(const struct density *density, struct vec3 p) {
     return planes[0] + shares[2] * (planes[1] - planes[0]);
 }
 
-static void note_excess(const struct density *density, struct vec3 p, double value) {
-    int none = 0;
-    if (!atomic_compare_exchange_strong(&density->excess->noted, &none, 1))
-        return;
-    density->excess->point = p;
-    density->excess->value = value;
-    atomic_store(&density->excess->noted, 2);
+uint64_t density_cell(const struct density *density, struct vec3 p) {
+    uint64_t cell = 0, stride = 1;
+    for (int k = 0; k < 3; k++) {
+        double n = density->cells.count[k];
+        double at = floor((vec3_get(p, k) - vec3_get(density->cells.corner, k)) / vec3_get(density->cells.size, k) * n);
+        cell += stride * (uint64_t)fmin(fmax(at, 0), n - 1);
+        stride *= density->cells.count[k];
+    }
+    return cell;
+}
+
+/* Of all cells the first one, whatever the order. */
+static void note_excess(const struct density *density, struct vec3 p) {
+    uint64_t cell = density_cell(density, p), first = atomic_load_explicit(density->excess, memory_order_relaxed);
+    while (cell < first && !atomic_compare_exchange_weak(density->excess, &first, cell))
+        continue;
 }
 
 double density_at(const struct density *density, struct vec3 p, double time, double high) {
@@ -183,28 +197,30 @@ double density_at(const struct density *density, struct vec3 p, double time, dou
         return value > 0 ? value : 0;
     /* Bounds are singles: a function may exceed them by its own rounding. */
     if (value > high * (1 + 0x1p-20))
-        note_excess(density, p, value);
+        note_excess(density, p);
     return value > high ? high : 0;
 }
 
 double density_value(const struct density *density, struct vec3 p, double time) {
-    uint64_t cell = 0, stride = 1;
     if (!box_contains(&density->box, p))
         return 0;
-    for (int k = 0; k < 3 && density->kind != DENSITY_BOX; k++) {
-        double n = density->cells.count[k];
-        double at = floor((vec3_get(p, k) - vec3_get(density->cells.corner, k)) / vec3_get(density->cells.size, k) * n);
-        cell += stride * (uint64_t)fmin(fmax(at, 0), n - 1);
-        stride *= density->cells.count[k];
-    }
-    return density_at(density, p, time, density->kind == DENSITY_BOX ? 1 : (double)density->bounds[cell][1]);
+    bool is_box = density->kind == DENSITY_BOX;
+    return density_at(density, p, time, is_box ? 1 : (double)density->bounds[density_cell(density, p)][1]);
 }
 
-bool density_excess(const struct density *density, struct vec3 *point, double *value) {
-    if (atomic_load(&density->excess->noted) < 2)
+bool density_excess(const struct density *density, struct box *cell, double *bound) {
+    uint64_t first = atomic_load(density->excess), rest = first;
+    double low[3], high[3];
+    if (first == CELL_NONE)
         return false;
-    *point = density->excess->point;
-    *value = density->excess->value;
+    for (int k = 0; k < 3; k++) {
+        double n = density->cells.count[k], i = (double)(rest % density->cells.count[k]);
+        rest /= density->cells.count[k];
+        low[k] = vec3_get(density->cells.corner, k) + vec3_get(density->cells.size, k) * (i / n);
+        high[k] = vec3_get(density->cells.corner, k) + vec3_get(density->cells.size, k) * ((i + 1) / n);
+    }
+    *cell = (struct box){vec3_make(low[0], low[1], low[2]), vec3_make(high[0], high[1], high[2])};
+    *bound = (double)density->bounds[first][1];
     return true;
 }
 

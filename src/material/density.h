@@ -1,7 +1,7 @@
 /* The density of a medium: 1 in a box, which may be infinite; a recorded function of the point in a box; or a
  * grid over a box, trilinear between the centres of its voxels. Cells of the box have bounds of the density, which say
  * how long steps along a line may be (medium_mix.h). A density above the bound of its cell counts as the bound; the
- * first such point is noted. */
+ * first such cell is noted. */
 #ifndef GRAY_MATERIAL_DENSITY_H
 #define GRAY_MATERIAL_DENSITY_H
 
@@ -29,13 +29,16 @@ struct density_grid {
     uint32_t count[3];
     const float *values;
     double looseness;
+    bool fits; /* the unit box stands for that of the solid */
 };
 const struct density *density_of_grid(struct arena *arena, const struct density_grid *in, struct error *error);
 
 /* The box outside of which the density is 0. */
 struct box density_box(const struct density *density);
-/* The first point where the density was above its bound, and the density there. False: none. */
-bool density_excess(const struct density *density, struct vec3 *point, double *value);
+/* Whether it is to fill the box of its solid. */
+bool density_fits(const struct density *density);
+/* The first cell in which the density was above its bound. False: none. */
+bool density_excess(const struct density *density, struct box *cell, double *bound);
 
 /* The integral of the density along the line, by quadrature. */
 double density_depth(const struct density *density, const struct medium_line *line);

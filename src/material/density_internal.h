@@ -5,6 +5,10 @@
 #include "material/density.h"
 #include "material/fog_cells_internal.h"
 
+/* Its cells, and for each the minimum and the maximum; NULL: it has none. */
+const float (*density_cells(const struct density *density, struct fog_cells *cells))[2];
+/* The cell of a point of the box. */
+uint64_t density_cell(const struct density *density, struct vec3 p);
 /* At any point. */
 double density_value(const struct density *density, struct vec3 p, double time);
 /* At a point of a cell whose bound is `high`. */

@@ -14,6 +14,10 @@ struct fog_cells {
     uint32_t count[3];
 };
 
+static inline uint64_t fog_cell_count(const struct fog_cells *cells) {
+    return (uint64_t)cells->count[0] * cells->count[1] * cells->count[2];
+}
+
 struct fog_traversal {
     const struct fog_cells *cells;
     double t, to, next[3], delta[3];

@@ -132,19 +132,20 @@ static void evaluate(const struct expr_program *program, struct vec3 p, double t
 }
 
 static bool check_points(const struct fog_field *field, const struct fog_field_input *in, struct error *error) {
+    const char *name = in->name ? in->name : "density";
     for (uint64_t i = 0; i < CHECKED_POINTS; i++) {
         struct vec3 p = checked_point(&field->cells, i);
         double out[EXPR_OUTPUTS];
         evaluate(field->density, p, 0, out);
         if (isnan(out[0]))
             return error_set(error, ERROR_SCENE,
-                             "the density of %s must be at least 0; at p = {%.6g, %.6g, %.6g} it is not a number (NaN)",
-                             in->source, p.x, p.y, p.z);
+                             "the %s of %s must be at least 0; at p = {%.6g, %.6g, %.6g} it is not a number (NaN)",
+                             name, in->source, p.x, p.y, p.z);
         if (out[0] < 0)
             return error_set(error, ERROR_SCENE,
-                             "the density of %s must be at least 0; at p = {%.6g, %.6g, %.6g} it is %.6g "
+                             "the %s of %s must be at least 0; at p = {%.6g, %.6g, %.6g} it is %.6g "
                              "(gr.max(0.0, x) is never negative)",
-                             in->source, p.x, p.y, p.z, out[0]);
+                             name, in->source, p.x, p.y, p.z, out[0]);
     }
     return true;
 }
@@ -176,7 +177,8 @@ static void choose_cells(struct fog_cells *cells, const struct expr_program *pro
 
 const struct fog_field *fog_field_build(struct arena *arena, const struct fog_field_input *in, struct error *error) {
     if (in->density->output_count != 1) {
-        (void)error_set(error, ERROR_SCENE, "the density of %s is a colour; it must be a number", in->source);
+        (void)error_set(error, ERROR_SCENE, "the %s of %s is a colour; it must be a number",
+                        in->name ? in->name : "density", in->source);
         return NULL;
     }
     if (!reads_only(in->density, DENSITY_INPUTS, "a density may depend only on the point and the time", error) ||

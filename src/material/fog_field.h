@@ -15,6 +15,7 @@ struct fog_field;
 struct fog_field_input {
     const struct expr_program *density; /* of p, s.world and s.time, with one output >= 0; optical depth per unit */
     const char *source;                 /* of the density, for messages: "scene.lua:12" */
+    const char *name;                   /* that it has there; NULL: "density" */
     const struct expr_program *colour;  /* of these and s.view, with one output or three; NULL: one colour */
     struct vec3 corner, size;           /* of the box, in world space; size > 0 */
 };

@@ -2,6 +2,7 @@
 #include "material/medium.h"
 
 #include "material/fog_field.h"
+#include "material/glow.h"
 #include "material/medium_mix.h"
 #include "math/elementary.h"
 #include "math/spectrum.h"
@@ -24,6 +25,7 @@ struct medium medium_scattering(const struct medium_input *in) {
     medium.emission = in->emission;
     medium.extinction = colour_add(in->absorption, in->scattering);
     medium.density = in->density;
+    medium.heat = in->heat;
     medium.mixed = in->density != NULL;
     medium.affects = has_some(medium.extinction) || has_some(in->emission) ? affects_all : 0;
     return medium;
@@ -98,6 +100,8 @@ static struct colour source_of(const struct medium *medium, struct colour where_
 
 double medium_brightest(const struct medium *medium) {
     struct colour source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
+    if (medium->heat)
+        source = colour_mul(source, heat_brightest(medium->heat));
     return fmax(source.r, fmax(source.g, source.b));
 }
 
@@ -180,8 +184,10 @@ void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from)
 /* Whether two media have the same effect on light. */
 static bool are_equal(const struct medium *a, const struct medium *b) {
     return a->fog == b->fog && dispersion_equal(a->dispersion, b->dispersion) && a->density == b->density &&
-           colour_equal(a->extinction, b->extinction) && colour_equal(a->scattering, b->scattering) &&
-           colour_equal(a->emission, b->emission) && a->phase.kind == b->phase.kind && a->phase.g == b->phase.g;
+           a->heat == b->heat && colour_equal(a->extinction, b->extinction) &&
+           colour_equal(a->scattering, b->scattering) && colour_equal(a->emission, b->emission) &&
+           a->phase.kind == b->phase.kind && a->phase.g == b->phase.g &&
+           (!a->place || !b->place ? a->place == b->place : memcmp(a->place, b->place, sizeof *a->place) == 0);
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {

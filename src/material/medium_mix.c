@@ -32,8 +32,38 @@ bool medium_mix_scatters(const struct medium_mix *mix) {
     return any;
 }
 
+/* --- where --- */
+
+struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time) {
+    if (!place)
+        return p;
+    struct vec3 open = affine_point(&place->open, p), close = affine_point(&place->close, p);
+    return vec3_add_scaled(open, vec3_sub(close, open), time);
+}
+
+struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line) {
+    struct medium_line placed = *line;
+    if (!place)
+        return placed;
+    struct vec3 open = affine_vector(&place->open, line->direction),
+                close = affine_vector(&place->close, line->direction);
+    placed.origin = medium_place_point(place, line->origin, line->time);
+    placed.direction = vec3_add_scaled(open, vec3_sub(close, open), line->time);
+    return placed;
+}
+
+bool medium_needs_solid(const struct medium *medium) {
+    return medium->density && (density_fits(medium->density) || (medium->heat && heat_fits(medium->heat)));
+}
+
 double medium_density(const struct medium *medium, struct vec3 p, double time) {
-    return medium->density ? density_value(medium->density, p, time) : 1;
+    return medium->density ? density_value(medium->density, medium_place_point(medium->place, p, time), time) : 1;
+}
+
+struct colour medium_emission_at(const struct medium *medium, double density, struct vec3 p, double time) {
+    struct colour emission = colour_scale(medium->emission, density);
+    return medium->heat ? colour_mul(emission, heat_at(medium->heat, medium_place_point(medium->place, p, time), time))
+                        : emission;
 }
 
 /* --- along a line --- */
@@ -44,6 +74,7 @@ struct pieces {
     const struct medium_line *line;
     double from, to;
     double low[MEDIUM_MIX_LIMIT], high[MEDIUM_MIX_LIMIT]; /* of each density */
+    struct medium_line lines[MEDIUM_MIX_LIMIT];           /* where each density is */
     struct density_traversal traversals[MEDIUM_MIX_LIMIT];
     bool inside[MEDIUM_MIX_LIMIT]; /* the traversal has a cell that is not passed */
 };
@@ -57,7 +88,8 @@ static void begin_pieces(struct pieces *pieces, const struct medium_mix *mix, co
         pieces->inside[i] = false;
         if (!mix->media[i]->density)
             continue;
-        density_begin(mix->media[i]->density, line, &pieces->traversals[i]);
+        pieces->lines[i] = medium_place_line(mix->media[i]->place, line);
+        density_begin(mix->media[i]->density, &pieces->lines[i], &pieces->traversals[i]);
         pieces->inside[i] = density_next(&pieces->traversals[i]);
     }
 }
@@ -86,7 +118,7 @@ static bool next_piece(struct pieces *pieces) {
 static double density_of(const struct pieces *pieces, uint32_t i, double t) {
     if (!(pieces->high[i] > pieces->low[i]))
         return pieces->high[i];
-    struct vec3 p = vec3_add_scaled(pieces->line->origin, pieces->line->direction, t);
+    struct vec3 p = vec3_add_scaled(pieces->lines[i].origin, pieces->lines[i].direction, t);
     return density_at(pieces->mix->media[i]->density, p, pieces->line->time, pieces->high[i]);
 }
 
@@ -119,6 +151,7 @@ struct tracking {
     struct colour odds;
     uint64_t key, drawn;
     double u; /* the next number of the distance */
+    const struct glow_met *met;
 };
 
 static double draw(struct tracking *tracking) {
@@ -213,10 +246,16 @@ static bool track_with_emission(struct tracking *tracking, struct medium_track *
         return track_to(tracking, tracking->pieces.to, out);
     if (track_to(tracking, from + depth, out))
         return true;
-    for (uint32_t i = 0; i < mix->count; i++)
-        if (!colour_is_black(mix->media[i]->emission))
-            emission =
-                colour_add_scaled(emission, mix->media[i]->emission, density_of(&tracking->pieces, i, from + depth));
+    const struct medium_line *line = tracking->pieces.line;
+    const struct vec3 p = vec3_add_scaled(line->origin, line->direction, from + depth);
+    for (uint32_t i = 0; i < mix->count; i++) {
+        const struct medium *medium = mix->media[i];
+        if (colour_is_black(medium->emission))
+            continue;
+        struct colour own = medium_emission_at(medium, density_of(&tracking->pieces, i, from + depth), p, line->time);
+        double weight = tracking->met ? glow_met_weight(tracking->met, medium, p, line->time) : 1;
+        emission = colour_add_scaled(emission, own, weight);
+    }
     struct colour pdf = colour_make(depth_pdf(bound.r, length, depth), depth_pdf(bound.g, length, depth),
                                     depth_pdf(bound.b, length, depth));
     out->emitted = colour_add(out->emitted, over_mean(tracking, emission, pdf));
@@ -240,6 +279,7 @@ void medium_mix_track(const struct medium_mix *mix, const struct medium_line *li
     tracking.key = numbers.key;
     tracking.drawn = 0;
     tracking.u = numbers.u.y;
+    tracking.met = numbers.met;
     tracking.hero = numbers.u.x < tracking.share.r ? 0 : numbers.u.x < tracking.share.r + tracking.share.g ? 1 : 2;
     *out = (struct medium_track){.distance = line->distance};
     begin_pieces(&tracking.pieces, mix, line);
@@ -263,6 +303,18 @@ double medium_mix_density(const struct medium_mix *mix, const struct medium_line
         depth = colour_add(depth, depth_of(here, pieces.to - pieces.from));
     }
     return sum > 0 ? colour_dot(throughput, colour_mul(here, exponential(depth))) / sum : 0;
+}
+
+double medium_mix_haze(const struct medium_mix *mix) {
+    struct fog_cells cells;
+    double sum = 0;
+    for (uint32_t i = 0; i < mix->count; i++) {
+        const struct medium *medium = mix->media[i];
+        const struct colour e = medium->extinction;
+        if (!medium->density || !density_cells(medium->density, &cells))
+            sum += (e.r + e.g + e.b) / 3;
+    }
+    return sum;
 }
 
 /* The lower bounds dim light exactly; what may be above them is tracked by the largest channel. */
@@ -300,8 +352,9 @@ struct colour medium_mix_dimmed(const struct medium_mix *mix, const struct mediu
     struct colour depth = {0, 0, 0};
     for (uint32_t i = 0; i < mix->count; i++) {
         const struct density *density = mix->media[i]->density;
+        const struct medium_line placed = medium_place_line(mix->media[i]->place, line);
         depth = colour_add(
-            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, line) : line->distance));
+            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, &placed) : line->distance));
     }
     return exponential(depth);
 }

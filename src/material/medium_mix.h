@@ -6,6 +6,7 @@
 #define GRAY_MATERIAL_MEDIUM_MIX_H
 
 #include "material/density.h"
+#include "material/glow.h"
 #include "material/medium.h"
 
 enum { MEDIUM_MIX_LIMIT = 8 }; /* the outermost beyond that do not count (docs/limits.md) */
@@ -18,8 +19,15 @@ void medium_stack_mix(const struct medium_stack *stack, struct medium_mix *out);
 /* Whether one of them scatters. */
 bool medium_mix_scatters(const struct medium_mix *mix);
 
+/* A point and a line where the density of the medium is; t remains that of the line. */
+struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time);
+struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line);
+/* Whether its density or temperature is to fill the box of a solid. */
+bool medium_needs_solid(const struct medium *medium);
 /* The factor of the coefficients of a medium at a point. */
 double medium_density(const struct medium *medium, struct vec3 p, double time);
+/* What it emits there per unit, where its density is this one. */
+struct colour medium_emission_at(const struct medium *medium, double density, struct vec3 p, double time);
 
 /* What happens to a path along a line. */
 struct medium_track {
@@ -32,6 +40,7 @@ struct medium_track {
 struct medium_draw {
     struct sample2 u;
     uint64_t key;
+    const struct glow_met *met; /* weights the emission against next-event estimation; or NULL */
 };
 /* At most along the line; the mix has no fog. */
 void medium_mix_track(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput,
@@ -40,6 +49,9 @@ void medium_mix_track(const struct medium_mix *mix, const struct medium_line *li
 double medium_mix_density(const struct medium_mix *mix, const struct medium_line *line, struct colour throughput);
 /* What is left of light along the line: in the mean over the keys. */
 struct colour medium_mix_left(const struct medium_mix *mix, const struct medium_line *line, uint64_t key);
+
+/* The mean extinction, without that of functions and grids. */
+double medium_mix_haze(const struct medium_mix *mix);
 
 /* The same without random numbers: depths of a density are a quadrature. */
 struct colour medium_mix_dimmed(const struct medium_mix *mix, const struct medium_line *line);

@@ -175,7 +175,9 @@ bool surface_passes(const struct surface_material *surface) {
 
 bool surface_walks(const struct surface_material *surface) {
     const struct openpbr *v = &surface->openpbr;
-    return surface->has_layers && v->subsurface_weight > 0 && v->subsurface_radius > 0;
+    return surface->has_layers &&
+           (v->subsurface_weight > 0 || surface_has_texture(surface, INPUT_SUBSURFACE_WEIGHT)) &&
+           (v->subsurface_radius > 0 || surface_has_texture(surface, INPUT_SUBSURFACE_RADIUS));
 }
 
 struct medium surface_medium(const struct surface_material *surface) {

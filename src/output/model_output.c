@@ -21,6 +21,7 @@ static bool choose_name(struct model_output *model, const struct picture_files *
             "or --allow-write DIR allow other places)",
             file);
     memcpy(model->name, file, length + 1);
+    model->is_beside = request->beside;
     if (request->beside)
         memcpy(model->name + length - 4, ".mtl", 4);
     return true;
@@ -50,17 +51,21 @@ bool model_output_begin(struct model_output *model, struct picture_files *files,
 }
 
 bool model_output_write(struct model_output *model, struct picture_files *files, struct error *error) {
-    struct file_output output = {0};
+    struct file_output own = {0}, *output = model->is_beside ? &model->beside : &own;
     const struct file_target target = {.path = model->name, .rules = rules_of(model, files)};
-    bool ok = file_output_open(&output, &target, error) &&
-              file_output_write(&output, model->memory.block, model->size, error);
-    ok = ok && file_output_commit(&output, error);
-    if (!ok)
-        file_output_abandon(&output);
+    bool ok =
+        file_output_open(output, &target, error) && file_output_write(output, model->memory.block, model->size, error);
+    if (ok && model->is_beside) {
+        share_destroy(&model->memory);
+        return true;
+    }
+    ok = ok && (!model->beside.open || file_output_commit(&model->beside, error)) && file_output_commit(output, error);
+    file_output_abandon(&own);
     model_output_forget(model);
     return ok || (model->by_user ? error_elsewhere(error) : false);
 }
 
 void model_output_forget(struct model_output *model) {
+    file_output_abandon(&model->beside);
     share_destroy(&model->memory);
 }

@@ -10,14 +10,15 @@
 struct model_output {
     struct share memory; /* of the bytes */
     size_t size;
-    bool by_user;
+    bool by_user, is_beside;
+    struct file_output beside; /* the materials of an OBJ file: they get their name with that file */
     char name[NAME_LIMIT];
 };
 
 /* Whether the file can be written, and memory for its bytes if their number is known. */
 bool model_output_begin(struct model_output *model, struct picture_files *files, const struct model_request *request,
                         struct error *error);
-/* Writes the file and releases the memory. */
+/* Writes the file and releases the memory. The file of materials, which comes before its model, replaces none yet. */
 bool model_output_write(struct model_output *model, struct picture_files *files, struct error *error);
 void model_output_forget(struct model_output *model);
 

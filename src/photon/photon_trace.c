@@ -112,7 +112,7 @@ static bool pass_media(struct photon_path *path, double distance) {
         return false;
     }
     double u = draw(path), v = draw(path);
-    const struct medium_draw numbers = {{u, v}, random_combine(path->key, path->draws++)};
+    const struct medium_draw numbers = {{u, v}, random_combine(path->key, path->draws++), NULL};
     medium_mix_track(&mix, &line, path->left, numbers, &track);
     path->left = colour_mul(path->left, track.weight);
     if (!track.scatterer)

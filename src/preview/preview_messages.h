@@ -74,9 +74,9 @@ struct preview_reply {
     struct picked picked;
     struct view_overlay overlay; /* of PASS, PICKED and OVERLAY: the parts that were requested and made */
     double built;                /* of BUILT: when, on clock_now */
-    uint32_t added;              /* of BUILT: nodes that the script has added by gr.change_add */
-    uint32_t owned;              /* of BUILT: materials of gr.change_own */
-    uint32_t root;               /* of BUILT: the serial of the root, and the space of its children */
+    uint32_t added; /* of BUILT: nodes that the script has added by gr.change_add; of CHANGED: those there */
+    uint32_t owned; /* of BUILT: materials of gr.change_own */
+    uint32_t root;  /* of BUILT: the serial of the root, and the space of its children */
     char root_name[PICK_NAME];
     struct affine world_from_root;
     uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those reported begin with first_light, from 0 */

@@ -130,11 +130,8 @@ static void describe_lights(const struct preview_state *work, uint32_t first, st
 
 static bool build_again(struct preview_state *work, struct error *error) {
     struct preview_session *preview = work->preview;
-    const struct render_request *request = preview->request;
-    bool over = work->changes.count > 0;
     double begun = clock_now();
-    bool ok = preview->build(preview->context, over ? work->changed.lights : request->lights,
-                             over ? work->changed.light_count : request->light_count, error);
+    bool ok = preview->build(preview->context, work->changes.count > 0 ? &work->changed : NULL, error);
     work->build_seconds = clock_now() - begun;
     work->stale = !ok;
     pool_reset_cancel(preview->pool);
@@ -152,12 +149,26 @@ static bool need_world(struct preview_state *work, struct preview_reply *reply, 
     return reply->unbuilt;
 }
 
+/* What the first edit that was skipped has to say; others may follow from it. */
+struct lost_edit {
+    const struct preview_session *preview;
+    char text[1024];
+};
+
+static void note_lost_edit(void *context, const char *text) {
+    struct lost_edit *lost = context;
+    if (lost->text[0] == '\0')
+        (void)snprintf(lost->text, sizeof lost->text, "%s", text);
+    lost->preview->warn(lost->preview->context, text);
+}
+
 static bool change_scene(struct preview_state *work, const struct preview_command *command, struct preview_reply *reply,
                          struct error *error) {
     struct preview_session *preview = work->preview;
     const struct render_request *request = preview->request;
     reply->kind = REPLY_CHANGED;
-    if ((unsigned)command->change.kind >= CHANGE_KINDS || (unsigned)command->change.added >= ADDED_KINDS ||
+    if ((unsigned)command->change.kind >= CHANGE_KINDS ||
+        !memchr(command->change.call, '\0', sizeof command->change.call) ||
         (unsigned)command->change.part >= MATERIAL_PART_PARTS ||
         !change_list_set(&work->changes, &command->change, command->present)) {
         (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
@@ -165,10 +176,14 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
     }
     /* Changes are laid over the script's scene anew, so their order does not matter. */
     changes_remove(&work->changed);
+    struct lost_edit lost = {.preview = preview};
     if (!changes_lay_over((struct change_range){work->changes.items, work->changes.count},
-                          &(struct change_target){request->scene, request->root, request->lights, request->light_count},
-                          preview->warn, preview->context, &work->changed, error))
+                          &(struct change_target){&request->maker, request->scene, request->root, request->lights,
+                                                  request->light_count},
+                          note_lost_edit, &lost, &work->changed, error))
         return false;
+    (void)snprintf(reply->text, sizeof reply->text, "%.500s", lost.text);
+    reply->added = work->changed.added_count;
     /* Colours only change numbers; everything else needs a new world, after the last change of a row. */
     work->stale = work->stale || !change_keeps_world(&command->change);
     if (!command->more && !need_world(work, reply, error))

@@ -205,7 +205,8 @@ static struct colour left_of_light(struct integrator_state *state, const struct 
         return colour_all(1);
     struct ray ray = {.origin = off_surface(hit), .time = hit->time, .media = state->lit_from};
     ray.direction = light_target_from(&middle, ray.origin);
-    return media_left(state->job->world, &ray, light_target_end(&middle), NULL, state->scratch);
+    struct medium_stack behind;
+    return media_left(state->job->world, &ray, light_target_end(&middle), NULL, state->scratch, &behind);
 }
 
 struct colour direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,

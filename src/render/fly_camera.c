@@ -170,14 +170,23 @@ bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v) {
     return true;
 }
 
-void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box) {
+void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box, double aspect) {
+    static const double room = 0.85; /* of the picture, for the box */
     struct pose *pose = &fly_camera->pose;
-    double radius = box_is_empty(box) ? 0 : 0.5 * vec3_length(vec3_sub(box->max, box->min));
-    double half = 0.5 * fmin(pose->fov, 120) * degree;
+    struct vec3 right = rotate(pose->turn, vec3_make(1, 0, 0)), up = rotate(pose->turn, vec3_make(0, 1, 0));
+    double radius = box_is_empty(box) ? 0 : 0.5 * vec3_length(vec3_sub(box->max, box->min)), distance = 0;
+    double high = room * el_tan(0.5 * fmin(pose->fov, 120) * degree), wide = high * aspect;
     if (!(radius > 0) || !isfinite(radius))
         return;
     fly_camera->centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
-    pose->position = vec3_add_scaled(fly_camera->centre, forward_of(pose), -radius / el_sin(half));
+    for (int i = 0; i < 8; i++) {
+        struct vec3 corner = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
+                              i & 4 ? box->max.z : box->min.z};
+        struct vec3 from = vec3_sub(corner, fly_camera->centre);
+        double aside = fmax(fabs(vec3_dot(from, right)) / wide, fabs(vec3_dot(from, up)) / high);
+        distance = fmax(distance, aside - vec3_dot(from, forward_of(pose)));
+    }
+    pose->position = vec3_add_scaled(fly_camera->centre, forward_of(pose), -fmax(distance, 1.01 * radius));
 }
 
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees) {

@@ -58,8 +58,9 @@ void fly_camera_dolly(struct fly_camera *fly_camera, double x, double y, double 
 bool fly_camera_put(struct fly_camera *fly_camera, bool eye, struct vec3 v);
 /* Looks along a direction at the centre, from the same distance; up is y, or -z where that is the direction. */
 void fly_camera_face(struct fly_camera *fly_camera, struct vec3 direction);
-/* Moves back or forth until the box fills the picture, which becomes the centre. A box without a size: not at all. */
-void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box);
+/* Moves until the box, whose middle becomes the centre, fills a picture with this ratio of width to height. A box
+ * without a size: not at all. */
+void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box, double aspect);
 /* Rolls to the right by degrees; fly_camera_level rolls until the horizon is level (y is up), and keeps the view
  * direction. */
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees);

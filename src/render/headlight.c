@@ -12,6 +12,7 @@
 #include <math.h>
 
 enum { SIDE = 8, HOLES = 16 }; /* of a packet; that a ray may pass */
+enum { STRIPS = (FILM_TILE + SIDE - 1) / SIDE };
 /* The share of light from everywhere, and of reflected or transmitted light in the colour of a surface. */
 static const double ambient = 0.25, glossy = 0.6;
 
@@ -22,6 +23,7 @@ struct headlight {
     struct pool *pool;
     struct camera_frame camera;
     struct world_scratch *scratch; /* by worker */
+    _Atomic uint32_t *rows_done;   /* by tile: rows of squares */
     double brightness;             /* that undoes the exposure */
     enum headlight_shows shows;
     double nearest, farthest; /* of all finite objects, from the eye; of depths */
@@ -48,9 +50,11 @@ static struct colour heat(const struct headlight *headlight, uint64_t work) {
 static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
     struct colour colour = bsdf->albedo;
+    double share =
+        glossy * fmax(0, 1 - colour_max_abs(colour)); /* what a coat reflects does not hide the colour below */
     for (int i = 0; i < bsdf->count; i++) {
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
-            colour = colour_add_scaled(colour, bsdf->lobes[i].weight, glossy);
+            colour = colour_add_scaled(colour, bsdf->lobes[i].weight, share);
     }
     double largest = colour_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
     double light = headlight->brightness * (ambient + (1 - ambient) * facing) / fmax(1, largest);
@@ -126,26 +130,37 @@ static void render_patch(const struct headlight *headlight, struct world_scratch
     }
 }
 
-/* A pool_function: a tile. */
-static void render_tile(void *context, uint32_t tile, int worker) {
+static void render_square(const struct headlight *headlight, struct world_scratch *scratch,
+                          const struct film_rectangle *r) {
+    const struct film *film = headlight->job->film;
+    if (headlight->plain)
+        render_patch(headlight, scratch, r);
+    for (uint32_t v = r->y0; !headlight->plain && v < r->y1; v++)
+        for (uint32_t u = r->x0; u < r->x1; u++)
+            render_single(headlight, scratch, u, v,
+                          &film->pixels[(size_t)(v - film->y0) * film->width + (u - film->x0)]);
+}
+
+/* A pool_function: some rows of a tile. Few tiles would leave threads without work, and a tile of a costly solid takes
+ * too long to stop. Squares that are not rendered are missing in the count of the tile, which is not done then. */
+static void render_strip(void *context, uint32_t item, int worker) {
     const struct headlight *headlight = context;
     const struct film *film = headlight->job->film;
-    struct world_scratch *scratch = &headlight->scratch[worker];
+    uint32_t tile = item / STRIPS;
     struct film_rectangle whole = film_tile_rectangle(film, tile);
-    for (uint32_t y = whole.y0; y < whole.y1 && !pool_cancelled(headlight->pool); y += SIDE) {
-        for (uint32_t x = whole.x0; x < whole.x1; x += SIDE) {
-            struct film_rectangle r = {x, y, x + SIDE < whole.x1 ? x + SIDE : whole.x1,
-                                       y + SIDE < whole.y1 ? y + SIDE : whole.y1};
-            if (headlight->plain)
-                render_patch(headlight, scratch, &r);
-            for (uint32_t v = r.y0; !headlight->plain && v < r.y1; v++)
-                for (uint32_t u = r.x0; u < r.x1; u++)
-                    render_single(headlight, scratch, u, v,
-                                  &film->pixels[(size_t)(v - film->y0) * film->width + (u - film->x0)]);
-        }
+    uint32_t y = whole.y0 + item % STRIPS * SIDE, rows = (whole.y1 - whole.y0 + SIDE - 1) / SIDE;
+    if (y >= whole.y1 || atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
+        return;
+    for (uint32_t x = whole.x0; x < whole.x1; x += SIDE) {
+        struct film_rectangle r = {x, y, x + SIDE < whole.x1 ? x + SIDE : whole.x1,
+                                   y + SIDE < whole.y1 ? y + SIDE : whole.y1};
+        pool_poll(headlight->pool, worker);
+        if (pool_cancelled(headlight->pool))
+            return;
+        render_square(headlight, &headlight->scratch[worker], &r);
     }
-    atomic_store_explicit(&film->tiles[tile], pool_cancelled(headlight->pool) ? FILM_TILE_WANTED : FILM_TILE_DONE,
-                          memory_order_release);
+    if (atomic_fetch_add(&headlight->rows_done[tile], 1) + 1 == rows)
+        atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
 }
 
 static void measure_depths(struct headlight *headlight) {
@@ -171,15 +186,17 @@ bool render_headlight(const struct render_job *job, enum headlight_shows shows, 
     if (shows == HEADLIGHT_DEPTH)
         measure_depths(&headlight);
     headlight.scratch = mem_alloc_zero((size_t)workers, sizeof *headlight.scratch);
-    bool ok = headlight.scratch != NULL;
+    headlight.rows_done = mem_alloc_zero(film_tile_count(job->film), sizeof *headlight.rows_done);
+    bool ok = headlight.scratch && headlight.rows_done;
     for (int i = 0; ok && i < workers; i++)
         ok = world_scratch_init(&headlight.scratch[i], job->world);
-    bool complete = ok && pool_run(pool, film_tile_count(job->film), render_tile, &headlight);
+    bool complete = ok && pool_run(pool, STRIPS * film_tile_count(job->film), render_strip, &headlight);
     for (int i = 0; headlight.scratch && i < workers; i++) {
         ok = ok && !headlight.scratch[i].failed;
         world_scratch_destroy(&headlight.scratch[i]);
     }
     mem_free(headlight.scratch);
+    mem_free(headlight.rows_done);
     statistics->camera_rays += (uint64_t)job->film->width * job->film->height;
     if (!ok)
         return error_no_memory(error, "the preview of a picture");

@@ -19,29 +19,28 @@ static struct colour dimmed(const struct ray *ray, double distance, const uint64
 }
 
 struct colour media_left(const struct world *world, const struct ray *ray, double end, const uint64_t *key,
-                         struct world_scratch *scratch) {
-    struct medium_stack media;
+                         struct world_scratch *scratch, struct medium_stack *media) {
     struct ray rest = *ray;
     struct colour left = colour_all(1);
     double length = vec3_length(ray->direction);
     bool met = true;
-    medium_stack_copy(&media, ray->media);
-    rest.media = &media;
+    medium_stack_copy(media, ray->media);
+    rest.media = media;
     for (uint64_t stretch = 0; met; stretch++) {
         struct hit hit;
         struct joint joint = {.joined = JOINED_NOT};
         rest.t_max = end;
         met = world_nearest_surface(world, &rest, scratch, &hit);
         if (met && world_touches(world, &hit))
-            world_join_path(world, &rest, &media, scratch, &hit, &joint);
+            world_join_path(world, &rest, media, scratch, &hit, &joint);
         if (joint.joined == JOINED_AWAY)
             continue;
         left = colour_mul(left, dimmed(&rest, (met ? hit.t : end) * length, key, stretch));
         if (!met)
             break;
-        rest = joint_ray_through_hole(&joint, &hit, &rest, &media);
+        rest = joint_ray_through_hole(&joint, &hit, &rest, media);
         rest.direction = ray->direction;
-        (void)joint_pass_invisible(world, &joint, &hit, &media);
+        (void)joint_pass_invisible(world, &joint, &hit, media);
         end -= hit.t;
     }
     return left;
@@ -84,7 +83,8 @@ static struct colour arriving(struct integrator_state *state, struct medium_poin
     state->shadow_rays++;
     if (world_any(world, &at->ray, state->scratch))
         return colour_all(0);
-    return media_left(world, &at->ray, at->ray.t_max, NULL, state->scratch);
+    struct medium_stack behind;
+    return media_left(world, &at->ray, at->ray.t_max, NULL, state->scratch, &behind);
 }
 
 /* Lights in the units of direct.c: a white matt surface that faces one reflects its colour over pi. */
@@ -115,13 +115,14 @@ struct strata {
 
 /* False: nothing is on the line. */
 static bool find_strata(const struct medium_mix *mix, const struct medium_line *line, struct strata *out) {
-    const struct ray ray = {.origin = line->origin, .direction = line->direction, .t_max = line->distance};
     *out = (struct strata){INFINITY, 0, 0};
     for (uint32_t i = 0; i < mix->count; i++) {
         const struct medium *medium = mix->media[i];
         struct colour e = medium->extinction;
         double from = 0, to = line->distance;
         if (medium->density) {
+            const struct medium_line placed = medium_place_line(medium->place, line);
+            const struct ray ray = {.origin = placed.origin, .direction = placed.direction, .t_max = line->distance};
             struct box box = density_box(medium->density);
             if (!box_clip(&box, &ray, &from, &to))
                 continue;
@@ -175,7 +176,7 @@ struct colour media_in_scattering(struct integrator_state *state, const struct r
         for (uint32_t i = 0; i < mix.count; i++) {
             at.density[i] = medium_density(mix.media[i], at.ray.origin, ray->time);
             if (shows_emission)
-                here = colour_add_scaled(here, mix.media[i]->emission, at.density[i]);
+                here = colour_add(here, medium_emission_at(mix.media[i], at.density[i], at.ray.origin, ray->time));
         }
         for (uint32_t i = 0; i < world->light_count; i++)
             here = colour_add(here, of_light(state, &at, &world->lights[i], random_combine(own, i)));

@@ -6,9 +6,9 @@
 #include "render/integrator_state_internal.h"
 
 /* What is left of light along the ray, in its media, over t up to `end`, through the invisible surfaces of media.
- * key: of random transmittances; NULL: those of a quadrature. */
+ * key: of random transmittances; NULL: those of a quadrature. *media: those at the end. */
 struct colour media_left(const struct world *world, const struct ray *ray, double end, const uint64_t *key,
-                         struct world_scratch *scratch);
+                         struct world_scratch *scratch, struct medium_stack *media);
 /* Whether a medium that dims rays to lights may be anywhere. */
 bool media_dim_lights(const struct world *world);
 

@@ -93,12 +93,16 @@ static bool find_aimed_lights(struct path_tracer *tracer) {
     struct light_target middle;
     if (!tracer->has_fillings && !tracer->in_medium)
         return true;
-    uint32_t *numbers = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *numbers);
-    for (uint32_t i = 0; numbers && i < lights->count; i++)
-        if (light_middle(&lights->lights[i], &middle) && !middle.distant)
-            numbers[tracer->aimed_light_count++] = i;
-    tracer->aimed_lights = numbers;
-    return numbers != NULL;
+    struct aimed_light *list = arena_alloc_array(&tracer->arena, (size_t)lights->count + 1, sizeof *list);
+    for (uint32_t i = 0; list && i < lights->count; i++) {
+        struct aimed_light *next = &list[tracer->aimed_light_count];
+        next->light = i;
+        if (light_middle(&lights->lights[i], &middle) && !middle.distant &&
+            light_bounds_of(&lights->lights[i], 0, &next->bounds) == LIGHT_EXTENT_BOUNDED)
+            tracer->aimed_light_count++;
+    }
+    tracer->aimed_lights = list;
+    return list != NULL;
 }
 
 /* --- sealed solids --- */
@@ -145,6 +149,16 @@ static bool find_sealed(struct path_tracer *tracer, const struct world *world) {
     return count == 0 || sealed;
 }
 
+/* Scattered rays may meet the emission of media. */
+static bool find_glow(struct path_tracer *tracer, const struct world *world, struct error *error) {
+    const uint32_t first = world->media.outside;
+    for (uint32_t i = 0; i <= first; i++)
+        for (const struct medium *medium = &world->media.all[i]; medium; medium = medium->inner)
+            tracer->lights.met = tracer->lights.met || colour_max_abs(medium->emission) > 0;
+    return tracer->strategy == PATH_STRATEGY_BSDF ||
+           glow_build(&tracer->glow, &world->media.all[first], world->placed_count + 1, &tracer->arena, error);
+}
+
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
@@ -161,10 +175,14 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
-    for (uint32_t i = 0; i < world->material_count; i++)
-        tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
     tracer->in_medium = world_outside(world)->affects != 0;
     tracer->disperses = world_disperses(world);
+    tracer->has_matter = tracer->in_medium || tracer->disperses;
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        tracer->has_fillings = tracer->has_fillings || world->media.all[i].fills;
+        tracer->has_matter =
+            tracer->has_matter || world->media.all[i].affects != 0 || surface_walks(&world->surfaces.materials[i]);
+    }
     /* Memory of the workers, as far as the film keeps something of it. */
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
     if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
@@ -175,6 +193,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
     if (tracer->built && (!find_aimed_lights(tracer) || !find_sealed(tracer, world)))
         return error_no_memory(error, "the solids of the scene");
+    if (tracer->built && !find_glow(tracer, world, error))
+        return false;
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;
     if (!find_photon_lights(tracer, world))

@@ -8,6 +8,7 @@
 #define GRAY_RENDER_PATH_INTERNAL_H
 
 #include "base/arena.h"
+#include "material/glow.h"
 #include "photon/photon_trace.h"
 #include "render/contour_internal.h"
 #include "render/filter_internal.h"
@@ -22,15 +23,20 @@ struct path_tracer {
     int roulette_depth; /* scattering events after which roulette may end a path */
     enum path_strategy strategy;
     struct filter filter;
-    double noise;                 /* a tile with this noise is finished; 0: every tile takes all samples */
-    double clamp;                 /* the limit on components of a sample; 0: no limit */
-    double bright;                /* of struct path_pixel */
-    bool built;                   /* the lights are prepared */
-    bool has_fillings;            /* media inside invisible surfaces */
-    bool in_medium;               /* the medium around all solids affects rays */
-    bool disperses;               /* indices of refraction depend on the wavelength */
-    const uint32_t *aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
+    double noise;      /* a tile with this noise is finished; 0: every tile takes all samples */
+    double clamp;      /* the limit on components of a sample; 0: no limit */
+    double bright;     /* of struct path_pixel */
+    bool built;        /* the lights are prepared */
+    bool has_matter;   /* media that affect rays, dispersion, or light that goes under surfaces */
+    bool has_fillings; /* media inside invisible surfaces */
+    bool in_medium;    /* the medium around all solids affects rays */
+    bool disperses;    /* indices of refraction depend on the wavelength */
+    const struct aimed_light {
+        uint32_t light;
+        struct light_bounds bounds;
+    } * aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
     uint32_t aimed_light_count;
+    const struct glow *glow; /* or NULL */
     const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */
     /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
      * traced lobes, and paths omit it. NULL: paths include it. */

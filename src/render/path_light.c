@@ -107,12 +107,63 @@ struct colour path_light_arriving(const struct path_tracer *tracer, struct integ
     }
     if (tracer->has_fillings && !colour_is_black(radiance)) {
         uint64_t key = stretch_key(path, 0);
-        return colour_mul(radiance, media_left(lights->world, &shadow->ray, end, &key, state->scratch));
+        struct medium_stack behind;
+        return colour_mul(radiance, media_left(lights->world, &shadow->ray, end, &key, state->scratch, &behind));
     }
     if (colour_is_black(radiance) || !path_is_affected(tracer, MEDIUM_RAY_SHADOW, &shadow->ray))
         return radiance;
     return colour_mul(radiance, medium_ray_left(MEDIUM_RAY_SHADOW, &shadow->ray,
                                                 end * vec3_length(shadow->ray.direction), stretch_key(path, 0)));
+}
+
+/* --- glowing media --- */
+
+/* How many times the ray that ends in these media is in this one. */
+static double times_in(const struct medium *medium, const struct medium_stack *media) {
+    struct medium_mix mix;
+    double times = 0;
+    medium_stack_mix(media, &mix);
+    for (uint32_t i = 0; i < mix.count; i++)
+        times += mix.media[i] == medium;
+    return times;
+}
+
+struct colour path_glow_light(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path,
+                              const struct path_vertex *vertex, uint32_t dimension, struct vec3 *direction) {
+    const struct world_lights *lights = &tracer->lights;
+    const double time = path->ray.time;
+    const struct sampler *sampler = &path->sampler;
+    struct path_shadow shadow;
+    struct glow_sample at;
+    if (!glow_sample(tracer->glow, time, sampler_point(sampler, dimension | SAMPLER_GLOW),
+                     sampler_point(sampler, (dimension + 1) | SAMPLER_GLOW), &at))
+        return colour_all(0);
+    /* What the vertex scatters of its light. */
+    const struct vec3 way = vec3_sub(at.point, vertex->receiver->point);
+    const double square = vec3_dot(way, way);
+    if (!(square > 0))
+        return colour_all(0);
+    *direction = vec3_normalize(way);
+    struct colour light = scattered(vertex, vertex->at.lobes, *direction);
+    if (colour_is_black(light))
+        return light;
+    const double density = medium_density(at.medium, at.point, time);
+    light = colour_mul(light, medium_emission_at(at.medium, density, at.point, time));
+    if (colour_is_black(light))
+        return light;
+    /* What of it arrives. */
+    shadow.sample = (struct world_light_sample){.direction = *direction, .target = {.at = at.point}};
+    path_send_shadow_ray(vertex, &shadow);
+    state->shadow_rays++;
+    light = colour_scale(light, world_lights_visible(lights, &shadow.ray, state->scratch));
+    if (colour_is_black(light))
+        return light;
+    const uint64_t key = random_combine(sampler->key, dimension | SAMPLER_GLOW);
+    struct medium_stack media;
+    light = colour_mul(light, media_left(lights->world, &shadow.ray, shadow.ray.t_max, &key, state->scratch, &media));
+    const struct glow_met met = {tracer->glow, vertex->receiver->point, interaction_pdf(&vertex->at, *direction)};
+    const double weight = met.pdf > 0 ? 1 - glow_met_weight(&met, at.medium, at.point, time) : 1;
+    return colour_scale(light, times_in(at.medium, &media) * weight / (at.pdf * square));
 }
 
 /* --- kinds of scattering --- */

@@ -49,6 +49,10 @@ bool path_choose_light(const struct path_tracer *tracer, const struct path_verte
 /* The light of the sample that arrives, reduced by the media on its way; black if an object blocks it. */
 struct colour path_light_arriving(const struct path_tracer *tracer, struct integrator_state *state,
                                   const struct path *path, struct path_shadow *shadow);
+/* The light of a glowing medium that the vertex scatters, and where it comes from. dimension: the first one of the
+ * vertex. */
+struct colour path_glow_light(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path,
+                              const struct path_vertex *vertex, uint32_t dimension, struct vec3 *direction);
 /* The ray to the sample in `out`. */
 void path_send_shadow_ray(const struct path_vertex *vertex, struct path_shadow *out);
 /* The weight of a sample of a light with density `pdf` that rays find with density `other`. */

@@ -8,8 +8,9 @@
  * A thread calls them for one path after the other. They call no allocator, no function pointer and not themselves;
  * what is below world_nearest_crossing and world_any may.
  *
- * A file that includes this one defines PATH(name), LAYERS and OBSERVED: whether paths record light layers and features
- * (state->parts), and whether they report to an observer.
+ * A file that includes this one defines PATH(name), LAYERS, OBSERVED and MATTER: whether paths record light layers and
+ * features (state->parts), whether they report to an observer, and whether there may be media, dispersion or walks
+ * under surfaces (tracer->has_matter).
  *
  * A path ends at the sky, at the maximum depth, by Russian roulette, or at a visible area light. A *line of sight* is a
  * camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show the background, visible
@@ -153,8 +154,9 @@ static uint64_t medium_key(const struct path *path) {
  * that before the way. */
 static __attribute__((noinline)) void sample_aimed_light(const struct path_tracer *tracer,
                                                          struct integrator_state *state, struct path *path,
-                                                         const struct medium_mix *mix, double distance) {
-    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance));
+                                                         const struct medium_mix *mix, double distance,
+                                                         struct path_lamps *lamps) {
+    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance, lamps));
     struct path_parts *parts = parts_of(state);
     path->light = colour_add(path->light, light);
     if (!parts || colour_is_black(light))
@@ -169,7 +171,10 @@ static void note_tracked(const struct path *path, const struct medium_mix *mix, 
                          struct path_stretch *out) {
     const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), out->distance,
                                      path->ray.time};
-    out->tracked = (struct path_tracked){&path->ray, end, out->distance, medium_mix_density(mix, &line, weight)};
+    out->tracked.ray = &path->ray;
+    out->tracked.end = end;
+    out->tracked.distance = out->distance;
+    out->tracked.density = medium_mix_density(mix, &line, weight);
 }
 
 /* Passes the medium, up to out->distance. */
@@ -184,7 +189,7 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
         if (aimed)
-            sample_aimed_light(tracer, state, path, &mix, end);
+            sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
@@ -213,8 +218,9 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const double end = out->distance;
     const struct medium_line line = {path->ray.origin, vec3_normalize(path->ray.direction), end, path->ray.time};
+    const struct glow_met met = {tracer->glow, path->scatter.point, path->pdf};
     const struct medium_draw numbers = {sampler_point(&path->sampler, path->dimension | SAMPLER_MEDIUM),
-                                        medium_key(path)};
+                                        medium_key(path), tracer->glow && path->pdf > 0 ? &met : NULL};
     const struct colour weight = path->weight;
     medium_mix_track(&mix, &line, weight, numbers, &track);
     add_light(state, path, track.emitted);
@@ -225,7 +231,7 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const bool aimed = path_is_aimed(tracer, path);
     if (aimed)
-        sample_aimed_light(tracer, state, path, &mix, end);
+        sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;
@@ -260,10 +266,12 @@ static enum travelled travel(const struct path_tracer *tracer, struct integrator
         add_light(state, path, path_area_lights(tracer, &segment, end));
     }
     enum medium_ray kind = path->sight ? MEDIUM_RAY_SIGHT : MEDIUM_RAY_SCATTERED;
-    if (!seen && !path_is_affected(tracer, kind, &path->ray))
+    if (!seen && !(MATTER && path_is_affected(tracer, kind, &path->ray)))
         return ENDS_AT_HIT;
     out->distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
-    pass_medium(tracer, state, path, kind, out);
+    out->medium = NULL;
+    if (MATTER)
+        pass_medium(tracer, state, path, kind, out);
     if (out->medium)
         return ENDS_IN_MEDIUM;
     if (!seen)
@@ -399,7 +407,7 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     if (!interaction_sample(&vertex->at, BSDF_RADIANCE, u, &sample))
         return watch_end(watch, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
-    if (sample.flags & BSDF_BELOW)
+    if (MATTER && (sample.flags & BSDF_BELOW))
         return walk_below(state, path, vertex, &sample, watch);
     /* A shading normal may reflect into the surface. */
     if (bsdf && !transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
@@ -441,6 +449,22 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
     return true;
 }
 
+/* The light of glowing media at the vertex. */
+static __attribute__((noinline)) void add_glow(const struct path_tracer *tracer, struct integrator_state *state,
+                                               struct path *path, const struct path_vertex *vertex,
+                                               uint32_t dimension) {
+    struct vec3 direction;
+    struct colour light = colour_mul(path->weight, path_glow_light(tracer, state, path, vertex, dimension, &direction));
+    struct path_parts *parts = parts_of(state);
+    path->light = colour_add(path->light, light);
+    if (!parts || colour_is_black(light))
+        return;
+    struct colour shares[PATH_SCATTERINGS];
+    if (path->depth == 0)
+        path_shares(vertex, vertex->at.lobes, direction, shares);
+    add_to_groups(parts, path->depth + 1, path->depth == 0 ? shares : parts->shares, light);
+}
+
 /* Asks for the light of a light source, and continues. dimension: the first one of the vertex. */
 static inline __attribute__((always_inline)) bool
 light_and_scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -453,9 +477,11 @@ light_and_scatter(const struct path_tracer *tracer, struct integrator_state *sta
     struct path_choice chosen;
     shadow->weight = path->weight;
     shadow->depth = path->depth;
-    if (!vertex->sealed && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
+    if (!(MATTER && vertex->sealed) && path_choose_light(tracer, vertex, &draw, shadow, &chosen) && parts_of(state) &&
         path->depth == 0)
         path_direct_shares(vertex, &chosen, shadow->sample.direction, shadow->shares);
+    if (MATTER && tracer->glow)
+        add_glow(tracer, state, path, vertex, dimension);
     return scatter(tracer, state, path, vertex, choice.y, watch);
 }
 
@@ -470,6 +496,14 @@ static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tr
     return true;
 }
 
+/* The depth is that of what is behind, as far as that is seen: that of single events would be noise, and so would be
+ * that of a horizon. */
+static double depth_in_medium(const struct medium *medium, double before, double end) {
+    const struct medium_mix mix = {1, {medium}};
+    double haze = medium_mix_haze(&mix), depth = haze > 0 ? fmin(end, 4 / haze) : end;
+    return depth < INFINITY ? before + depth : 0;
+}
+
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
                                                   struct path *path, const struct path_stretch *end,
@@ -482,10 +516,9 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
-    /* The depth is that of what is behind: that of single events would be noise. */
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0),
-                     end->end < INFINITY ? parts->travelled + end->end : 0);
+                     depth_in_medium(end->medium, parts->travelled, end->end));
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},
@@ -506,7 +539,7 @@ static void evaluate(const struct integrator_state *state, const struct path *pa
     const struct material_context context = {.specular = state->job->settings.specular,
                                              .total_reflection = true,
                                              .no_black_highlight = true,
-                                             .walks = true,
+                                             .walks = MATTER,
                                              .thin = primitive_is_thin(world, hit->primitive),
                                              .joint = joint_boundary(joint)};
     if (OBSERVED && !material_observe(&world->surfaces, hit, world->authored.materials[hit->material], &context,
@@ -615,13 +648,13 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
     at.joint.joined = JOINED_NOT;
     shadow->part.light = LIGHT_NONE;
     shadow->sent = false;
-    bool travelled = !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
+    bool travelled = MATTER && !OBSERVED && tracer->sealed && met && travel_sealed(tracer, state, path, &end);
     if (travelled && end.medium)
         return meet_medium(tracer, state, path, &end, shadow, watch);
     /* The surface, or nothing where several have no effect together. */
     if (met) {
         world_describe(world, &path->ray, path->met.primitive, &path->met.crossing, &at.hit);
-        if (tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
+        if (MATTER && tracer->disperses && world_needs_wavelength(world, &at.hit, &path->media)) {
             double u = sampler_point(&path->sampler, SAMPLER_WAVELENGTH).x;
             path->weight = colour_mul(path->weight, medium_stack_choose_wavelength(&path->media, u));
         }
@@ -754,7 +787,7 @@ struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_st
     for (;;) {
         bool goes_on = shade(tracer, state, &path, &to_light, watch);
         end_vertex(tracer, state, &path, &to_light, watch);
-        while (!goes_on && path.kind == RAY_BELOW && !integrator_cancelled(state)) {
+        while (MATTER && !goes_on && path.kind == RAY_BELOW && !integrator_cancelled(state)) {
             goes_on = come_out(tracer, state, &path, &to_light, watch);
             end_vertex(tracer, state, &path, &to_light, watch);
         }

@@ -9,10 +9,12 @@
  * `met`, or nothing for NULL. key: the random key of the ray. */
 struct colour path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                          const struct packet_answer *met, bool ask, uint64_t key);
-/* The same for paths that record nothing; light layers and features; and those with an observer
- * (path_pieces_internal.h). */
+/* The same for paths that record nothing, in scenes without and with light inside of matter; for light layers and
+ * features; and for those with an observer (path_pieces_internal.h). */
 struct colour path_trace_plain(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                                const struct packet_answer *met, bool ask, uint64_t key);
+struct colour path_trace_matter(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
+                                const struct packet_answer *met, bool ask, uint64_t key);
 struct colour path_trace_layers(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                                 const struct packet_answer *met, bool ask, uint64_t key);
 struct colour path_trace_observed(const struct path_tracer *tracer, struct integrator_state *state,

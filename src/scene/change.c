@@ -4,16 +4,10 @@
 
 #include "base/mem.h"
 #include "scene/traversal.h"
-#include "shape/revolved_quadric.h"
 
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-
-const char *added_kind_name(enum added_kind kind) {
-    static const char *const names[] = {ADDED(LIST_WORD)};
-    return names[kind];
-}
 
 /* The material of new shapes; its serial is 0. */
 static struct material added_material(struct colour colour) {
@@ -145,6 +139,7 @@ struct change_application {
     const struct change *change;
     struct scene *scene;
     struct node *root;
+    const struct change_maker *maker;
     struct changed_scene *out;
     bool no_memory;
     change_warning *warn;
@@ -264,86 +259,90 @@ static struct colour colour_of(const double *numbers) {
     return colour_make(numbers[0], numbers[1], numbers[2]);
 }
 
-static struct shape shape_of(enum added_kind kind) {
-    switch (kind) {
-    case ADDED_CUBE:
-        return (struct shape){.kind = SHAPE_BOX, .box = {vec3_all(-1), vec3_all(1)}};
-    case ADDED_CYLINDER:
-        return (struct shape){.kind = SHAPE_REVOLVED_QUADRIC,
-                              .revolved_quadric =
-                                  revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false)};
-    case ADDED_CONE:
-        return (struct shape){.kind = SHAPE_REVOLVED_QUADRIC,
-                              .revolved_quadric =
-                                  revolved_quadric_frustum(vec3_make(0, -1, 0), 1, vec3_make(0, 1, 0), 0, false)};
-    case ADDED_TORUS:
-        return (struct shape){.kind = SHAPE_TORUS, .torus = {0.75, 0.25}};
-    case ADDED_SPHERE:
-    case ADDED_COPY:
-        break;
-    }
-    return (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}};
+/* The object of the call; *made NULL: the call is wrong, which was reported. */
+static bool make_object(struct change_application *l, void **made) {
+    if (l->maker->make(l->maker->context, l->change, made, l->error))
+        return true;
+    *made = NULL;
+    if (l->error->kind == ERROR_SCENE)
+        l->warn(l->context, l->error->text);
+    return l->error->kind == ERROR_SCENE;
 }
 
-/* The scene's own numbers are not used up, so that later nodes keep theirs. */
-static bool make_node(struct change_application *l, struct node *source, struct added_node *made) {
-    const struct change *change = l->change;
-    uint32_t node_count = l->scene->node_count, material_count = l->scene->material_count;
-    enum node_kind kind = source ? NODE_GROUP : NODE_GEOMETRY;
-    struct node *node = scene_node(l->scene, kind, added_kind_name(change->added), l->error);
-    struct material *material = source ? NULL : scene_material(l->scene, MATERIAL_PHONG, NULL, l->error);
+/* A group over the node. The scene's own numbers are not used up, so that later nodes keep theirs. */
+static struct node *copy_of(struct change_application *l, struct node *source) {
+    uint32_t node_count = l->scene->node_count;
+    struct node *node = scene_node(l->scene, NODE_GROUP, "copy", l->error);
     l->scene->node_count = node_count;
+    return node && node_add_child(l->scene, node, source, l->error) ? node : NULL;
+}
+
+/* Its own, if the call gives the shape none. */
+static bool give_material(struct change_application *l, struct added_node *made) {
+    uint32_t material_count = l->scene->material_count;
+    struct node *node = made->object;
+    if (node->kind != NODE_GEOMETRY || node->material)
+        return true;
+    struct material *material = scene_material(l->scene, MATERIAL_PHONG, NULL, l->error);
     l->scene->material_count = material_count;
-    if (!node || (!source && !material))
+    if (!material)
         return false;
-    node->serial = UINT32_MAX - change->number;
-    made->node = node;
-    made->material = material;
-    if (source)
-        return node_add_child(l->scene, node, source, l->error);
-    material->phong = added_material(colour_of(change->numbers)).phong;
-    material->serial = UINT32_MAX - change->number;
-    node->material = material;
-    node->shape = shape_of(change->added);
+    material->phong = added_material(colour_of(l->change->numbers)).phong;
+    material->serial = UINT32_MAX - l->change->number;
+    node->material = made->material = material;
     return true;
 }
 
-/* An existing one is reused: dragging an object applies changes many times per second. */
-static struct node *new_node(struct change_application *l, struct node *source) {
+/* The object of the change; *out NULL: its call is wrong. An existing one is reused: dragging an object
+ * applies changes many times per second. */
+static bool added_object(struct change_application *l, struct node *source, struct added_node **out) {
     const struct change *change = l->change;
     struct added_node *made = l->scene->added;
-    while (made && (made->number != change->number || made->kind != (int)change->added || made->source != source))
+    while (made && (made->number != change->number || made->kind != (int)change->kind || made->source != source ||
+                    strcmp(made->call, change->call) != 0))
         made = made->next;
-    if (!made) {
-        made = arena_alloc(&l->scene->arena, sizeof *made);
-        if (!made) {
-            error_no_memory(l->error, "a node");
-            return NULL;
-        }
-        *made = (struct added_node){
-            .number = change->number, .kind = (int)change->added, .source = source, .next = l->scene->added};
-        if (!make_node(l, source, made))
-            return NULL;
-        l->scene->added = made;
-    }
-    if (made->material)
-        made->material->phong.kd = colour_of(change->numbers);
-    return made->node;
+    *out = made;
+    if (made)
+        return true;
+    void *object = NULL;
+    if (!source && (!make_object(l, &object) || !object))
+        return object != NULL || l->error->kind == ERROR_SCENE;
+    made = arena_alloc(&l->scene->arena, sizeof *made);
+    const char *call = made ? arena_copy_text(&l->scene->arena, change->call, strlen(change->call)) : NULL;
+    if (!call)
+        return error_no_memory(l->error, "a node");
+    *made = (struct added_node){change->number, (int)change->kind, call, source, object, NULL, l->scene->added};
+    if (source && !(made->object = copy_of(l, source)))
+        return false;
+    bool node = change->kind == CHANGE_ADD;
+    if (node && !source && !give_material(l, made))
+        return false;
+    if (node)
+        ((struct node *)made->object)->serial = UINT32_MAX - change->number;
+    l->scene->added = made;
+    *out = made;
+    return true;
 }
 
 static bool add_node(struct change_application *l) {
     struct node *source = NULL;
-    if (l->change->added == ADDED_COPY && !(source = node_of(l, l->change->source, ""))) {
+    struct added_node *made;
+    if (l->change->call[0] == '\0' && !(source = node_of(l, l->change->source, ""))) {
         report_missing(l, "a copy under the node", l->change->serial);
         return true;
     }
     struct node *parent = begin_node(l);
     if (!parent)
         return true;
-    struct node *node = new_node(l, source);
-    if (!node || !node_add_child(l->scene, parent, node, l->error))
+    if (!added_object(l, source, &made))
         return false;
-    l->out->added[l->out->added_count++] = node;
+    if (!made)
+        return true;
+    if (made->material)
+        made->material->phong.kd = colour_of(l->change->numbers);
+    if (!node_add_child(l->scene, parent, made->object, l->error))
+        return false;
+    l->out->added[l->out->added_count++] = made->object;
     return true;
 }
 
@@ -354,14 +353,21 @@ static struct material *material_of(const struct change_application *l, uint32_t
     return material;
 }
 
-static void change_material(struct change_application *l) {
+static bool change_material(struct change_application *l) {
     struct material *material = material_of(l, l->change->serial);
+    struct added_node *made;
     if (!material || material->base) {
         report_missing(l, "the material", l->change->serial);
-        return;
+        return true;
     }
     l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
-    material_part_set(material, l->change->part, l->change->numbers);
+    if (l->change->kind == CHANGE_MATERIAL)
+        material_part_set(material, l->change->part, l->change->numbers);
+    else if (!added_object(l, NULL, &made))
+        return false;
+    else if (made)
+        material->inputs[INPUT_KD] = made->object;
+    return true;
 }
 
 /* Own materials. */
@@ -461,23 +467,25 @@ static void change_light(struct change_application *l) {
     light->colour = colour_mul(light->colour, colour_of(numbers + 3));
 }
 
-/* A copy of a light that no longer exists is black, so that those after it keep their numbers. */
-static void add_light(struct change_application *l) {
-    struct vec3 first = three(l->change->numbers);
-    struct colour second = colour_of(l->change->numbers + 3);
+/* A light that cannot be made is black, so that those after it keep their numbers. */
+static bool add_light(struct change_application *l) {
     uint32_t number = l->out->light_count++, like = l->change->source;
-    struct light *light = &l->out->lights[number].light;
-    *light = (struct light){.kind = LIGHT_POINT, .falloff = {1, 0, 0}};
-    if (like == 0) {
-        light->position = first;
-        light->colour = second;
-    } else if (like <= number) {
-        l->out->lights[number] = l->out->lights[like - 1];
-        light_move(light, first);
-        light->colour = colour_mul(light->colour, second);
-    } else {
+    struct scene_light *added = &l->out->lights[number];
+    struct added_node *made = NULL;
+    *added = (struct scene_light){.light = {.kind = LIGHT_POINT, .falloff = {1, 0, 0}}};
+    if (l->change->call[0] != '\0' && !added_object(l, NULL, &made))
+        return false;
+    if (made)
+        *added = *(const struct scene_light *)made->object;
+    else if (l->change->call[0] == '\0' && like >= 1 && like <= number)
+        *added = l->out->lights[like - 1];
+    else if (l->change->call[0] == '\0')
         report_missing(l, "a copy of the light", like);
-    }
+    if (made && added->light.kind == LIGHT_SKY)
+        l->out->sky = added->light.sky;
+    light_move(&added->light, three(l->change->numbers));
+    added->light.colour = colour_mul(added->light.colour, colour_of(l->change->numbers + 3));
+    return true;
 }
 
 static bool lay(struct change_application *l) {
@@ -487,6 +495,7 @@ static bool lay(struct change_application *l) {
         transform_node(l);
         break;
     case CHANGE_GONE:
+    case CHANGE_HIDDEN:
         if ((node = begin_node(l)))
             node->singular = true;
         break;
@@ -495,15 +504,14 @@ static bool lay(struct change_application *l) {
     case CHANGE_OWN:
         return give_own(l);
     case CHANGE_MATERIAL:
-        change_material(l);
-        break;
+    case CHANGE_TEXTURE:
+        return change_material(l);
     case CHANGE_LIGHT:
     case CHANGE_DARK:
         change_light(l);
         break;
     case CHANGE_ADD_LIGHT:
-        add_light(l);
-        break;
+        return add_light(l);
     case CHANGE_SOLO:
         leave_only(l);
         break;
@@ -521,8 +529,13 @@ bool changes_lay_over(struct change_range changes, const struct change_target *t
                                   .nodes = mem_alloc_zero((size_t)count + SOLO_LEVELS, sizeof *out->nodes),
                                   .materials = mem_alloc_zero((size_t)count + 1, sizeof *out->materials),
                                   .added = mem_alloc_zero((size_t)count + 1, sizeof(struct node *))};
-    struct change_application l = {
-        .scene = target->scene, .root = target->root, .out = out, .warn = warn, .context = context, .error = error};
+    struct change_application l = {.scene = target->scene,
+                                   .root = target->root,
+                                   .maker = target->maker,
+                                   .out = out,
+                                   .warn = warn,
+                                   .context = context,
+                                   .error = error};
     bool ok = out->lights && out->nodes && out->materials && out->added;
     if (!ok)
         error_no_memory(error, "the changes of the scene");

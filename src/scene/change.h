@@ -17,47 +17,45 @@ enum change_kind {
     CHANGE_GONE,      /* a node is not drawn */
     CHANGE_OWN,       /* a shape gets its own material */
     CHANGE_MATERIAL,  /* a part of a material's base */
+    CHANGE_TEXTURE,   /* a texture is the kd of a material's base */
     CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
     CHANGE_DARK,      /* a light is removed */
+    CHANGE_HIDDEN,    /* a node is not drawn in the window; not written as Lua */
     CHANGE_SOLO,      /* only a node, and what is below it, is drawn; not written as Lua */
     CHANGE_KINDS
 };
 enum { TURN_AT = 6, COLOUR_AT = 15 };
 #define OWN_SERIAL (UINT32_MAX / 2)
-#define ADDED(X)                                                                                                       \
-    X(ADDED_SPHERE, "sphere")                                                                                          \
-    X(ADDED_CUBE, "cube")                                                                                              \
-    X(ADDED_CYLINDER, "cylinder")                                                                                      \
-    X(ADDED_CONE, "cone")                                                                                              \
-    X(ADDED_TORUS, "torus")                                                                                            \
-    X(ADDED_COPY, "copy")
-enum added_kind { ADDED(LIST_MEMBER) };
-enum { ADDED_KINDS = LIST_COUNT(ADDED) };
-const char *added_kind_name(enum added_kind kind);
+/* Nodes and materials inside of an added object count from its part of these numbers, ADDED_PARTS for each. */
+#define ADDED_PART_SERIAL (UINT32_MAX / 4 * 3)
+#define ADDED_MATERIAL_SERIAL (UINT32_MAX / 4)
+enum { ADDED_PARTS = 1 << 16 };
 
 /* An added node or material, by its serial: its number from 1; 0: the script made it. */
 uint32_t added_number(uint32_t serial);
 
-enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18 };
+enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18, CHANGE_CALL = 512 };
 
 struct change {
     enum change_kind kind;
     /* Of the node, or of the one that the new node hangs under; of the material; the light's number, from 1. */
     uint32_t serial;
     char name[CHANGE_NAME]; /* of that node, cut; "" fits all */
-    enum added_kind added;
+    /* Of ADD, ADD_LIGHT and TEXTURE: the Lua call that makes the object, as "gr.torus{minor = 0.1}"; empty: it is a
+     * copy. */
+    char call[CHANGE_CALL];
     /* Of added objects, from 0; a node's serial is UINT32_MAX - number. Of OWN, counted separately: the material's
      * serial is OWN_SERIAL - number. */
     uint32_t number;
-    /* ADDED_COPY: the serial of the node to copy. OWN: that of the base to copy if the shape has no material; 0: plain
-     * gray. ADD_LIGHT: the number of the light to copy; 0: none. */
+    /* A copy: the serial of the node to copy. OWN: that of the base to copy if the shape has no material; 0: plain
+     * gray. ADD_LIGHT: the number of the light to copy. */
     uint32_t source;
     enum material_part part; /* of MATERIAL */
     bool turns, colours;     /* of LIGHT: it has a turn; a colour */
-    /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a translation, three factors, and
-     * from TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that replaces its own. ADD_LIGHT: a position, a colour;
-     * for a copy a translation, three factors. */
+    /* PLACE: 3 rows of 4. ADD: a colour, for a shape whose call gives it no material. MATERIAL: as many as the part
+     * has. LIGHT: a translation, three factors, and from TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that
+     * replaces its own. ADD_LIGHT: a translation, three factors. */
     double numbers[CHANGE_NUMBERS];
 };
 
@@ -95,6 +93,7 @@ struct changed_material {
 struct changed_scene {
     struct scene_light *lights; /* the list of the picture */
     uint32_t light_count;
+    const struct sky *sky;      /* of an added light: it is the background; NULL: that of the picture */
     struct changed_node *nodes; /* in order */
     struct changed_material *materials;
     struct node **added;
@@ -104,8 +103,15 @@ struct change_range {
     const struct change *items;
     uint32_t count;
 };
+/* Makes the object of the call of a change, in the arena of the scene: a node, a scene_light or a texture. Its parts
+ * have the serials of the number of the change. An ERROR_SCENE: the call is wrong. */
+struct change_maker {
+    bool (*make)(void *context, const struct change *change, void **object, struct error *error);
+    void *context;
+};
 /* What a picture shows, and changes are laid over. */
 struct change_target {
+    const struct change_maker *maker;
     struct scene *scene;
     struct node *root;
     const struct scene_light *lights;

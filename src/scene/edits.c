@@ -46,6 +46,16 @@ bool edits_make(struct edits *edits, const struct change *change, bool present, 
     return true;
 }
 
+bool edits_differ(const struct edits *edits, uint32_t from) {
+    uint32_t first = from < edits->at ? from : edits->at, end = from < edits->at ? edits->at : from;
+    bool differ = first < end && end > edits->count; /* what was undone is no longer known */
+    for (uint32_t i = first; i < end && i < edits->count; i++) {
+        enum change_kind kind = edits->steps[i].after.kind;
+        differ = differ || (kind != CHANGE_HIDDEN && kind != CHANGE_SOLO);
+    }
+    return differ;
+}
+
 bool edits_undo(struct edits *edits, struct change *target) {
     if (edits->at == 0)
         return false;
@@ -102,7 +112,7 @@ static void format_light(const struct change *c, char *line, size_t size) {
 }
 
 static void format_change(const struct change *c, char *line, size_t size) {
-    char name[8 * CHANGE_NAME], a[400], b[120];
+    char name[8 * CHANGE_NAME], call[4 * CHANGE_CALL + 8], a[400], b[120];
     quote(name, sizeof name, c->name);
     switch (c->kind) {
     case CHANGE_TRANSFORM:
@@ -114,8 +124,8 @@ static void format_change(const struct change *c, char *line, size_t size) {
         return;
     case CHANGE_ADD:
         format_numbers(a, sizeof a, c->numbers, 3);
-        (void)snprintf(line, size, "gr.change_add(%s, %u, '%s', %s, %u)\n", name, c->serial, added_kind_name(c->added),
-                       a, c->source);
+        quote(call, sizeof call, c->call[0] ? c->call : "copy");
+        (void)snprintf(line, size, "gr.change_add(%s, %u, %s, %s, %u)\n", name, c->serial, call, a, c->source);
         return;
     case CHANGE_OWN:
         (void)snprintf(line, size, "gr.change_own(%s, %u, %u)\n", name, c->serial, c->source);
@@ -127,6 +137,10 @@ static void format_change(const struct change *c, char *line, size_t size) {
         else
             (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, material_part_name(c->part), a);
         return;
+    case CHANGE_TEXTURE:
+        quote(call, sizeof call, c->call);
+        (void)snprintf(line, size, "gr.change_texture(%u, %s)\n", c->serial, call);
+        return;
     case CHANGE_LIGHT:
         format_light(c, line, size);
         return;
@@ -136,11 +150,13 @@ static void format_change(const struct change *c, char *line, size_t size) {
     case CHANGE_ADD_LIGHT:
         format_numbers(a, sizeof a, c->numbers, 3);
         format_numbers(b, sizeof b, c->numbers + 3, 3);
-        if (c->source)
+        quote(call, sizeof call, c->call);
+        if (c->call[0] == '\0')
             (void)snprintf(line, size, "gr.change_copy_light(%u, %s, %s)\n", c->source, a, b);
         else
-            (void)snprintf(line, size, "gr.change_add_light(%s, %s)\n", a, b);
+            (void)snprintf(line, size, "gr.change_add_light(%s, %s, %s)\n", a, b, call);
         return;
+    case CHANGE_HIDDEN:
     case CHANGE_SOLO:
     case CHANGE_KINDS:
         break;

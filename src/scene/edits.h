@@ -24,6 +24,8 @@ bool edits_make(struct edits *edits, const struct change *change, bool present, 
 /* *target: what has changed. False: there is nothing to undo, or to redo. */
 bool edits_undo(struct edits *edits, struct change *target);
 bool edits_redo(struct edits *edits, struct change *target);
+/* Whether the steps between two moments, now and when steps.at was `from`, have changed what would be written. */
+bool edits_differ(const struct edits *edits, uint32_t from);
 void edits_destroy(struct edits *edits);
 
 /* Writes the Lua calls of gr.change_... that give a picture these changes, with every digit. `put` receives each line.

@@ -106,13 +106,14 @@ struct node {
     uint32_t line;
 };
 
-/* A node that a change adds (scene/change.h), kept for the next time. */
+/* A node, a light or a texture that a change adds (scene/change.h), kept for the next time. */
 struct added_node {
     uint32_t number;
-    int kind;
+    int kind; /* of the change */
+    const char *call;
     const struct node *source; /* of a copy */
-    struct node *node;
-    struct material *material; /* its own; NULL of a copy */
+    void *object;              /* a node, a scene_light or a texture */
+    struct material *material; /* that a shape has got, or NULL */
     struct added_node *next;
 };
 

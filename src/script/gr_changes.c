@@ -5,6 +5,7 @@
 #include "script/rows_internal.h"
 #include "script/script_internal.h"
 
+#include <lauxlib.h>
 #include <math.h>
 #include <string.h>
 
@@ -101,13 +102,111 @@ static bool gr_change_delete(struct script_context *context, const struct script
     return note(context, CHANGE_GONE, args[CHANGEGONE_NAME].text, args[CHANGEGONE_SERIAL].number, error) != NULL;
 }
 
+/* Making what is added: a Lua call, which runs in the state of the script while a picture is made. */
+
+struct making {
+    struct script_context *context;
+    const char *call;
+    enum handle_type type;
+    void *object;
+};
+
+static int run_call(lua_State *L) {
+    struct making *making = lua_touserdata(L, 1);
+    const char *text = lua_pushfstring(L, "return %s", making->call);
+    if (luaL_loadbufferx(L, text, strlen(text), "=added", "t") != LUA_OK)
+        return lua_error(L);
+    lua_call(L, 0, 1);
+    const struct handle *handle = handle_at(L, -1);
+    if (!handle || handle->type != making->type)
+        return luaL_error(L, "%s makes %s, not %s", making->call,
+                          handle ? handle_words(handle->type) : "something else", handle_words(making->type));
+    const struct script_texture *texture = handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
+    making->object = texture ? (void *)(uintptr_t)texture->texture : handle->pointer;
+    if (!making->object || (texture && texture->is_bump))
+        return luaL_error(L, "%s makes no texture of colours", making->call);
+    return 0;
+}
+
+/* The arguments of the call that renders stay: those of a call in the text are in another arena. Numbers of nodes and
+ * materials of the script are not used up. */
+static bool make_object(void *user, const struct change *change, void **object, struct error *error) {
+    const enum handle_type type = change->kind == CHANGE_ADD         ? HANDLE_NODE
+                                  : change->kind == CHANGE_ADD_LIGHT ? HANDLE_LIGHT
+                                                                     : HANDLE_TEXTURE;
+    struct script_context *context = user;
+    struct sandbox *sandbox = &context->sandbox;
+    lua_State *L = sandbox->lua;
+    struct making making = {context, change->call, type, NULL};
+    const struct script_function *function = context->function;
+    struct running_function running = sandbox->running;
+    struct arena arguments = sandbox->call;
+    uint32_t nodes = context->scene.node_count, materials = context->scene.material_count;
+    if (!lua_checkstack(L, 8))
+        return error_no_memory(error, "an added object");
+    sandbox->call = (struct arena){0};
+    context->scene.node_count = ADDED_PART_SERIAL + change->number * ADDED_PARTS;
+    context->scene.material_count = ADDED_MATERIAL_SERIAL + change->number * ADDED_PARTS;
+    lua_pushcfunction(L, run_call);
+    lua_pushlightuserdata(L, &making);
+    bool ok = lua_pcall(L, 1, 0, 0) == LUA_OK;
+    arena_destroy(&sandbox->call);
+    sandbox->call = arguments;
+    sandbox->lua = L;
+    sandbox->running = running;
+    context->function = function;
+    context->scene.node_count = nodes;
+    context->scene.material_count = materials;
+    *object = making.object;
+    if (sandbox->fatal.kind != ERROR_NONE)
+        *error = sandbox->fatal;
+    else if (!ok)
+        (void)error_set(error, ERROR_SCENE, "%s", lua_tostring(L, -1) ? lua_tostring(L, -1) : "an error");
+    if (!ok)
+        lua_pop(L, 1);
+    return ok;
+}
+
+/* While the limits of the script are paused. */
+static bool make_in_window(void *user, const struct change *change, void **object, struct error *error) {
+    struct script_context *context = user;
+    limits_resume(&context->sandbox.limits);
+    bool ok = make_object(context, change, object, error);
+    limits_pause(&context->sandbox.limits);
+    return ok;
+}
+
+/* The call for a word of files that earlier versions have written. */
+static const char *call_of(const char *shape) {
+    static const char *const words[][2] = {
+        {"copy", ""},
+        {"sphere", "gr.sphere{}"},
+        {"cube", "gr.box{min = {-1, -1, -1}, max = {1, 1, 1}}"},
+        {"cylinder", "gr.cylinder{}"},
+        {"cone", "gr.cone{from = {0, -1, 0}, to = {0, 1, 0}, from_radius = 1, radius = 0}"},
+        {"torus", "gr.torus{major = 0.75, minor = 0.25}"}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strcmp(words[i][0], shape) == 0)
+            return words[i][1];
+    }
+    return shape;
+}
+
+static bool set_call(struct change *change, const char *call, struct error *error) {
+    if (strlen(call) >= sizeof change->call)
+        return error_set(error, ERROR_SCENE, "the call has more than %d characters", CHANGE_CALL - 1);
+    memcpy(change->call, call, strlen(call) + 1);
+    return true;
+}
+
 enum { CHANGEADD_NAME, CHANGEADD_SERIAL, CHANGEADD_SHAPE, CHANGEADD_COLOUR, CHANGEADD_SOURCE };
 static const struct script_parameter change_add_parameters[] = {
     [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the parent node."},
     [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
-    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(ADDED), NULL, NULL,
-                         "Shape of the new node, about the size of a unit sphere, or a copy of a node."},
-    [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}", "Its colour."},
+    [CHANGEADD_SHAPE] = {"shape", KIND_TEXT, 0, ANY, NULL, NULL,
+                         "The call that makes the new node, such as 'gr.torus{minor = 0.1}', or 'copy'."},
+    [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}",
+                          "Colour of a shape whose call gives it no material."},
     [CHANGEADD_SOURCE] = {"source", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
                           "For a copy: the number of the node to copy."},
 };
@@ -118,11 +217,10 @@ static bool gr_change_add(struct script_context *context, const struct script_va
     struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
     if (!change)
         return false;
-    change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice;
     change->number = script_of(context)->changes.added++;
     change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
     put_colour(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].colour : colour_all(0.7));
-    return true;
+    return set_call(change, call_of(args[CHANGEADD_SHAPE].text), error);
 }
 
 enum { CHANGEMATERIAL_SERIAL, CHANGEMATERIAL_COLOUR };
@@ -173,6 +271,21 @@ static bool gr_change_look(struct script_context *context, const struct script_v
     change->part = part;
     memcpy(change->numbers, value->numbers, wanted * sizeof *value->numbers);
     return true;
+}
+
+enum { CHANGETEXTURE_SERIAL, CHANGETEXTURE_CALL };
+static const struct script_parameter change_texture_parameters[] = {
+    [CHANGETEXTURE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                              "Number of the material in order of creation, from 1."},
+    [CHANGETEXTURE_CALL] = {"call", KIND_TEXT, 0, ANY, NULL, NULL,
+                            "The call that makes the texture, such as 'gr.texture(\"wood.png\")'."},
+};
+
+static bool gr_change_texture(struct script_context *context, const struct script_value *args,
+                              struct script_result *result, struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_TEXTURE, NULL, args[CHANGETEXTURE_SERIAL].number, error);
+    return change && set_call(change, args[CHANGETEXTURE_CALL].text, error);
 }
 
 enum { CHANGEOWN_NAME, CHANGEOWN_SERIAL, CHANGEOWN_LIKE };
@@ -239,10 +352,13 @@ static bool gr_change_delete_light(struct script_context *context, const struct 
     return note(context, CHANGE_DARK, NULL, args[CHANGEDARK_NUMBER].number, error) != NULL;
 }
 
-enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR };
+enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR, CHANGENEWLIGHT_CALL };
+#define PLAIN_LIGHT "gr.light{position = {0, 0, 0}, colour = {1, 1, 1}}"
 static const struct script_parameter change_add_light_parameters[] = {
-    [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it is."},
-    [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
+    [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Translation of the light."},
+    [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Factor of its colour."},
+    [CHANGENEWLIGHT_CALL] = {"call", KIND_TEXT, OPTIONAL, ANY, NULL, "a white point light at the origin",
+                             "The call that makes it, such as 'gr.spot_light{...}'."},
 };
 
 static bool gr_change_add_light(struct script_context *context, const struct script_value *args,
@@ -253,7 +369,7 @@ static bool gr_change_add_light(struct script_context *context, const struct scr
         return false;
     put(change->numbers, args[CHANGENEWLIGHT_POSITION].vector);
     put_colour(change->numbers + 3, args[CHANGENEWLIGHT_COLOUR].colour);
-    return true;
+    return set_call(change, args[CHANGENEWLIGHT_CALL].given ? args[CHANGENEWLIGHT_CALL].text : PLAIN_LIGHT, error);
 }
 
 enum { CHANGECOPYLIGHT_NUMBER, CHANGECOPYLIGHT_MOVE, CHANGECOPYLIGHT_FACTOR };
@@ -359,16 +475,21 @@ bool changes_begin(struct script_context *context, struct render_request *reques
     *changed = (struct changed_scene){0};
     request->added = changes->added;
     request->owned = changes->owned;
+    request->maker = (struct change_maker){make_in_window, context};
     change_views(context, request);
     if (changes->count == 0)
         return true;
-    if (!changes_lay_over((struct change_range){changes->list, changes->count},
-                          &(struct change_target){request->scene, request->root, request->lights, request->light_count},
-                          warn_once, context, changed, error))
+    const struct change_maker maker = {make_object, context};
+    if (!changes_lay_over(
+            (struct change_range){changes->list, changes->count},
+            &(struct change_target){&maker, request->scene, request->root, request->lights, request->light_count},
+            warn_once, context, changed, error))
         return false;
     changes->reported = true;
     request->lights = changed->lights;
     request->light_count = changed->light_count;
+    if (changed->sky)
+        request->sky = *changed->sky;
     return true;
 }
 
@@ -384,6 +505,8 @@ static const struct script_function change_rows[] = {
        "Changes the colour of a material in all later pictures.", "serial colour"),
     GR("change_look", change_look_parameters, RESULT_NOTHING, gr_change_look,
        "Changes an input of a base material in all later pictures.", "serial part value"),
+    GR("change_texture", change_texture_parameters, RESULT_NOTHING, gr_change_texture,
+       "Makes a texture the kd of a base material in all later pictures.", "serial call"),
     GR("change_own", change_own_parameters, RESULT_NOTHING, gr_change_own,
        "Gives a shape its own copy of its material in all later pictures. The copies are numbered 2147483647, "
        "2147483646 and so on.",
@@ -393,7 +516,7 @@ static const struct script_function change_rows[] = {
     GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, gr_change_delete_light,
        "Removes a light from all later pictures.", "number"),
     GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, gr_change_add_light,
-       "Adds a point light to all later pictures.", "position colour"),
+       "Adds a light to all later pictures.", "position colour call?"),
     GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, gr_change_copy_light,
        "Adds a copy of a light to all later pictures.", "number move factor?"),
     GR("change_view", change_view_parameters, RESULT_NOTHING, gr_change_view, "Changes the camera of a picture.",

@@ -4,6 +4,7 @@
 #include "call/context.h"
 #include "formats/voxels.h"
 #include "material/density.h"
+#include "material/glow.h"
 #include "material/medium.h"
 #include "math/spectrum.h"
 #include "record/record_bounds.h"
@@ -39,8 +40,9 @@ static const struct script_parameter medium_parameters[] = {
                          "The mean free path: what light travels between two events, on average."},
     [MEDIUM_EMISSION] = {"emission", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
                          "Light that the medium adds, per unit of length."},
-    [MEDIUM_TEMPERATURE] = {"temperature", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), "kelvin", NULL,
-                            "The medium glows as a black body, with emission as a factor, {1, 1, 1} by default."},
+    [MEDIUM_TEMPERATURE] = {"temperature", KIND_NUMBERS, OPTIONAL | OR_FUNCTION | OR_FILE, ABOVE(0), "kelvin", NULL,
+                            "The medium glows as a black body, with emission as a factor, {1, 1, 1} by default: a "
+                            "number, a function or a grid, as density."},
     [MEDIUM_G] = {"g", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, IN_RANGE(-1, 1), NULL, "0",
                   "Mean cosine of the deflection (Henyey and Greenstein): 0 in all directions alike, near 1 forward."},
     [MEDIUM_PHASE] = {"phase", KIND_CHOICE, OPTIONAL, 0, 0, "rayleigh", NULL, NULL,
@@ -121,9 +123,9 @@ static bool read_box(const struct script_value *args, struct box *box, struct er
     return true;
 }
 
-static bool read_cells(const struct script_value *args, struct voxels *out, struct error *error) {
+static bool read_cells(const struct script_value *args, const char *name, struct voxels *out, struct error *error) {
     if (!args[MEDIUM_CELLS].given)
-        return error_set(error, ERROR_SCENE, "cells is missing: how many values the grid has along x, y and z");
+        return error_set(error, ERROR_SCENE, "cells is missing: how many values the %s has along x, y and z", name);
     for (int axis = 0; axis < 3; axis++) {
         double n = vec3_get(args[MEDIUM_CELLS].vector, axis);
         if (n != (double)(uint32_t)n)
@@ -133,83 +135,111 @@ static bool read_cells(const struct script_value *args, struct voxels *out, stru
     return true;
 }
 
+/* What is given by place: the density or the temperature. */
+struct field {
+    const struct script_value *value;
+    const char *name;
+    double bound; /* of a function */
+};
+
+static bool is_grid(const struct script_value *value) {
+    return value->text || (value->given && !value->program && !value->single);
+}
+
 /* The numbers of a table. */
-static bool read_numbers(struct script_context *context, const struct script_value *args, struct voxels *out,
-                         struct error *error) {
-    const struct script_value *numbers = &args[MEDIUM_DENSITY];
-    if (!read_cells(args, out, error))
+static bool read_numbers(struct script_context *context, const struct script_value *args, const struct field *field,
+                         struct voxels *out, struct error *error) {
+    const struct script_value *numbers = field->value;
+    if (!read_cells(args, field->name, out, error))
         return false;
     uint64_t count = (uint64_t)out->count[0] * out->count[1] * out->count[2];
     if (numbers->count != count)
-        return error_set(error, ERROR_SCENE, "density must have %llu numbers, one for each of the cells, not %u",
-                         (unsigned long long)count, numbers->count);
+        return error_set(error, ERROR_SCENE, "%s must have %llu numbers, one for each of the cells, not %u",
+                         field->name, (unsigned long long)count, numbers->count);
     float *values = arena_alloc_array(&context->scene.arena, count, sizeof *values);
     if (!values)
         return error_no_memory(error, "a medium");
     for (uint64_t i = 0; i < count; i++) {
         if (!(numbers->numbers[i] <= (double)FLT_MAX))
-            return error_set(error, ERROR_SCENE, "density[%llu] is too large", (unsigned long long)i + 1);
+            return error_set(error, ERROR_SCENE, "%s[%llu] is too large", field->name, (unsigned long long)i + 1);
         values[i] = (float)numbers->numbers[i];
     }
     out->values = values;
     return true;
 }
 
-static bool read_file(struct script_context *context, const struct script_value *args, struct voxels *out,
-                      struct error *error) {
+static bool read_file(struct script_context *context, const struct script_value *args, const struct field *field,
+                      struct voxels *out, struct error *error) {
     struct arena *arena = &context->scene.arena;
     char path[PATH_SIZE];
-    if (!files_require(&context->sandbox, args[MEDIUM_DENSITY].text, path, error))
+    if (!files_require(&context->sandbox, field->value->text, path, error))
         return false;
     if (!args[MEDIUM_CELLS].given && !args[MEDIUM_TYPE].given)
         return voxels_read_nrrd(path, arena, out, error);
-    return read_cells(args, out, error) &&
+    return read_cells(args, field->name, out, error) &&
            voxels_read_raw(path, (enum voxel_type)args[MEDIUM_TYPE].choice, arena, out, error);
 }
 
-static const struct density *density_by_function(struct script_context *context, const struct script_value *args,
-                                                 const struct box *box, struct error *error) {
-    const struct fog_field_input field = {.density = args[MEDIUM_DENSITY].program,
-                                          .source = args[MEDIUM_DENSITY].source,
-                                          .corner = box->min,
-                                          .size = vec3_sub(box->max, box->min)};
-    record_use(&context->sandbox, field.density, box);
-    return density_of_function(
-        &context->scene.arena,
-        &(struct density_function){&field, args[MEDIUM_BOUND].given ? args[MEDIUM_BOUND].number : INFINITY, 1}, error);
+static const struct density *field_by_function(struct script_context *context, const struct field *field,
+                                               const struct box *box, struct error *error) {
+    const struct fog_field_input in = {.density = field->value->program,
+                                       .source = field->value->source,
+                                       .name = field->name,
+                                       .corner = box->min,
+                                       .size = vec3_sub(box->max, box->min)};
+    record_use(&context->sandbox, in.density, box);
+    return density_of_function(&context->scene.arena, &(struct density_function){&in, field->bound, 1}, error);
 }
 
-/* *out: NULL where the density is the same everywhere. */
-static bool read_density(struct script_context *context, const struct script_value *args, const struct density **out,
-                         struct error *error) {
-    const struct script_value *density = &args[MEDIUM_DENSITY];
-    struct arena *arena = &context->scene.arena;
-    bool is_grid = density->text || (density->given && !density->program && !density->single);
-    struct box box;
+/* *out: NULL where it is the same everywhere in the box. */
+static bool read_field(struct script_context *context, const struct script_value *args, const struct field *field,
+                       const struct box *box, const struct density **out, struct error *error) {
+    bool fits = !args[MEDIUM_CORNER].given;
+    struct voxels voxels;
     *out = NULL;
-    if (!read_box(args, &box, error))
+    if (field->value->program && fits)
+        return error_set(error, ERROR_SCENE, "corner and size are missing: the box in which the %s is a function",
+                         field->name);
+    if (field->value->program)
+        return (*out = field_by_function(context, field, box, error)) != NULL;
+    if (!is_grid(field->value))
+        return true;
+    if (args[MEDIUM_TOP].given)
+        return error_set(error, ERROR_SCENE, "a grid ends at its box; top is for other densities");
+    if (!(field->value->text ? read_file(context, args, field, &voxels, error)
+                             : read_numbers(context, args, field, &voxels, error)))
         return false;
-    if ((is_grid || density->program) && !args[MEDIUM_CORNER].given)
-        return error_set(error, ERROR_SCENE, "corner and size are missing: the box in which the density %s",
-                         density->program ? "is a function" : "has its grid");
+    const struct density_grid grid = {fits ? (struct box){{0, 0, 0}, {1, 1, 1}} : *box,
+                                      {voxels.count[0], voxels.count[1], voxels.count[2]},
+                                      voxels.values,
+                                      1,
+                                      fits};
+    return (*out = density_of_grid(&context->scene.arena, &grid, error)) != NULL;
+}
+
+/* Temperatures above this count as this. */
+static const double hottest = 1e5;
+
+static bool read_places(struct script_context *context, const struct script_value *args, struct medium_input *in,
+                        struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    const struct script_value *density = &args[MEDIUM_DENSITY], *temperature = &args[MEDIUM_TEMPERATURE];
+    const double bound = args[MEDIUM_BOUND].given ? args[MEDIUM_BOUND].number : INFINITY;
+    const struct density *kelvin;
+    struct box box;
     if (args[MEDIUM_BOUND].given && !density->program)
         return error_set(error, ERROR_SCENE, "bound is for a density that is a function");
-    if (args[MEDIUM_CELLS].given && !is_grid)
-        return error_set(error, ERROR_SCENE, "cells is for a density that is a grid");
-    if (is_grid && args[MEDIUM_TOP].given)
-        return error_set(error, ERROR_SCENE, "a grid ends at its box; top is for other densities");
-    if (density->program)
-        return (*out = density_by_function(context, args, &box, error)) != NULL;
-    if (is_grid) {
-        struct voxels voxels;
-        if (!(density->text ? read_file(context, args, &voxels, error) : read_numbers(context, args, &voxels, error)))
-            return false;
-        const struct density_grid grid = {box, {voxels.count[0], voxels.count[1], voxels.count[2]}, voxels.values, 1};
-        return (*out = density_of_grid(arena, &grid, error)) != NULL;
-    }
-    if (!args[MEDIUM_CORNER].given && !args[MEDIUM_TOP].given)
+    if (args[MEDIUM_CELLS].given && !is_grid(density) && !is_grid(temperature))
+        return error_set(error, ERROR_SCENE, "cells is for a density or a temperature that is a grid");
+    if (!read_box(args, &box, error) ||
+        !read_field(context, args, &(struct field){density, "density", bound}, &box, &in->density, error) ||
+        !read_field(context, args, &(struct field){temperature, "temperature", hottest}, &box, &kelvin, error))
+        return false;
+    if (kelvin && !(in->heat = heat_make(arena, kelvin, error)))
+        return false;
+    if (in->density || (!kelvin && !args[MEDIUM_CORNER].given && !args[MEDIUM_TOP].given))
         return true;
-    return (*out = density_of_box(arena, &box, error)) != NULL;
+    return (in->density = density_of_box(arena, &box, error)) != NULL;
 }
 
 /* --- the medium --- */
@@ -226,11 +256,13 @@ static bool read_coefficients(const struct script_value *args, struct medium_inp
         in->scattering = colour_scale(args[MEDIUM_ALBEDO].given ? args[MEDIUM_ALBEDO].colour : colour_all(1), events);
         in->absorption = colour_sub(colour_all(events), in->scattering);
     }
-    if (args[MEDIUM_TEMPERATURE].given) {
-        struct colour factor = args[MEDIUM_EMISSION].given ? in->emission : colour_all(1);
-        in->emission =
-            colour_mul(factor, colour_mul(in->absorption, spectrum_black_body(args[MEDIUM_TEMPERATURE].number)));
-    }
+    const struct script_value *temperature = &args[MEDIUM_TEMPERATURE];
+    if (temperature->single && !(temperature->numbers[0] > 0))
+        return error_set(error, ERROR_SCENE, "temperature must be > 0");
+    if (temperature->given)
+        in->emission = colour_mul(args[MEDIUM_EMISSION].given ? in->emission : colour_all(1), in->absorption);
+    if (temperature->single)
+        in->emission = colour_mul(in->emission, spectrum_black_body(temperature->numbers[0]));
     if (args[MEDIUM_DENSITY].single) {
         double factor = args[MEDIUM_DENSITY].numbers[0];
         in->absorption = colour_scale(in->absorption, factor);
@@ -249,7 +281,7 @@ static bool gr_medium(struct script_context *context, const struct script_value 
         return error_set(error, ERROR_SCENE, "phase = 'rayleigh' has no g; give one of them");
     if (args[MEDIUM_PHASE].given)
         in.phase = (struct phase){PHASE_RAYLEIGH, 0};
-    if (!read_density(context, args, &in.density, error))
+    if (!read_places(context, args, &in, error))
         return false;
     struct medium medium = medium_filling(&in);
     if (!colour_finite(medium.extinction) || !colour_finite(medium.emission))

@@ -4,6 +4,7 @@
 #include "compat/lenient_picture.h"
 #include "image/picture_file.h"
 #include "image/transfer.h"
+#include "material/medium_mix.h"
 #include "record/record_bounds.h"
 #include "scene/node_bounds.h"
 #include "script/gr_materials_internal.h"
@@ -51,6 +52,7 @@ enum {
     RENDER_VIEW_TO,
     RENDER_TARGET_TO,
     RENDER_UP_TO,
+    RENDER_MODEL,
     RENDER_COUNT
 };
 
@@ -127,6 +129,8 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_VIEW_TO] = {"view_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "view", "Its direction of view at time 1."},
     [RENDER_TARGET_TO] = {"target_to", KIND_POINT, OPTIONAL, ANY, NULL, "target", "The point to look at, at time 1."},
     [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
+    [RENDER_MODEL] = {"model", KIND_NODE, OPTIONAL, ANY, NULL, "node",
+                      "What -o MODEL writes and --check-print checks, without the ground of the picture."},
 };
 
 static bool is_transparent(const struct script_value *background) {
@@ -536,6 +540,7 @@ static bool light_dark_picture(struct script_context *context, const struct scri
 static bool gr_render(struct script_context *context, const struct script_value *given, struct script_result *result,
                       struct error *error) {
     struct script_value args[RENDER_COUNT];
+    struct node *fitted_node = script_of(context)->fitted;
     (void)result;
     memcpy(args, given, sizeof args);
     /* Arguments that are missing are completed. */
@@ -553,7 +558,9 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .where = call,
         .scene = &context->scene,
         .root = args[RENDER_NODE].node,
-        .subject = script_of(context)->fitted ? script_of(context)->fitted : args[RENDER_NODE].node,
+        .subject = args[RENDER_MODEL].given ? args[RENDER_MODEL].node
+                   : fitted_node            ? fitted_node
+                                            : args[RENDER_NODE].node,
         .file = args[RENDER_FILE].text,
         .width = args[RENDER_WIDTH].number,
         .height = args[RENDER_HEIGHT].number,
@@ -604,10 +611,13 @@ static bool gr_render(struct script_context *context, const struct script_value 
     }
     if (fog && args[RENDER_MEDIUM].given)
         return error_set(error, ERROR_SCENE, "fog and medium are both around the solids; give one of them");
+    if (args[RENDER_MEDIUM].given && medium_needs_solid(args[RENDER_MEDIUM].material->medium))
+        return error_set(error, ERROR_SCENE, "the grid of the medium needs corner and size, for it fills no solid");
     request.outside =
         args[RENDER_MEDIUM].given ? medium_without_solid(args[RENDER_MEDIUM].material->medium) : medium_outside(fog);
     /* Functions, lens, motion, sky and light. */
     if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
+        (args[RENDER_MODEL].given && !record_check(&context->sandbox, &context->scene, request.subject, error)) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
                       &request.settings, &request.camera, error) ||

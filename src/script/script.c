@@ -129,6 +129,12 @@ static int describe_error(lua_State *L) {
     return 1;
 }
 
+static void run_file(lua_State *L, const char *path) {
+    if (files_load(L, path) != LUA_OK)
+        (void)lua_error(L);
+    lua_call(L, 0, 0);
+}
+
 static int run_scene(lua_State *L) {
     const struct script *script = script_of(context_of(L));
     sandbox_open(L);
@@ -146,13 +152,17 @@ static int run_scene(lua_State *L) {
     lua_settop(L, 0);
     limits_open(L);
     dialect_run(L);
-    if (script->context.scene.is_model) {
-        model_scene_run(L);
-    } else {
-        if (files_load(L, script->context.sandbox.files.path) != LUA_OK)
+    if (script->context.sandbox.options->edits)
+        run_file(L, script->context.sandbox.options->edits);
+    if (script->context.sandbox.options->edits_text) {
+        if (luaL_loadstring(L, script->context.sandbox.options->edits_text) != LUA_OK)
             return lua_error(L);
         lua_call(L, 0, 0);
     }
+    if (script->context.scene.is_model)
+        model_scene_run(L);
+    else
+        run_file(L, script->context.sandbox.files.path);
     models_report_unused(script);
     dialect_finish(L);
     return 0;
@@ -213,18 +223,19 @@ static bool choose_order(struct script *script, struct error *error) {
     return true;
 }
 
-static bool add_folder_of_sky(const struct script_options *options, struct path_policy *path_policy,
-                              struct error *error) {
+/* Of a file that the command line names; NULL: none. */
+static bool add_folder_of(const char *file, struct path_policy *path_policy, struct error *error) {
     char folder[PATH_SIZE];
-    const char *sky = options->sky ? options->sky : "", *slash = strrchr(sky, '/');
-    (void)snprintf(folder, sizeof folder, "%.*s.", slash ? (int)(slash + 1 - sky) : 0, sky);
-    return !options->sky || path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error);
+    const char *slash = file ? strrchr(file, '/') : NULL;
+    (void)snprintf(folder, sizeof folder, "%.*s.", slash ? (int)(slash + 1 - file) : 0, file ? file : "");
+    return !file || path_policy_add(path_policy, folder, PATH_POLICY_IMPLIED, error);
 }
 
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error) {
     bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error) &&
-              dialect_add_folder(options, path_policy, error) && add_folder_of_sky(options, path_policy, error);
+              dialect_add_folder(options, path_policy, error) && add_folder_of(options->sky, path_policy, error) &&
+              add_folder_of(options->edits, path_policy, error);
     for (int k = 0; ok && k < options->allow_read_count; k++)
         ok = path_policy_add(path_policy, options->allow_read[k], PATH_POLICY_READ, error);
     for (int k = 0; ok && k < options->allow_write_count; k++)

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "material/medium.h"
 #include "sandbox/message.h"
-#include "scene/node.h"
+#include "scene/change.h"
 #include "settings/script_options.h"
 #include "settings/settings.h"
 
@@ -29,16 +29,17 @@ struct render_request {
     const struct scene_light *lights;
     uint32_t light_count;
     struct sky sky;
-    bool sky_chosen;          /* not the default */
-    struct settings settings; /* the host's settings, changed by the call's named fields */
-    uint64_t replaced;        /* by setting, as bits: fields that have no effect because of an option */
-    uint64_t fields;          /* the settings that the call's fields set: a bit by the index of each */
-    uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
-    uint32_t owned;           /* the same of materials and gr.change_own */
-    bool keep;                /* a picture that exists under this name is not replaced */
-    bool changed;             /* gr.change_... has changed the scene for this picture */
-    struct frame frame;       /* of an animation; else its number is 0 */
-    const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
+    bool sky_chosen;           /* not the default */
+    struct settings settings;  /* the host's settings, changed by the call's named fields */
+    uint64_t replaced;         /* by setting, as bits: fields that have no effect because of an option */
+    uint64_t fields;           /* the settings that the call's fields set: a bit by the index of each */
+    uint32_t added;            /* nodes that gr.change_add has added: those of others are numbered from here on */
+    uint32_t owned;            /* the same of materials and gr.change_own */
+    struct change_maker maker; /* of what a window adds */
+    bool keep;                 /* a picture that exists under this name is not replaced */
+    bool changed;              /* gr.change_... has changed the scene for this picture */
+    struct frame frame;        /* of an animation; else its number is 0 */
+    const char *where;         /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 
 /* Of all that the picture shows except the nodes of the scene, which note their changes (scene/node.h). It is a digest

@@ -377,8 +377,10 @@ static bool read_value(const struct setting *option, const char *text, struct op
         break;
     case SETTING_TEXT:
         ok = text[0] != '\0';
-        if (field == (void *)&options->output && model_format_written(text) != FORMAT_OTHER)
+        if (field == (void *)&options->output && model_format_written(text) != FORMAT_OTHER) {
+            options->other_model = options->model;
             options->model = text;
+        }
         else
             *(const char **)field = text;
         break;

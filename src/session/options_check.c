@@ -73,6 +73,9 @@ static bool check_model(const struct options *options, struct error *error) {
         return !only || error_set(error, ERROR_USAGE, "%s is only for -o MODEL, such as -o part.stl", only);
     if (options->script_count != 1)
         return error_set(error, ERROR_USAGE, "a model is made of one script");
+    if (options->other_model)
+        return error_set(error, ERROR_USAGE, "-o %.400s, -o %.400s: a run writes one model", options->other_model,
+                         options->model);
     if (options->window || options->shards || options->shards_of_pictures || options->mpi || options->watch)
         return error_set(error, ERROR_USAGE,
                          "-o MODEL and --check-print cannot be combined with -gui, --shard, --mpi or --watch");

@@ -50,6 +50,8 @@ static const struct setting options_table[] = {
      "the first, or one that fits", "The camera in the file of a model; --check lists its cameras."},
     {SETTING_CHOICE, CHANGES_SAMPLES, OPTION_GROUP_MODELS, "--up", NULL, LIST_BARS(MODEL_UPS), NULL, FIELD(script.up),
      0, 0, 0, "auto", "The axis of a model that points up; auto: z of STL, y of others."},
+    {SETTING_TEXT, CHANGES_SAMPLES, OPTION_GROUP_MODELS, "--edits", "FILE.lua", "", NULL, FIELD(script.edits), 0, 0, 0,
+     NULL, "A file of edits that the window has saved, of a model or a script; it runs before the script."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--sky", "FILE.hdr", "", NULL, FIELD(script.sky), 0, 0, 0, NULL,
      "A picture of the whole sphere that is background and light of all pictures, also of scripts, in place of their "
      "sky and background."},

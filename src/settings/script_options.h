@@ -29,11 +29,13 @@ struct script_define {
 struct script_options {
     enum script_order transform_order;
     bool lenient;
-    const char *dialect; /* --dialect: a name or a file, or NULL */
-    const char *sky;     /* --sky: a picture file, or NULL */
-    const char *camera;  /* --camera: its name or number in the model, or NULL */
-    enum model_up up;    /* --up, of models */
-    uint64_t seed;       /* math.random starts from it */
+    const char *dialect;    /* --dialect: a name or a file, or NULL */
+    const char *sky;        /* --sky: a picture file, or NULL */
+    const char *edits;      /* --edits: a Lua file, or NULL */
+    const char *edits_text; /* Lua to run in its place, of a window, or NULL */
+    const char *camera;     /* --camera: its name or number in the model, or NULL */
+    enum model_up up;       /* --up, of models */
+    uint64_t seed;          /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
     /* By setting (settings/setting.h): the text of its option, "" of an option without a value, or NULL: not given. */

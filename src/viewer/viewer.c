@@ -124,7 +124,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
                               .request = *request,
                               .block = picture->block,
                               .script_exposure = request->settings.tone.exposure,
-                              .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
+                              .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE, .began = now},
                               .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
                               .stepped = now,
@@ -345,12 +345,13 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
-        if (viewer->command.change.kind == CHANGE_ADD || viewer->command.change.kind == CHANGE_ADD_LIGHT)
+        if (reply->added != viewer->nodes.added || reply->light_count != viewer->lights.count)
             viewer->window.driver->nodes(viewer->window.driver->context, NULL, NULL);
+        viewer->nodes.added = reply->added;
         if (!reply->unbuilt || reply->light_count > 0)
             viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
-            viewer_show_message(viewer, reply->text);
+            viewer_take_back(viewer, reply->text);
         viewer->pass.outdated = true;
         viewer_invalidate_overlay(viewer);
         return;
@@ -575,6 +576,11 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     }
     if (viewer->pass.state == PASS_WAITING && viewer->next && viewer->written)
         return VIEWER_NEXT_PICTURE;
+    if (viewer->pass.state == PASS_WAITING && viewer_plays(viewer) && viewer->nodes.count > 0) {
+        command_nodes(viewer); /* the tree is filled between two frames */
+        viewer->pass.state = PASS_BUSY;
+        return VIEWER_SEND_COMMAND;
+    }
     switch (viewer_player_decide(viewer, now)) {
     case PLAYER_GOES:
         return VIEWER_NEXT_FRAME;

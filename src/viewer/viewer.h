@@ -23,6 +23,7 @@ enum viewer_action {
     VIEWER_SAVE_IMAGE,     /* the displayed image must be saved: viewer->window.image */
     VIEWER_SAVE_CAMERA,    /* the camera must be saved */
     VIEWER_SAVE_EDITS,     /* the edits must be saved */
+    VIEWER_EXPORT_MODEL,   /* a model must be written: viewer->save_as */
     VIEWER_CHANGE_SETTING, /* the scripts must run again with viewer->setting */
     VIEWER_RUN_AGAIN,      /* the scripts must run again */
     VIEWER_END_SCRIPTS,    /* they must end */
@@ -94,7 +95,7 @@ struct viewer_motion {
 enum { NODE_QUERIES = 64 };
 struct viewer_nodes {
     struct node_query wanted[NODE_QUERIES];
-    uint32_t count;
+    uint32_t count, added; /* added: nodes that edits have added to the tree */
 };
 
 /* The changes of the scene, and the state for making them. */
@@ -105,7 +106,8 @@ struct viewer_edit {
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */
     bool click_waits;
-    bool by_node; /* the click is on this node in the tree */
+    bool by_node;              /* the click is on this node in the tree */
+    char texture[CHANGE_CALL]; /* the call of one for what was clicked, or empty */
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;

@@ -22,6 +22,8 @@ void viewer_resize(struct viewer *viewer, int width, int height, double density)
     if (width < 1 || height < 1)
         return;
     double fit = fmin(width / w, height / h);
+    if (layout->width == 0 && viewer->built > 0) /* the picture had to wait for the window */
+        viewer->built = clock_now();
     *layout = (struct window_layout){.width = width,
                                      .height = height,
                                      .density = density,
@@ -228,13 +230,15 @@ static void describe_work(const struct viewer *viewer, struct window_state *stat
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
     (void)snprintf(text, sizeof state->figures, "%ux%u", viewer->request.width, viewer->request.height);
+    state->frame[0] = '\0';
+    if (report->threads == 0)
+        return;
     add_count(text, sizeof state->figures, seconds > 0 ? traced / seconds : 0, "rays/s");
     add_count(text, sizeof state->figures, (double)report->triangles, "triangles");
     add_count(text, sizeof state->figures, voxels, voxels > 1 ? "voxels" : "voxel");
     double rate = viewer_plays(viewer) ? viewer->player.rate : seconds > 0 ? 1 / seconds : 0;
     size_t used = strlen(text);
     (void)snprintf(text + used, sizeof state->figures - used, ", %.*f frames/s", rate < 10 ? 2 : rate < 100, rate);
-    state->frame[0] = '\0';
     if (frame->number > 0)
         (void)snprintf(state->frame, sizeof state->frame, "frame %*u/%u %7.2f s", snprintf(NULL, 0, "%u", frame->count),
                        frame->number, frame->count, frame_time(frame));
@@ -257,7 +261,7 @@ static void describe(struct viewer *viewer, double now) {
     state->busy = !viewer->window.waits && (!viewer->block || !viewer_is_idle(viewer));
     state->playing = viewer->player.playing;
     state->loops = viewer->player.loops;
-    state->unsaved = viewer->edit.steps.at != viewer->edit.saved_at;
+    state->unsaved = edits_differ(&viewer->edit.steps, viewer->edit.saved_at);
     state->frame_index = viewer->player.count > 0 ? viewer_frame_index(viewer) : 0;
     state->frame_count = viewer->player.count;
     state->types = viewer->edit.tool != TOOL_NONE && !viewer->edit.handle;
@@ -270,11 +274,14 @@ static void describe(struct viewer *viewer, double now) {
     (void)snprintf(state->notice, sizeof state->notice, "%s", viewer->window.notice.text);
     (void)snprintf(state->trace, sizeof state->trace, "%s", viewer->trace.text);
     state->selected = (struct node_query){0};
-    if (viewer->edit.selection.kind == SELECTED_NODE)
+    if (viewer->edit.selection.kind == SELECTED_LIGHT)
+        state->selected = (struct node_query){.depth = 2, .path = {SECTION_LIGHTS, viewer->edit.selection.light - 1}};
+    else if (viewer->edit.selection.kind != SELECTED_NOTHING)
         state->selected = viewer->edit.selection.picked.path;
     state->hidden_count = 0;
     for (uint32_t i = 0; i < viewer->edit.steps.now.count && state->hidden_count < WINDOW_HIDDEN; i++) {
-        if (viewer->edit.steps.now.items[i].kind == CHANGE_GONE)
+        enum change_kind kind = viewer->edit.steps.now.items[i].kind;
+        if (kind == CHANGE_GONE || kind == CHANGE_HIDDEN)
             state->hidden[state->hidden_count++] = viewer->edit.steps.now.items[i].serial;
     }
     viewer_make_form(viewer, state);

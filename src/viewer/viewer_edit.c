@@ -8,6 +8,7 @@
 #include "inspect/pick.h"
 #include "light/light_edit.h"
 #include "math/elementary.h"
+#include "script/addable.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -172,12 +173,26 @@ void viewer_undo(struct viewer *viewer, bool again) {
     (void)change_list_set(&viewer->edit.pending, &target, true);
     viewer_halt(viewer, false);
     /* A node that no longer exists cannot be selected. */
-    bool gone = target.kind == CHANGE_OWN || target.kind == CHANGE_ADD || target.kind == CHANGE_GONE ||
-                target.kind == CHANGE_ADD_LIGHT || target.kind == CHANGE_DARK;
+    bool made = target.kind == CHANGE_ADD || target.kind == CHANGE_ADD_LIGHT;
+    bool gone = target.kind == CHANGE_OWN || target.kind == CHANGE_GONE || target.kind == CHANGE_DARK ||
+                (made && !change_list_find(&viewer->edit.steps.now, &target));
     if (gone)
         viewer->edit.selection.kind = SELECTED_NOTHING;
+    else if (target.kind == CHANGE_ADD && viewer->edit.selection.kind == SELECTED_NODE)
+        viewer_select_node(viewer, &(struct node_query){.serial = viewer->edit.selection.picked.serial});
     viewer->edit.selection.picked.idle_parts = 0; /* they were computed before the change */
     viewer->display.hud_dirty = true;
+}
+
+/* An edit had no effect: a changed call goes back to the one before. */
+void viewer_take_back(struct viewer *viewer, const char *text) {
+    const struct edits *steps = &viewer->edit.steps;
+    const struct edit *last = steps->at > 0 ? &steps->steps[steps->at - 1] : NULL;
+    const struct change *sent = &viewer->command.change;
+    viewer_show_notice(viewer, text, true);
+    if (last && last->had && last->has && change_same_target(&last->after, sent) && sent->call[0] != '\0' &&
+        strcmp(last->after.call, sent->call) == 0)
+        viewer_undo(viewer, false);
 }
 
 void viewer_resend_edits(struct viewer *viewer) {
@@ -527,7 +542,7 @@ void viewer_frame(struct viewer *viewer, bool selection) {
         struct vec3 at = viewer_selection_position(viewer), half = vec3_all(0.25 * viewer->fly_camera.speed);
         box = (struct box){vec3_sub(at, half), vec3_add(at, half)};
     }
-    fly_camera_frame(&viewer->fly_camera, &box);
+    fly_camera_frame(&viewer->fly_camera, &box, (double)viewer->request.full_width / viewer->request.full_height);
 }
 
 void viewer_select_up(struct viewer *viewer, bool down) {
@@ -546,6 +561,8 @@ void viewer_select_up(struct viewer *viewer, bool down) {
     viewer->edit.click_waits = true;
     viewer->edit.probes = viewer->edit.by_node = false;
 }
+
+static void give_texture(struct viewer *viewer);
 
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     struct selection *selection = &viewer->edit.selection;
@@ -570,6 +587,8 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.joins = false;
     struct change change = viewer_change(viewer, CHANGE_TRANSFORM, 0);
     (void)map_of(&change, &selection->applied);
+    if (viewer->edit.texture[0] != '\0')
+        give_texture(viewer);
 }
 
 /* Adding and taking away. */
@@ -586,6 +605,8 @@ void viewer_delete_selection(struct viewer *viewer) {
 void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name) {
     struct change change = {.kind = CHANGE_GONE, .serial = serial};
     (void)snprintf(change.name, sizeof change.name, "%s", name);
+    if (!change_list_find(&viewer->edit.steps.now, &change)) /* else it comes back */
+        change.kind = CHANGE_HIDDEN;
     bool shown = change_list_find(&viewer->edit.steps.now, &change) == NULL;
     make_step(viewer, &change, shown);
 }
@@ -613,7 +634,6 @@ static void add_node(struct viewer *viewer, struct change change, const struct a
     change.kind = CHANGE_ADD;
     change.number = viewer->scene.added + count_of(viewer, CHANGE_ADD);
     pose.serial = UINT32_MAX - change.number;
-    (void)snprintf(pose.name, sizeof pose.name, "%s", added_kind_name(change.added));
     (void)map_to_parent(world_from_parent, map, &by);
     memcpy(pose.numbers, by.forward.m, sizeof by.forward.m);
     make_step(viewer, &change, true);
@@ -624,7 +644,7 @@ static void add_node(struct viewer *viewer, struct change change, const struct a
 
 static void copy_node(struct viewer *viewer) {
     const struct picked *picked = &viewer->edit.selection.picked;
-    struct change change = {.serial = picked->parent_serial, .added = ADDED_COPY, .source = picked->serial};
+    struct change change = {.serial = picked->parent_serial, .source = picked->serial};
     struct camera_frame frame;
     if (picked->levels == 0 || !viewer_camera_frame(viewer, &frame))
         return;
@@ -637,31 +657,32 @@ static void copy_node(struct viewer *viewer) {
     viewer->edit.tool = TOOL_MOVE;
 }
 
-/* A shape of size 1 at the origin of the root's space comes to the new position, a tenth as large as it is far. */
-void viewer_add_shape(struct viewer *viewer, enum added_kind kind) {
-    struct change change = {.serial = viewer->scene.root, .added = kind, .numbers = {0.7, 0.7, 0.7}};
+/* An object of size 1 at the origin of the root's space comes to the new position, a tenth as large as it is far. */
+static void add_object(struct viewer *viewer, const char *call, double size) {
+    struct change change = {.serial = viewer->scene.root, .numbers = {0.7, 0.7, 0.7}};
     const struct affine *space = &viewer->scene.world_from_root;
     struct vec3 at = new_position(viewer), origin = affine_point(space, vec3_make(0, 0, 0));
-    double size = 0.1 * vec3_length(vec3_sub(at, viewer->pass.view.camera.eye));
     struct transform there = transform_translate(vec3_negate(origin)), back = transform_translate(at);
-    struct transform scale = transform_scale(vec3_all(size > 0 ? size : 1)), half = transform_compose(&scale, &there);
+    struct transform scale = transform_scale(vec3_all(size)), half = transform_compose(&scale, &there);
     struct transform map = transform_compose(&back, &half);
     (void)snprintf(change.name, sizeof change.name, "%s", viewer->scene.root_name);
+    (void)snprintf(change.call, sizeof change.call, "%s", call);
     add_node(viewer, change, space, &map);
 }
 
-/* A light of its own (source 0), or a copy with the changes of the other; the window selects it. */
-static void add_light(struct viewer *viewer, uint32_t source, struct vec3 position, double colour) {
+/* A light of a call, or a copy with the changes of the other; the window selects it. */
+static void add_light(struct viewer *viewer, const char *call, uint32_t source, struct vec3 by) {
     struct change change = {.kind = CHANGE_ADD_LIGHT,
                             .number = count_of(viewer, CHANGE_ADD_LIGHT),
                             .source = source,
-                            .numbers = {position.x, position.y, position.z, colour, colour, colour}};
+                            .numbers = {by.x, by.y, by.z, 1, 1, 1}};
     struct change held = viewer_change(viewer, CHANGE_LIGHT, 0);
     bool changed = source > 0 && change_list_find(&viewer->edit.steps.now, &held) != NULL;
     if (viewer->lights.count >= LIGHT_LIMIT || viewer->lights.count != viewer->lights.known) {
         viewer_show_message(viewer, "gray: the window shows at most 4,096 lights");
         return;
     }
+    (void)snprintf(change.call, sizeof change.call, "%s", call);
     make_step(viewer, &change, true);
     held.serial = viewer->lights.count + 1;
     if (changed)
@@ -669,9 +690,61 @@ static void add_light(struct viewer *viewer, uint32_t source, struct vec3 positi
     viewer_select_light(viewer, viewer->lights.count + 1);
 }
 
-void viewer_add_light(struct viewer *viewer) {
-    struct vec3 at = new_position(viewer), eye = viewer->pass.view.camera.eye;
-    add_light(viewer, 0, vec3_add_scaled(at, vec3_sub(eye, at), 0.5), 0.5);
+/* The lengths of a light of size 1; what has an axis shines that way. */
+static void fit_call(char *call, double size, struct vec3 toward) {
+    static const char *const lengths[] = {"radius", "corner", "v1", "v2", "normal", "direction"};
+    char text[CHANGE_CALL], out[CHANGE_CALL];
+    double n[3];
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        bool axis = i >= 4;
+        if (!call_field(call, lengths[i], text, sizeof text) || !call_numbers(text, n))
+            continue;
+        struct vec3 v = axis ? toward : vec3_scale(vec3_make(n[0], n[1], n[2]), size);
+        (void)snprintf(text, sizeof text, i == 0 ? "%.4g" : "{%.4g, %.4g, %.4g}", v.x, v.y, v.z);
+        if (call_set_field(call, lengths[i], text, out, sizeof out))
+            (void)snprintf(call, CHANGE_CALL, "%s", out);
+    }
+}
+
+void viewer_add(struct viewer *viewer, const char *call) {
+    const struct script_function *function = call_function(call);
+    struct vec3 at = new_position(viewer), toward = vec3_sub(viewer->pass.view.camera.eye, at);
+    double size = 0.1 * vec3_length(toward);
+    char sized[CHANGE_CALL];
+    size = size > 0 ? size : 1;
+    (void)snprintf(sized, sizeof sized, "%s", call);
+    if (!function || function->result != RESULT_LIGHT) {
+        add_object(viewer, call, size);
+        return;
+    }
+    /* Before what was clicked, and above it. */
+    struct vec3 by = vec3_add(vec3_scale(toward, 0.5), vec3_make(0, 4 * size, 0));
+    fit_call(sized, size, vec3_negate(vec3_normalize(by)));
+    add_light(viewer, sized, 0, vec3_add(at, by));
+}
+
+bool viewer_added(const struct viewer *viewer, struct change *out) {
+    const struct selection *selection = &viewer->edit.selection;
+    bool light = selection->kind == SELECTED_LIGHT;
+    struct change like = {.kind = light ? CHANGE_ADD_LIGHT : CHANGE_ADD};
+    uint32_t before = viewer->lights.count - count_of(viewer, CHANGE_ADD_LIGHT);
+    if (light ? selection->light <= before : added_number(selection->picked.serial) == 0)
+        return false;
+    like.number = light ? selection->light - before - 1 : added_number(selection->picked.serial) - 1;
+    const struct change *found = change_list_find(&viewer->edit.steps.now, &like);
+    if (found)
+        *out = *found;
+    return found && found->call[0] != '\0';
+}
+
+void viewer_set_call(struct viewer *viewer, const char *call) {
+    struct change change;
+    if (!viewer_added(viewer, &change) || strlen(call) >= sizeof change.call)
+        return;
+    (void)snprintf(change.call, sizeof change.call, "%s", call);
+    make(viewer, &change, true);
+    if (change.kind == CHANGE_ADD) /* another size and material */
+        viewer_select_node(viewer, &(struct node_query){.serial = viewer->edit.selection.picked.serial});
 }
 
 void viewer_copy_selection(struct viewer *viewer) {
@@ -682,7 +755,7 @@ void viewer_copy_selection(struct viewer *viewer) {
     if (!light || !viewer_camera_frame(viewer, &frame))
         return;
     double aside = light->moves ? 0.1 * vec3_length(vec3_sub(light->position, frame.eye)) : 0;
-    add_light(viewer, viewer->edit.selection.light, vec3_scale(frame.unit_right, aside), 1);
+    add_light(viewer, "", viewer->edit.selection.light, vec3_scale(frame.unit_right, aside));
 }
 
 /* The copy is made of the script's material; the changes of that are applied to the copy, too. */
@@ -706,6 +779,28 @@ void viewer_make_own_material(struct viewer *viewer) {
         held[i].serial = picked->material_serial;
         make_step(viewer, &held[i], true);
     }
+}
+
+/* Of the waiting call, as the kd of the selection. */
+static void give_texture(struct viewer *viewer) {
+    const struct selection *selection = &viewer->edit.selection;
+    if (selection->kind == SELECTED_NODE && selection->picked.material_serial == 0)
+        viewer_make_own_material(viewer);
+    struct change change = {.kind = CHANGE_TEXTURE, .serial = selection->picked.material_serial};
+    (void)snprintf(change.call, sizeof change.call, "%s", viewer->edit.texture);
+    viewer->edit.texture[0] = '\0';
+    if ((selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL) && change.serial != 0)
+        make_step(viewer, &change, true);
+    else
+        viewer_show_notice(viewer, "a picture is for a surface: drop it on one, or select one before", true);
+}
+
+void viewer_drop_texture(struct viewer *viewer, const struct window_event *event) {
+    (void)snprintf(viewer->edit.texture, sizeof viewer->edit.texture, "%.500s", event->text);
+    if (event->down)
+        viewer_click(viewer, event->x, event->y, false);
+    if (!viewer->edit.click_waits)
+        give_texture(viewer);
 }
 
 void viewer_set_exposure(struct viewer *viewer, double stops) {

@@ -56,13 +56,17 @@ struct change viewer_change(const struct viewer *viewer, enum change_kind kind, 
 void viewer_set_numbers(struct viewer *viewer, enum change_kind kind, enum material_part part, uint32_t at,
                         const double *numbers);
 void viewer_undo(struct viewer *viewer, bool again);
+void viewer_take_back(struct viewer *viewer, const char *text);
 void viewer_resend_edits(struct viewer *viewer);
 void viewer_hide(struct viewer *viewer, uint32_t serial, const char *name); /* a node, or shows it again */
 void viewer_solo(struct viewer *viewer); /* only the selection is drawn, or everything again */
 void viewer_delete_selection(struct viewer *viewer);
 void viewer_copy_selection(struct viewer *viewer);
-void viewer_add_shape(struct viewer *viewer, enum added_kind kind); /* where the user clicked last */
-void viewer_add_light(struct viewer *viewer);
+void viewer_add(struct viewer *viewer, const char *call); /* a node or a light, where the user clicked last */
+void viewer_drop_texture(struct viewer *viewer, const struct window_event *event);
+/* The change that has added the selection by a call; false: there is none. And another call for it. */
+bool viewer_added(const struct viewer *viewer, struct change *out);
+void viewer_set_call(struct viewer *viewer, const char *call);
 void viewer_make_own_material(struct viewer *viewer); /* gives the selection its own material */
 void viewer_set_exposure(struct viewer *viewer, double stops);
 

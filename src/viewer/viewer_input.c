@@ -3,7 +3,9 @@
 
 #include "light/light_edit.h"
 #include "math/elementary.h"
+#include "script/addable.h"
 #include "session/options_table.h"
+#include "window/call_form.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -156,6 +158,7 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_SAVE_PICTURE:
     case DO_SAVE_VIEW:
     case DO_SAVE_CHANGES:
+    case DO_EXPORT_MODEL:
         viewer->action = (enum viewer_action)(VIEWER_SAVE_IMAGE + (action - DO_SAVE_PICTURE));
         return;
     case DO_NEXT_PICTURE: /* which comes after this one was written */
@@ -198,17 +201,6 @@ static void do_action(struct viewer *viewer, enum window_action action) {
         return;
     case DO_ESCAPE:
         escape(viewer);
-        return;
-
-    case DO_ADD_SPHERE:
-    case DO_ADD_CUBE:
-    case DO_ADD_CYLINDER:
-    case DO_ADD_CONE:
-    case DO_ADD_TORUS:
-        viewer_add_shape(viewer, (enum added_kind)(ADDED_SPHERE + (action - DO_ADD_SPHERE)));
-        return;
-    case DO_ADD_LIGHT:
-        viewer_add_light(viewer);
         return;
 
     case DO_CAMERA:
@@ -459,35 +451,17 @@ enum field_number {
     FIELD_DIRECTION,
     FIELD_MATERIAL, /* and the parts of a material */
     FIELD_SETTING = FIELD_MATERIAL + MATERIAL_PART_PARTS,
+    FIELD_CALL = 1 << 16, /* the call that has added the selection, and its arguments */
+    FIELD_ARGUMENT,
 };
-
-static struct window_field *add(struct window_form *form, const char *group, const char *name,
-                                enum window_field_kind kind, uint32_t number) {
-    static struct window_field beyond; /* what has no room is not shown */
-    struct window_field *field = form->count < FORM_FIELDS ? &form->fields[form->count++] : &beyond;
-    *field = (struct window_field){.kind = kind, .number = number, .low = -HUGE_VAL, .high = HUGE_VAL};
-    (void)snprintf(field->group, sizeof field->group, "%s", group);
-    (void)snprintf(field->name, sizeof field->name, "%s", name);
-    return field;
-}
 
 static void __attribute__((format(printf, 4, 5)))
 add_text(struct window_form *form, const char *group, const char *name, const char *format, ...) {
-    struct window_field *field = add(form, group, name, FIELD_TEXT, FIELD_NONE);
+    struct window_field *field = form_add(form, group, name, FIELD_TEXT, FIELD_NONE);
     va_list arguments;
     va_start(arguments, format);
     (void)vsnprintf(field->text, sizeof field->text, format, arguments);
     va_end(arguments);
-}
-
-static void set_range(struct window_field *field, double low, double high, const char *unit) {
-    field->low = low;
-    field->high = high;
-    (void)snprintf(field->unit, sizeof field->unit, "%s", unit);
-}
-
-static void set_help(struct window_field *field, const char *help) {
-    (void)snprintf(field->help, sizeof field->help, "%s", help ? help : "");
 }
 
 /* The fields that are not rows of other tables. Those that act rotate and scale, and are 0 and 1 again. */
@@ -514,13 +488,13 @@ static const struct {
                          HUGE_VAL, false}};
 
 static void add_fixed(struct window_form *form, enum field_number number, double a, double b, double c) {
-    struct window_field *field = add(form, fields[number].group, fields[number].name, fields[number].kind, number);
+    struct window_field *field = form_add(form, fields[number].group, fields[number].name, fields[number].kind, number);
     field->acts = fields[number].acts;
     field->numbers[0] = a;
     field->numbers[1] = b;
     field->numbers[2] = c;
-    set_range(field, fields[number].low, fields[number].high, fields[number].unit);
-    set_help(field, fields[number].help);
+    form_set_range(field, fields[number].low, fields[number].high, fields[number].unit);
+    form_set_help(field, fields[number].help);
 }
 
 static void add_pose(const struct viewer *viewer, struct window_form *form) {
@@ -540,16 +514,37 @@ static void add_material(const struct viewer *viewer, struct window_form *form) 
     for (int i = 0; picked->material_serial != 0 && i < MATERIAL_PART_PARTS; i++) {
         enum material_part part = (enum material_part)i;
         bool colour = material_part_count(part) == 3, idle = picked->idle_parts >> i & 1;
-        struct window_field *field = add(form, "Material", material_part_name(part),
-                                         colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
+        struct window_field *field = form_add(form, "Material", material_part_name(part),
+                                              colour ? FIELD_COLOUR : FIELD_NUMBER, FIELD_MATERIAL + (uint32_t)i);
         double low, high;
         struct change change = viewer_change(viewer, CHANGE_MATERIAL, part);
         memcpy(field->numbers, change.numbers, sizeof field->numbers);
         material_part_range(part, &low, &high);
-        set_range(field, low, high, "");
+        form_set_range(field, low, high, "");
         if (idle)
-            set_help(field, "No effect at the point that was clicked: a texture replaces it");
+            form_set_help(field, "No effect at the point that was clicked: a texture replaces it");
     }
+}
+
+/* The call that has added the selection, and what its function has; a material has fields of its own. */
+static void add_call(const struct viewer *viewer, struct window_form *form) {
+    struct change change;
+    if (!viewer_added(viewer, &change))
+        return;
+    call_form_add(form, change.call, FIELD_ARGUMENT);
+    struct window_field *field = form_add(form, "Call", "Lua", FIELD_ENTRY, FIELD_CALL);
+    (void)snprintf(field->text, sizeof field->text, "%s", change.call);
+    form_set_help(field, "The call of gr that makes it");
+}
+
+/* A changed argument. */
+static void set_call(struct viewer *viewer, const struct window_event *event) {
+    struct change change;
+    char text[CHANGE_CALL];
+    if (event->field == FIELD_CALL)
+        viewer_set_call(viewer, event->text);
+    else if (viewer_added(viewer, &change) && call_form_set(change.call, event, FIELD_ARGUMENT, text))
+        viewer_set_call(viewer, text);
 }
 
 static void add_node(const struct viewer *viewer, struct window_form *form) {
@@ -560,6 +555,7 @@ static void add_node(const struct viewer *viewer, struct window_form *form) {
     add_text(form, "Object", "material", "%s", picked->material);
     add_text(form, "Object", "distance", "%.5g", picked->distance);
     add_pose(viewer, form);
+    add_call(viewer, form);
     add_material(viewer, form);
 }
 
@@ -579,6 +575,7 @@ static void add_light(const struct viewer *viewer, struct window_form *form) {
                  : change.numbers[3 + i] > 0 ? reported[i] / change.numbers[3 + i]
                                              : 0;
     add_fixed(form, FIELD_LIGHT_COLOUR, now[0], now[1], now[2]);
+    add_call(viewer, form);
 }
 
 /* As script and command line have set it. */
@@ -600,10 +597,10 @@ static void describe_setting(const struct viewer *viewer, int index, struct wind
                    row->option + dashes);
     if (number)
         memcpy(&field->numbers[0], &bits, sizeof bits);
-    set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    form_set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
     if (words)
         (void)snprintf(field->text, sizeof field->text, "%s", row->words);
-    set_help(field, row->help);
+    form_set_help(field, row->help);
 }
 
 /* Every setting of the picture that has an option, but those that have a field of their own or no single number. */
@@ -612,7 +609,7 @@ static void add_settings(const struct viewer *viewer, struct window_form *form) 
         const struct setting *row = &setting_table[i];
         bool own = i == SETTING_INDEX(tone.exposure) || i == SETTING_INDEX(overlay);
         if (row->option && row->kind != SETTING_LAYERS && row->kind != SETTING_CROP && !own)
-            describe_setting(viewer, i, add(form, "", "", FIELD_TEXT, FIELD_NONE));
+            describe_setting(viewer, i, form_add(form, "", "", FIELD_TEXT, FIELD_NONE));
     }
 }
 
@@ -641,6 +638,8 @@ static uint64_t subject_of(const struct viewer *viewer) {
     bool node = selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL;
     uint64_t of = node ? selection->picked.serial : selection->light;
     of = of << 24 ^ (node ? (uint64_t)selection->picked.material_serial : viewer->lights.known);
+    struct change change; /* another function has other inputs */
+    of ^= viewer_added(viewer, &change) ? (uint64_t)(uintptr_t)call_function(change.call) << 5 : 0;
     return of << 4 | (uint64_t)selection->kind << 1 | (viewer->block != NULL);
 }
 
@@ -665,6 +664,8 @@ void viewer_make_form(const struct viewer *viewer, struct window_state *state) {
         add_picture(viewer, form);
     if (viewer->name[0] != '\0' && viewer->edit.selection.kind == SELECTED_NOTHING)
         add_settings(viewer, form);
+    for (uint32_t i = 0; i < form->count; i++)
+        form->fields[i].linear = settings_linear(&viewer->request.settings);
 }
 
 /* Fields of the selection. */
@@ -672,6 +673,8 @@ static void set_selected(struct viewer *viewer, const struct window_event *event
     static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double *numbers = event->numbers, factor = el_exp2(numbers[0]), factors[3] = {factor, factor, factor};
     viewer->edit.joins = event->joins;
+    if (event->field >= FIELD_CALL)
+        set_call(viewer, event);
     if (event->field >= FIELD_MATERIAL && event->field < FIELD_SETTING)
         viewer_set_numbers(viewer, CHANGE_MATERIAL, (enum material_part)(event->field - FIELD_MATERIAL), 0, numbers);
     switch (event->field) {
@@ -764,6 +767,15 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         return;
     case WINDOW_SELECT:
         select_row(viewer, &event->node);
+        return;
+    case WINDOW_ADD:
+    case WINDOW_TEXTURE:
+        if (strlen(event->text) >= CHANGE_CALL)
+            viewer_show_notice(viewer, "a call, with the names of its files, has at most 511 characters", true);
+        else if (viewer->block && event->kind == WINDOW_ADD)
+            viewer_add(viewer, event->text);
+        else if (viewer->block)
+            viewer_drop_texture(viewer, event);
         return;
     case WINDOW_HIDE:
         if (viewer->block)

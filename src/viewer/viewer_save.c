@@ -97,8 +97,8 @@ bool viewer_save_edits(const struct viewer *viewer, const struct file_target *pi
     double exposure = viewer->request.settings.tone.exposure;
     bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
     const struct lua_text text = {
-        "-- Edits made in the window. A scene that requires this file (its name without .lua) before gr.render has\n"
-        "-- them.\n",
+        "-- Edits made in the window. gray SCENE --edits FILE has them, and a scene that requires this file (its name\n"
+        "-- without .lua) before gr.render.\n",
         "", &viewer->edit.steps.now, viewer->camera_moved ? &camera : NULL, exposed ? &exposure : NULL};
     return write_lua(viewer, picture, "-changes", &text, name, error);
 }

@@ -26,6 +26,8 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Save the camera as a Lua file")                                                                                 \
     X(DO_SAVE_CHANGES, "save-changes", "_Save Edits", MENU_FILE, NEEDS_NAME, "<Control>s", "<Control>s",               \
       "Save all edits, the camera and the exposure as a Lua file")                                                     \
+    X(DO_EXPORT_MODEL, "export-model", "_Export Model…", MENU_FILE, NEEDS_NAME, "<Control>e", "F7",                    \
+      "Write the solids for printing: STL, 3MF, OBJ or PLY")                                                           \
     X(DO_NEXT_PICTURE, "next-picture", "_Next Picture", MENU_FILE, NEEDS_PICTURE, "<Control>n", "<Control>n",          \
       "Continue with the next picture of the script")                                                                  \
     X(DO_QUIT, "quit", "_Quit", MENU_FILE, NEEDS_NOTHING, "<Control>q", "<Control>q", "Close the window")              \
@@ -50,13 +52,6 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Select the previous light")                                                                                     \
     X(DO_ESCAPE, "escape", "Clear Selec_tion", MENU_EDIT, NEEDS_NOTHING, "Escape", "Escape",                           \
       "End a tool, the selection, rendering, or a script that makes no picture")                                       \
-    X(DO_ADD_SPHERE, "add-sphere", "_Sphere", MENU_ADD, NEEDS_PICTURE, "", "", "Add a sphere where you clicked last")  \
-    X(DO_ADD_CUBE, "add-cube", "_Cube", MENU_ADD, NEEDS_PICTURE, "", "", "Add a cube where you clicked last")          \
-    X(DO_ADD_CYLINDER, "add-cylinder", "C_ylinder", MENU_ADD, NEEDS_PICTURE, "", "",                                   \
-      "Add a cylinder where you clicked last")                                                                         \
-    X(DO_ADD_CONE, "add-cone", "C_one", MENU_ADD, NEEDS_PICTURE, "", "", "Add a cone where you clicked last")          \
-    X(DO_ADD_TORUS, "add-torus", "_Torus", MENU_ADD, NEEDS_PICTURE, "", "", "Add a torus where you clicked last")      \
-    X(DO_ADD_LIGHT, "add-light", "_Light", MENU_ADD, NEEDS_PICTURE, "", "", "Add a point light")                       \
     X(DO_CAMERA, "camera", "Script's _Camera", MENU_VIEW, NEEDS_PICTURE, "KP_0 0", "<Control>0",                       \
       "Return to the camera of the script")                                                                            \
     X(DO_FRAME_ALL, "frame-all", "Frame _All", MENU_VIEW, NEEDS_PICTURE, "Home", "<Control><Shift>0 Home",             \

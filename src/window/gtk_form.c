@@ -2,6 +2,8 @@
  * a widget in which the user types. */
 #include "window/gtk_form_internal.h"
 
+#include "image/tone.h"
+#include "image/transfer.h"
 #include "window/gtk_window_internal.h"
 
 #include <math.h>
@@ -16,6 +18,7 @@ static void send_field(struct gui *gui, struct form_row *row) {
                                  .field = row->field.number,
                                  .joins = gui->last_field == row->field.number && now - gui->last_change < same_edit};
     memcpy(event.numbers, row->field.numbers, sizeof event.numbers);
+    (void)g_strlcpy(event.text, row->field.text, sizeof event.text);
     gui->last_field = row->field.number;
     gui->last_change = now;
     gui_send_event(gui, &event);
@@ -31,6 +34,9 @@ static void show_values(struct gui *gui, struct form_row *row) {
     case FIELD_TEXT:
         gtk_label_set_text(GTK_LABEL(row->inputs[0]), field->text);
         break;
+    case FIELD_ENTRY:
+        gtk_editable_set_text(GTK_EDITABLE(row->inputs[0]), field->text);
+        break;
     case FIELD_NUMBER:
     case FIELD_VECTOR:
         for (int i = 0; i < count; i++)
@@ -38,8 +44,11 @@ static void show_values(struct gui *gui, struct form_row *row) {
         break;
     case FIELD_COLOUR: {
         double top = fmax(1, fmax(field->numbers[0], fmax(field->numbers[1], field->numbers[2])));
-        GdkRGBA colour = {(float)(field->numbers[0] / top), (float)(field->numbers[1] / top),
-                          (float)(field->numbers[2] / top), 1};
+        const struct tone srgb = {.srgb = true};
+        double shown[3];
+        for (int i = 0; i < 3; i++)
+            shown[i] = field->linear ? tone_apply(&srgb, field->numbers[i] / top) : field->numbers[i] / top;
+        GdkRGBA colour = {(float)shown[0], (float)shown[1], (float)shown[2], 1};
         gtk_color_chooser_set_rgba(GTK_COLOR_CHOOSER(row->inputs[0]), &colour);
         gtk_spin_button_set_value(GTK_SPIN_BUTTON(row->inputs[1]), top);
         break;
@@ -76,6 +85,7 @@ static void number_changed(GtkSpinButton *button, gpointer data) {
 static void colour_changed(GtkWidget *widget, gpointer data) {
     struct gui *gui = g_object_get_data(G_OBJECT(widget), "gui");
     struct form_row *row = data;
+    const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     GdkRGBA colour;
     if (gui->updates)
         return;
@@ -83,8 +93,38 @@ static void colour_changed(GtkWidget *widget, gpointer data) {
     double factor = gtk_spin_button_get_value(GTK_SPIN_BUTTON(row->inputs[1]));
     const double parts[3] = {(double)colour.red, (double)colour.green, (double)colour.blue};
     for (int i = 0; i < 3; i++)
-        row->field.numbers[i] = fmin(fmax(parts[i] * factor, row->field.low), row->field.high);
+        row->field.numbers[i] =
+            fmin(fmax((row->field.linear ? transfer_decode(srgb, parts[i]) : parts[i]) * factor, row->field.low),
+                 row->field.high);
     send_field(gui, row);
+}
+
+/* When Return is pressed, or the keyboard leaves it. */
+static void text_changed(GtkWidget *entry, gpointer data) {
+    struct gui *gui = g_object_get_data(G_OBJECT(entry), "gui");
+    struct form_row *row = data;
+    const char *text = gtk_editable_get_text(GTK_EDITABLE(entry));
+    if (gui->updates || strcmp(text, row->field.text) == 0)
+        return;
+    (void)g_strlcpy(row->field.text, text, sizeof row->field.text);
+    send_field(gui, row);
+}
+
+static void text_left(GtkEventControllerFocus *focus, gpointer data) {
+    text_changed(gtk_event_controller_get_widget(GTK_EVENT_CONTROLLER(focus)), data);
+}
+
+static GtkWidget *text_input(struct gui *gui, struct form_row *row) {
+    GtkWidget *entry = gtk_entry_new();
+    GtkEventController *focus = gtk_event_controller_focus_new();
+    gtk_editable_set_width_chars(GTK_EDITABLE(entry), 8);
+    gtk_entry_set_max_length(GTK_ENTRY(entry), FORM_TEXT - 1);
+    gtk_widget_set_hexpand(entry, TRUE);
+    g_object_set_data(G_OBJECT(entry), "gui", gui);
+    g_signal_connect(entry, "activate", G_CALLBACK(text_changed), row);
+    g_signal_connect(focus, "leave", G_CALLBACK(text_left), row);
+    gtk_widget_add_controller(entry, focus);
+    return entry;
 }
 
 /* Of a choice or a flag: the property that has changed. */
@@ -197,6 +237,8 @@ static GtkWidget *make_inputs(struct gui *gui, struct form_row *row) {
     }
     if (field->kind == FIELD_CHOICE || field->kind == FIELD_FLAG)
         row->inputs[0] = choice_input(gui, row);
+    if (field->kind == FIELD_ENTRY)
+        row->inputs[0] = text_input(gui, row);
     if (!row->inputs[0]) {
         row->inputs[0] = gtk_label_new(NULL);
         gtk_label_set_xalign(GTK_LABEL(row->inputs[0]), 0);

@@ -38,7 +38,7 @@ struct gui {
     GtkSingleSelection *node_selection; /* its model is the tree */
     GPtrArray *open_nodes;              /* the lists of children; not owned */
     GPtrArray *node_items;              /* the rows on the screen; not owned */
-    GtkWidget *node_list, *found, *tree_pages;
+    GtkWidget *node_list, *node_search, *found, *tree_pages;
     struct node_query revealed; /* the node to which the tree is to be opened; depth 0: none */
     struct picture_tiles tiles;
     struct share memory;       /* of the shared state ... */
@@ -49,6 +49,7 @@ struct gui {
 
     enum window_key_set key_set;
     gint64 tool_begun; /* when a tool was chosen: what is typed at once is for it */
+    bool takes_found;  /* the first node that is found will be selected */
     bool updates;      /* widgets are set by the program, not by the user */
     struct form_row rows[FORM_FIELDS];
     uint32_t row_count;

@@ -33,6 +33,7 @@ static GtkWidget *make_card(struct gui *gui, const char *path) {
     gtk_widget_add_css_class(file, "dim-label");
     gtk_label_set_wrap(GTK_LABEL(heading), TRUE);
     gtk_label_set_max_width_chars(GTK_LABEL(heading), 24);
+    gtk_label_set_justify(GTK_LABEL(heading), GTK_JUSTIFY_CENTER);
     gtk_box_append(GTK_BOX(box), heading);
     gtk_box_append(GTK_BOX(box), file);
     gtk_widget_set_size_request(box, 180, 52);

@@ -212,12 +212,14 @@ static GtkTreeListModel *model_of(struct gui *gui) {
 /* Opens the tree as far as the path of the selection is known, and goes on when more rows have come. */
 static void reveal(struct gui *gui) {
     const struct node_query *path = &gui->revealed;
+    bool known = true; /* else its row comes, and loses the mark */
     GtkTreeListRow *row = path->depth > 0 ? gtk_tree_list_model_get_child_row(model_of(gui), path->path[0]) : NULL;
     for (uint32_t i = 1; row && i < path->depth; i++) {
         gtk_tree_list_row_set_expanded(row, TRUE);
         GtkTreeListRow *child = gtk_tree_list_row_get_child_row(row, path->path[i]);
         GrayNode *node = child ? gtk_tree_list_row_get_item(child) : NULL;
-        if (node && !node->list->rows[node->at].kind[0])
+        known = node && node->list->rows[node->at].kind[0];
+        if (node && !known)
             want_rows(gui, node->list, node->at);
         g_clear_object(&node);
         g_object_unref(row);
@@ -230,7 +232,7 @@ static void reveal(struct gui *gui) {
     gtk_single_selection_set_selected(gui->node_selection, at);
     gui->updates = false;
     (void)gtk_widget_activate_action(gui->node_list, "list.scroll-to-item", "u", at);
-    gui->revealed.depth = 0;
+    gui->revealed.depth = known ? 0 : path->depth;
     g_object_unref(row);
 }
 
@@ -279,6 +281,12 @@ static void show_found(struct gui *gui, const struct node_rows *rows) {
         gtk_box_append(GTK_BOX(gui->found), button);
         g_free(text);
     }
+    GtkWidget *first = gtk_widget_get_first_child(gui->found);
+    if (gui->takes_found && first) { /* the next keys are for the picture */
+        select_found(GTK_BUTTON(first), gui);
+        gtk_widget_grab_focus(gui->picture);
+    }
+    gui->takes_found = false;
     if (rows->count == 0 || rows->count == NODE_ROWS)
         gtk_box_append(GTK_BOX(gui->found), gtk_label_new(rows->count == 0 ? "No such node" : "… and others"));
 }
@@ -291,6 +299,13 @@ static void search_changed(GtkSearchEntry *entry, gpointer data) {
     gtk_stack_set_visible_child_name(GTK_STACK(gui->tree_pages), text[0] ? "found" : "tree");
     if (text[0])
         gui_send_event(gui, &event);
+}
+
+/* Return takes the first one that is found. */
+static void search_done(GtkSearchEntry *entry, gpointer data) {
+    struct gui *gui = data;
+    gui->takes_found = true;
+    search_changed(entry, gui);
 }
 
 void gui_tree_receive(struct gui *gui, const struct window_order *order) {
@@ -333,7 +348,7 @@ static GtkWidget *scrolled(GtkWidget *child) {
 }
 
 GtkWidget *gui_tree_new(struct gui *gui) {
-    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0), *search = gtk_search_entry_new();
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0), *search = gui->node_search = gtk_search_entry_new();
     GtkListItemFactory *factory = gtk_signal_list_item_factory_new();
     gui->open_nodes = g_ptr_array_new();
     gui->node_items = g_ptr_array_new();
@@ -345,6 +360,7 @@ GtkWidget *gui_tree_new(struct gui *gui) {
     g_signal_connect(factory, "bind", G_CALLBACK(show_row), gui);
     g_signal_connect(factory, "unbind", G_CALLBACK(forget_row), gui);
     g_signal_connect(search, "search-changed", G_CALLBACK(search_changed), gui);
+    g_signal_connect(search, "activate", G_CALLBACK(search_done), gui);
     gui->node_list = gtk_list_view_new(GTK_SELECTION_MODEL(gui->node_selection), factory);
     gui->found = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
     gui->tree_pages = gtk_stack_new();

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "window/gtk_window.h"
 
+#include "window/gtk_add_internal.h"
 #include "window/gtk_form_internal.h"
 #include "window/gtk_picture_internal.h"
 #include "window/gtk_settings_internal.h"
@@ -81,6 +82,8 @@ static void ask_to_leave(struct gui *gui, GFile *next) {
     gtk_window_present(GTK_WINDOW(dialog));
 }
 
+static void choose_model(struct gui *gui);
+
 void gui_send_action(struct gui *gui, enum window_action action) {
     struct window_event event = {.kind = WINDOW_ACTION, .action = action, .x = gui->mouse_x, .y = gui->mouse_y};
     bool tool = action == DO_MOVE || action == DO_TURN || action == DO_SIZE;
@@ -88,6 +91,8 @@ void gui_send_action(struct gui *gui, enum window_action action) {
         gui->tool_begun = g_get_monotonic_time();
     if (action == DO_QUIT)
         ask_to_leave(gui, NULL);
+    else if (action == DO_EXPORT_MODEL)
+        choose_model(gui);
     else
         gui_send_event(gui, &event);
 }
@@ -98,16 +103,6 @@ void gui_open_scene(struct gui *gui, GFile *file) {
     gtk_recent_manager_add_full(gtk_recent_manager_get_default(), uri, &recent);
     g_free(uri);
     ask_to_leave(gui, file);
-}
-
-static gboolean handle_drop(GtkDropTarget *target, const GValue *value, double x, double y, gpointer data) {
-    (void)target, (void)x, (void)y;
-    GSList *files = gdk_file_list_get_files(g_value_get_boxed(value));
-    bool any = files != NULL;
-    if (any)
-        gui_open_scene(data, files->data);
-    g_slist_free(files);
-    return any;
 }
 
 /* Menus and actions. */
@@ -121,66 +116,12 @@ static void choose_action(GSimpleAction *action, GVariant *value, gpointer data)
     }
 }
 
-/* The actions of a menu, found by their words. */
-
-static gboolean filter_action(GtkListBoxRow *row, gpointer data) {
-    const char *title = g_object_get_data(G_OBJECT(row), "title");
-    char *text = g_utf8_casefold(gtk_editable_get_text(GTK_EDITABLE(data)), -1), *in = g_utf8_casefold(title, -1);
-    bool found = strstr(in, text) != NULL;
-    g_free(text);
-    g_free(in);
-    return found;
-}
-
-static void filter_changed(GtkSearchEntry *entry, gpointer list) {
-    (void)entry;
-    gtk_list_box_invalidate_filter(list);
-}
-
-static void choose_row(GtkListBox *list, GtkListBoxRow *row, gpointer data) {
-    GtkWidget *popover = gtk_widget_get_ancestor(GTK_WIDGET(list), GTK_TYPE_POPOVER);
-    gtk_popover_popdown(GTK_POPOVER(popover));
-    gui_send_action(data, (enum window_action)GPOINTER_TO_INT(g_object_get_data(G_OBJECT(row), "action")));
-}
-
-/* Return takes the first row that is shown. */
-static void choose_first(GtkSearchEntry *entry, gpointer list) {
-    (void)entry;
-    GtkListBoxRow *row = gtk_list_box_get_row_at_y(list, 4);
-    if (row)
-        g_signal_emit_by_name(list, "row-activated", row);
-}
-
-static void show_add_list(GSimpleAction *action, GVariant *value, gpointer data) {
-    struct gui *gui = data;
-    GtkWidget *popover = gtk_popover_new(), *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 4);
-    GtkWidget *entry = gtk_search_entry_new(), *list = gtk_list_box_new();
-    (void)action, (void)value;
-    for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
-        if (window_action_table[i].menu != MENU_ADD)
-            continue;
-        char **words = g_strsplit(window_action_table[i].title, "_", -1), *title = g_strjoinv("", words);
-        GtkWidget *row = gtk_list_box_row_new(), *label = gtk_label_new(title);
-        gtk_label_set_xalign(GTK_LABEL(label), 0);
-        gtk_list_box_row_set_child(GTK_LIST_BOX_ROW(row), label);
-        g_object_set_data(G_OBJECT(row), "action", GINT_TO_POINTER(i));
-        g_object_set_data_full(G_OBJECT(row), "title", title, g_free);
-        gtk_list_box_append(GTK_LIST_BOX(list), row);
-        g_strfreev(words);
-    }
-    gui_name(entry, "Search what to add");
-    gtk_list_box_set_filter_func(GTK_LIST_BOX(list), filter_action, entry, NULL);
-    g_signal_connect(entry, "search-changed", G_CALLBACK(filter_changed), list);
-    g_signal_connect(entry, "activate", G_CALLBACK(choose_first), list);
-    g_signal_connect(list, "row-activated", G_CALLBACK(choose_row), gui);
-    gtk_box_append(GTK_BOX(box), entry);
-    gtk_box_append(GTK_BOX(box), list);
-    gtk_popover_set_child(GTK_POPOVER(popover), box);
-    gtk_widget_set_parent(popover, gui->picture);
-    gtk_popover_set_pointing_to(GTK_POPOVER(popover), &(GdkRectangle){(int)gui->mouse_x, (int)gui->mouse_y, 1, 1});
-    g_signal_connect_after(popover, "closed", G_CALLBACK(gtk_widget_unparent), NULL);
-    gtk_popover_popup(GTK_POPOVER(popover));
-    gtk_widget_grab_focus(entry);
+/* It begins where gray was started. */
+static void show_dialog(GtkFileChooserNative *dialog) {
+    GFile *here = g_file_new_for_path(".");
+    (void)gtk_file_chooser_set_current_folder(GTK_FILE_CHOOSER(dialog), here, NULL);
+    g_object_unref(here);
+    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
 }
 
 static void finish_open(GtkNativeDialog *dialog, int answer, gpointer data) {
@@ -204,10 +145,10 @@ static void choose_scene(GSimpleAction *action, GVariant *value, gpointer data) 
         gtk_file_filter_add_suffix(filter, suffixes[i]);
     gtk_file_chooser_add_filter(GTK_FILE_CHOOSER(dialog), filter);
     g_signal_connect(dialog, "response", G_CALLBACK(finish_open), gui);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    show_dialog(dialog);
 }
 
-/* A name for what is saved; the viewer replaces no file. */
+/* A name for what is saved; the viewer replaces no file but models. */
 
 static void finish_save(GtkNativeDialog *dialog, int answer, gpointer data) {
     struct gui *gui = data;
@@ -224,17 +165,38 @@ static void finish_save(GtkNativeDialog *dialog, int answer, gpointer data) {
     g_object_unref(dialog);
 }
 
-static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
-    struct gui *gui = data;
-    bool picture = strcmp(g_action_get_name(G_ACTION(action)), "save-picture-as") == 0;
+static void ask_name(struct gui *gui, const char *title, const char *name, enum window_action action) {
+    static const char *const models[] = {"stl", "3mf", "obj", "ply"};
     GtkFileChooserNative *dialog =
-        gtk_file_chooser_native_new(picture ? "Save the Picture" : "Save the Edits", GTK_WINDOW(gui->window),
-                                    GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
-    (void)value;
-    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), picture ? "view.png" : "changes.lua");
-    g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(picture ? DO_SAVE_PICTURE : DO_SAVE_CHANGES));
+        gtk_file_chooser_native_new(title, GTK_WINDOW(gui->window), GTK_FILE_CHOOSER_ACTION_SAVE, "_Save", "_Cancel");
+    gtk_file_chooser_set_current_name(GTK_FILE_CHOOSER(dialog), name);
+    if (action == DO_EXPORT_MODEL) {
+        GtkFileFilter *filter = gtk_file_filter_new();
+        gtk_file_filter_set_name(filter, "Models: .stl, .3mf, .obj, .ply");
+        for (size_t i = 0; i < G_N_ELEMENTS(models); i++)
+            gtk_file_filter_add_suffix(filter, models[i]);
+        gtk_file_chooser_add_filter(GTK_FILE_CHOOSER(dialog), filter);
+    }
+    g_object_set_data(G_OBJECT(dialog), "action", GINT_TO_POINTER(action));
     g_signal_connect(dialog, "response", G_CALLBACK(finish_save), gui);
-    gtk_native_dialog_show(GTK_NATIVE_DIALOG(dialog));
+    show_dialog(dialog);
+}
+
+static void choose_name(GSimpleAction *action, GVariant *value, gpointer data) {
+    (void)value;
+    if (strcmp(g_action_get_name(G_ACTION(action)), "save-picture-as") == 0)
+        ask_name(data, "Save the Picture", "view.png", DO_SAVE_PICTURE);
+    else
+        ask_name(data, "Save the Edits", "changes.lua", DO_SAVE_CHANGES);
+}
+
+/* The kind of the file follows from its name. */
+static void choose_model(struct gui *gui) {
+    char *file = g_path_get_basename(gui->state.file), *dot = strrchr(file, '.');
+    char *name = g_strdup_printf("%.*s.stl", (int)(dot ? dot - file : (gssize)strlen(file)), file);
+    ask_name(gui, "Export a Model", name, DO_EXPORT_MODEL);
+    g_free(name);
+    g_free(file);
 }
 
 static void choose_dark(GSimpleAction *action, GVariant *value, gpointer data) {
@@ -258,6 +220,12 @@ static void choose_keys(GSimpleAction *action, GVariant *value, gpointer data) {
     make_key_list(gui);
 }
 
+static void find_node(GSimpleAction *action, GVariant *value, gpointer data) {
+    struct gui *gui = data;
+    (void)action, (void)value;
+    gtk_widget_grab_focus(gui->node_search);
+}
+
 static void show_keys(GSimpleAction *action, GVariant *value, gpointer data) {
     struct gui *gui = data;
     (void)action, (void)value;
@@ -278,7 +246,7 @@ static void add_item(GMenu *menu, const char *title, const char *action, const c
     g_object_unref(item);
 }
 
-static GMenu *add_menu(GMenu *bar, const char *title) {
+GMenu *gui_add_menu(GMenu *bar, const char *title) {
     GMenu *menu = g_menu_new();
     g_menu_append_submenu(bar, title, G_MENU_MODEL(menu));
     g_object_unref(menu);
@@ -289,7 +257,7 @@ static void make_menus(struct gui *gui) {
     static const char *const titles[] = {WINDOW_MENUS(LIST_WORD)};
     GMenu *bar = g_menu_new(), *menus[G_N_ELEMENTS(titles)];
     for (size_t i = 0; i < G_N_ELEMENTS(titles); i++)
-        menus[i] = add_menu(bar, titles[i]);
+        menus[i] = gui_add_menu(bar, titles[i]);
     add_item(menus[MENU_FILE], "_Open…", "win.open", "<Control>o");
     add_item(menus[MENU_FILE], "Save Picture _As…", "win.save-picture-as", NULL);
     add_item(menus[MENU_FILE], "Save E_dits As…", "win.save-edits-as", NULL);
@@ -301,8 +269,10 @@ static void make_menus(struct gui *gui) {
         g_free(key);
     }
     add_item(menus[MENU_ADD], "_Search…", "win.add", "<Shift>a");
+    gui_add_calls(menus[MENU_ADD]);
+    add_item(menus[MENU_EDIT], "_Find a Node", "win.find", "<Control>f");
     add_item(menus[MENU_VIEW], "_Dark Theme", "win.dark", NULL);
-    GMenu *help = add_menu(bar, "_Help");
+    GMenu *help = gui_add_menu(bar, "_Help");
     add_item(help, "_Keys and Mouse", "win.keys-help", "F1");
     add_item(help, "Keys as in _Blender", "win.keys::Blender", NULL);
     add_item(help, "Keys as in _OpenSCAD", "win.keys::OpenSCAD", NULL);
@@ -316,10 +286,11 @@ static void add_actions(struct gui *gui) {
         {.name = "save-picture-as", .activate = choose_name},
         {.name = "save-edits-as", .activate = choose_name},
         {.name = "keys-help", .activate = show_keys},
-        {.name = "add", .activate = show_add_list},
+        {.name = "find", .activate = find_node},
         {.name = "dark", .state = "false", .change_state = choose_dark},
         {.name = "keys", .parameter_type = "s", .state = "'Blender'", .change_state = choose_keys}};
     g_action_map_add_action_entries(G_ACTION_MAP(gui->window), entries, G_N_ELEMENTS(entries), gui);
+    gui_add_actions(gui);
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
         GSimpleAction *action = g_simple_action_new(window_action_table[i].name, NULL);
         g_signal_connect(action, "activate", G_CALLBACK(choose_action), gui);
@@ -328,6 +299,7 @@ static void add_actions(struct gui *gui) {
         g_object_unref(action);
     }
     gtk_application_set_accels_for_action(gui->application, "win.open", (const char *[]){"<Control>o", NULL});
+    gtk_application_set_accels_for_action(gui->application, "win.find", (const char *[]){"<Control>f", NULL});
     gtk_application_set_accels_for_action(gui->application, "win.keys-help", (const char *[]){"F1", NULL});
 }
 
@@ -567,6 +539,7 @@ static GtkWidget *make_bottom(struct gui *gui) {
     gtk_progress_bar_set_ellipsize(GTK_PROGRESS_BAR(gui->progress), PANGO_ELLIPSIZE_END);
     gtk_widget_set_size_request(gui->progress, 260, -1);
     gtk_widget_set_valign(gui->progress, GTK_ALIGN_CENTER);
+    gtk_widget_set_visible(gui->progress, FALSE);
     gtk_label_set_ellipsize(GTK_LABEL(gui->figures), PANGO_ELLIPSIZE_END);
     gtk_label_set_ellipsize(GTK_LABEL(gui->notice), PANGO_ELLIPSIZE_MIDDLE);
     gtk_label_set_xalign(GTK_LABEL(gui->figures), 0);
@@ -589,6 +562,8 @@ static GtkWidget *make_trace(struct gui *gui) {
     gui->trace_text = gtk_text_view_get_buffer(GTK_TEXT_VIEW(view));
     gtk_text_view_set_editable(GTK_TEXT_VIEW(view), FALSE);
     gtk_text_view_set_monospace(GTK_TEXT_VIEW(view), TRUE);
+    gtk_text_view_set_left_margin(GTK_TEXT_VIEW(view), 8);
+    gtk_text_view_set_top_margin(GTK_TEXT_VIEW(view), 6);
     gui_label(view, "How the pixel got its colour");
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(gui->trace_box), view);
     gtk_widget_set_size_request(gui->trace_box, -1, 180);
@@ -625,7 +600,6 @@ static gboolean ask_close(GtkWindow *window, gpointer data) {
 
 static void make_window(struct gui *gui) {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
-    GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
     GtkCssProvider *css = gtk_css_provider_new();
     gui->window = gtk_application_window_new(gui->application);
 
@@ -656,8 +630,7 @@ static void make_window(struct gui *gui) {
                                                GTK_STYLE_PROVIDER_PRIORITY_APPLICATION);
     g_object_unref(css);
     g_signal_connect(gui->window, "close-request", G_CALLBACK(ask_close), gui);
-    g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
-    gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
+    gui_accept_drops(gui);
     gui_add_keys(gui);
     gui_load_settings(gui);
 }
@@ -687,6 +660,7 @@ static void show_timeline(struct gui *gui) {
 
 static void show_page(struct gui *gui) {
     gtk_stack_set_visible_child_name(GTK_STACK(gui->pages), gui->state.has_scene ? "scene" : "start");
+    gtk_widget_set_visible(gui->progress, gui->state.has_scene);
     if (!gui->state.has_scene)
         return;
     gtk_widget_grab_focus(gui->picture);
@@ -825,6 +799,19 @@ static void choose_renderer(void) {
     g_clear_error(&error);
 }
 
+/* Without one, GTK gives its widgets sizes without sense. */
+static bool has_font(void) {
+    PangoFontMap *map = pango_cairo_font_map_get_default();
+    PangoContext *context = pango_font_map_create_context(map);
+    PangoFontDescription *any = pango_font_description_from_string("Sans 10");
+    PangoFont *font = pango_font_map_load_font(map, context, any);
+    bool has = font != NULL;
+    g_clear_object(&font);
+    pango_font_description_free(any);
+    g_object_unref(context);
+    return has;
+}
+
 int gtk_window_run(struct channel channel) {
     static struct gui gui;
     sigset_t none;
@@ -840,6 +827,10 @@ int gtk_window_run(struct channel channel) {
     (void)g_setenv("GTK_A11Y", g_getenv("DBUS_SESSION_BUS_ADDRESS") ? "atspi" : "none", FALSE);
     if (!gtk_init_check()) {
         (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "there is no display (DISPLAY or WAYLAND_DISPLAY)");
+        return 1;
+    }
+    if (!has_font()) {
+        (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "fontconfig finds no font (Debian: fonts-dejavu-core)");
         return 1;
     }
     choose_renderer();

@@ -25,6 +25,8 @@ enum window_event_kind {
     WINDOW_ACTION,  /* action, by a key, a menu or a button; x, y: of the mouse */
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
+    WINDOW_ADD,     /* the object of the Lua call `text` */
+    WINDOW_TEXTURE, /* the texture of the call `text`: for what is at x, y if `down`, else for the selection */
     WINDOW_HIDE,    /* the node with the serial of `node` and the name `text` is hidden, or shown again */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };
@@ -42,7 +44,7 @@ struct window_event {
     double numbers[3];
     bool joins;
     struct node_query node;
-    char text[1024]; /* a name; of an action that saves: the file, or empty */
+    char text[1024]; /* a name; a call; of an action that saves: the file, or empty; of a FIELD_ENTRY: its text */
 };
 
 /* One input of a form: the window makes a widget from it, and reports a change by its number. */
@@ -53,16 +55,23 @@ enum window_field_kind {
     FIELD_COLOUR, /* three numbers, linear, that may be above 1 */
     FIELD_CHOICE, /* one of the words in `text`, divided by '|' */
     FIELD_FLAG,
+    FIELD_ENTRY, /* the text, which can be edited */
 };
-enum { FORM_FIELDS = 80, FORM_TEXT = 192, WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */ };
+enum {
+    FORM_FIELDS = 80,
+    FORM_TEXT = 512,
+    FORM_HELP = 192,
+    WINDOW_FIELD_FRAME = 1 /* the number of the slider of an animation */
+};
 struct window_field {
     enum window_field_kind kind;
     uint32_t number;                       /* what the field is, to the receiver of its events */
     bool resets;                           /* it has a default: the number `initial` */
+    bool linear;                           /* a colour is light, and shown as the screen shows it */
     bool acts;                             /* a number is not a state: it does something, and the field is as before */
     char group[32], name[32], unit[16];    /* unit #: whole numbers */
     double numbers[3], initial, low, high; /* low and high may be infinite */
-    char text[FORM_TEXT], help[FORM_TEXT];
+    char text[FORM_TEXT], help[FORM_HELP];
 };
 struct window_form {
     uint64_t subject; /* another one: the widgets are made anew */

@@ -1,4 +1,4 @@
-/* The solids that light may pass, by primitive. */
+/* The solids that light may pass, by primitive, and their media that are given by place. */
 #ifndef GRAY_WORLD_SOLIDS_INTERNAL_H
 #define GRAY_WORLD_SOLIDS_INTERNAL_H
 
@@ -6,5 +6,14 @@
 
 /* Sets world->media.solids and first_solid; the world has its primitives and materials. Errors: no memory. */
 bool solids_make(struct flattening *f);
+
+/* A medium with a density, in the space of one solid. */
+struct placed_medium {
+    uint32_t solid;
+    struct medium inner; /* behind the surface of a material */
+    struct medium_place place;
+};
+/* Puts them where their solids are. */
+void solids_place(struct world *world);
 
 #endif

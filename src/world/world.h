@@ -65,6 +65,7 @@ struct primitive {
 #define LINEAR_NONE UINT32_MAX            /* world_from_object changes nothing */
 #define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
+struct placed_medium;
 struct world {
     const struct primitive *primitives;
     struct prototype *prototypes; /* owned, as are maps and moving */
@@ -84,9 +85,12 @@ struct world {
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
     bool *material_has_medium;   /* solids of the material have one inside: it is transparent */
     uint32_t material_count, material_number_count;
-    struct media media;          /* those of solids have the numbers of the materials */
+    struct media media;          /* by material; behind the outside those that are given by place, by solid */
     const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
-    double emission_bound;       /* a bound of the largest component of emission */
+    const uint32_t *solid_materials;
+    struct placed_medium *placed; /* world/solids_internal.h */
+    uint32_t placed_count;
+    double emission_bound; /* a bound of the largest component of emission */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;

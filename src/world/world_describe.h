@@ -16,7 +16,7 @@ static inline uint32_t world_solid(const struct world *world, uint32_t primitive
         return SOLID_NONE;
     uint32_t end = world->first_solid[primitive + 1];
     for (uint32_t i = world->first_solid[primitive]; i < end; i++)
-        if (world->media.solids[i].medium == material)
+        if (world->solid_materials[i] == material)
             return i;
     return SOLID_NONE;
 }

@@ -240,7 +240,7 @@ static inline bool goes_with_the_others(const struct script_function *function, 
         return false; /* in place of count */
     if (strcmp(function->name, "daylight") == 0 && (strcmp(name, "time") == 0 || name[0] == 'p' || name[0] == 'z'))
         return false; /* a known place, and what needs it */
-    if (strcmp(function->name, "medium") == 0 && strstr("density bound corner size cells", name))
+    if (strcmp(function->name, "medium") == 0 && strstr("density temperature bound corner size cells", name))
         return false; /* each needs another one */
     return !(excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) &&
            !strstr(name, "materials") && strcmp(name, "ior") != 0 && strcmp(name, "refract") != 0 &&

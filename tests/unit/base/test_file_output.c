@@ -208,6 +208,18 @@ TEST_LONG(leftovers_of_killed_runs_are_removed_after_a_minute) {
     file_guard_destroy(&guard);
 }
 
+TEST(the_last_one_that_had_a_lock_removes_what_killed_runs_left_in_the_folder) {
+    static const char name[] = ".gray.part-0123456789abcdef";
+    const struct file_target target = {.path = test_path("lock")};
+    struct file_lock a, b;
+    CHECK(file_lock_take(&a, &target, true) && file_lock_take(&b, &target, true));
+    leave(name, 0);
+    file_lock_release(&a);
+    CHECK(is_there(name));
+    file_lock_release(&b);
+    CHECK(!is_there(name) && !is_there("lock"));
+}
+
 TEST(a_lock_is_taken_once_or_shared_and_its_file_goes_with_the_last_one) {
     const struct file_target target = {.path = test_path("lock")}, nowhere = {.path = "/proc/lock"};
     struct file_lock a, b, c;

@@ -1,4 +1,5 @@
 /* -o MODEL, node:export and --check-print, and the files that they write. */
+#define _GNU_SOURCE
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/model.h"
@@ -6,10 +7,18 @@
 #include "math/elementary.h"
 #include "tests/harness.h"
 
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <linux/ptrace.h>
 
 static const char part[] =
     "local red = gr.material({0.8, 0.2, 0.1}, {0, 0, 0}, 20)\n"
@@ -76,21 +85,43 @@ TEST(models_are_read_again_with_their_volume_and_are_closed) {
     model_destroy(&model);
 }
 
-/* The first file of a zip, inflated. */
-static char *first_of_zip(const char *path) {
+static uint32_t little(const char *bytes, int count) {
+    uint32_t number = 0;
+    for (int i = count; i-- > 0;)
+        number = number << 8 | (uint8_t)bytes[i];
+    return number;
+}
+
+/* A file of a zip, inflated; NULL: there is none of this name. */
+static char *out_of_zip(const char *path, const char *name, size_t *length_of) {
     size_t size = 0;
-    char *bytes = test_read_file(path, &size), *out = mem_alloc_zero(1 << 20, 1);
-    z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
-    CHECK(bytes && size > 60 && memcmp(bytes, "PK\3\4", 4) == 0 && memcmp(bytes + 30, "3D/3dmodel.model", 16) == 0);
-    CHECK(inflateInit2(&stream, -15) == Z_OK);
-    stream.next_in = (Bytef *)bytes + 46;
-    stream.avail_in = (uInt)(size - 46);
-    stream.next_out = (Bytef *)out;
-    stream.avail_out = (1 << 20) - 1;
-    CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END);
-    (void)inflateEnd(&stream);
+    char *bytes = test_read_file(path, &size), *at = bytes, *out = NULL;
+    while (!out && bytes && at + 30 < bytes + size && memcmp(at, "PK\3\4", 4) == 0) {
+        uint32_t packed = little(at + 18, 4), whole = little(at + 22, 4), length = little(at + 26, 2);
+        z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
+        const char *data = at + 30 + length;
+        at = bytes + (data - bytes) + packed;
+        if (length != strlen(name) || memcmp(data - length, name, length) != 0)
+            continue;
+        out = mem_alloc_zero(whole + 1, 1);
+        CHECK(inflateInit2(&stream, -15) == Z_OK);
+        stream.next_in = (const Bytef *)data;
+        stream.avail_in = packed;
+        stream.next_out = (Bytef *)out;
+        stream.avail_out = whole;
+        CHECK(inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == whole);
+        (void)inflateEnd(&stream);
+        *length_of = whole;
+    }
     free(bytes);
     return out;
+}
+
+static char *model_of_zip(const char *path) {
+    size_t size = 0;
+    char *xml = out_of_zip(path, "3D/3dmodel.model", &size);
+    CHECK(xml);
+    return xml;
 }
 
 TEST(a_3mf_file_has_units_names_and_colours) {
@@ -100,13 +131,83 @@ TEST(a_3mf_file_has_units_names_and_colours) {
     expect("local root = gr.node 'root'\nroot:add_child(gr.sphere{name = 'left & \"right\"', radius = 1})\n"
            "root:add_child(gr.sphere{name = 'other', centre = {5, 0, 0}, radius = 1})\nroot:export('two.3mf')\n",
            "scene.lua", 0, NULL);
-    char *xml = first_of_zip(test_path("part.3mf"));
+    char *xml = model_of_zip(test_path("part.3mf"));
     CHECK(strstr(xml, "unit=\"inch\"") && strstr(xml, "displaycolor=\"#CC331A\""));
     mem_free(xml);
-    xml = first_of_zip(test_path("two.3mf"));
+    xml = model_of_zip(test_path("two.3mf"));
     CHECK(strstr(xml, "name=\"left &amp; &quot;right&quot;\"") && strstr(xml, "name=\"other\""));
     CHECK(strstr(xml, "<item objectid=\"3\"/>"));
     mem_free(xml);
+}
+
+/* The colour of a point is its place. */
+TEST(textures_colour_the_corners_of_3mf_files_and_the_faces_of_ply_files) {
+    expect("local place = gr.material{kd = function(p) return {p[1], p[2], p[3]} end}\n"
+           "local cube = gr.box{material = place, min = {0, 0, 0}, max = {1, 1, 1}}\n"
+           "cube:export('cube.3mf')\ncube:export('cube.ply')\n",
+           "scene.lua", 0, NULL);
+    char *xml = model_of_zip(test_path("cube.3mf"));
+    unsigned seen = 0, colour;
+    for (const char *at = xml; at && (at = strstr(at, "<m:color color=\"#")); at++) {
+        CHECK_EQ_INT(sscanf(at + 17, "%6x", &colour), 1);
+        for (int k = 0; k < 24; k += 8) /* a hundredth inside of the triangles */
+            CHECK((colour >> k & 255) < 4 || (colour >> k & 255) > 251);
+        seen |= 1U << ((colour >> 23 & 1) | (colour >> 14 & 2) | (colour >> 5 & 4));
+    }
+    CHECK_EQ_INT(seen, 255);
+    CHECK(xml && strstr(xml, "<m:colorgroup id=\"3\">") && strstr(xml, " pid=\"3\" p1=\""));
+    mem_free(xml);
+    size_t size = 0;
+    char *ply = test_read_file(test_path("cube.ply"), &size);
+    CHECK(ply && size > 192);
+    for (int i = 0; ply && size > 192 && i < 12; i++) /* 13 bytes and a colour each: thirds of a corner's */
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(fmod((uint8_t)ply[size - 192 + 16 * (size_t)i + 13 + (size_t)k] + 3, 85), 3, 3);
+    free(ply);
+}
+
+/* Two balls beside each other: which one is on the left of the thumbnail? */
+static void expect_on_the_left(const char *call, const char *options, int channel) {
+    char text[1024];
+    size_t size = 0;
+    (void)snprintf(
+        text, sizeof text,
+        "local function ball(x, colour)\n"
+        "    return gr.sphere{centre = {x, 0, 0}, radius = 1, material = gr.material{kd = colour}}\n"
+        "end\n"
+        "local balls = gr.node{name = 'balls', children = {ball(-1.5, {1, 0, 0}), ball(1.5, {0, 0, 1})}}\n%s",
+        call);
+    expect(text, options, 0, NULL);
+    char *png = out_of_zip(test_path("balls.3mf"), "Metadata/thumbnail.png", &size);
+    if (png)
+        test_write_file(test_path("small.png"), png, size);
+    mem_free(png);
+    struct test_picture picture = test_read_picture(test_path("small.png"));
+    CHECK(picture.width == 256 && picture.height == 256 && picture.rgb[0] == 229);
+    const uint8_t *left = picture.rgb + (size_t)3 * (128 * 256 + 64);
+    CHECK(left[channel] > 200 && left[1] == 0 && left[2 - channel] == 0);
+    free(picture.rgb);
+}
+
+TEST(a_3mf_file_has_a_picture_of_the_model_from_the_side_of_the_camera) {
+    expect_on_the_left("balls:export('balls.3mf')\n", "scene.lua", 0);
+    expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, 9}, target = {0, 0, 0}}\n",
+                       "-o balls.3mf scene.lua", 0);
+    expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, -9}, target = {0, 0, 0}}\n",
+                       "-o balls.3mf scene.lua", 2);
+}
+
+TEST(the_studio_is_no_part_of_a_model_and_a_node_that_is_called_model_is_all_of_it) {
+    static const char *const calls[] = {
+        "gr.render(gr.studio{node = part, file = 'x.png', width = 8})\n",
+        "local all = gr.node{children = {part, gr.plane{normal = {0, 0, 1}}}}\n"
+        "gr.render{node = all, model = part, file = 'x.png', width = 8}\n",
+    };
+    for (int i = 0; i < 2; i++) {
+        struct test_result result = test_gray_scene(part_and(calls[i]), "--check-print scene.lua", NULL);
+        CHECK(result.status == 0 && strstr(result.out, "size: 40 x 30 x 5"));
+        test_free_result(&result);
+    }
 }
 
 TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
@@ -117,6 +218,13 @@ TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
     char *bytes = test_read_file(test_path("four.stl"), &size);
     CHECK_EQ_INT(size, 84 + 4 * 50);
     free(bytes);
+}
+
+TEST(a_mesh_whose_surfaces_meet_in_a_point_has_a_notice) {
+    expect("gr.mesh{name = 'pair', verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, "
+           "{0, 0, -1}}, faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, "
+           "{4, 6, 5}}}:export('x.stl')\n",
+           "scene.lua", 0, "node 'pair': surfaces of its mesh meet in edges or vertices");
 }
 
 TEST(a_model_of_the_command_line_is_the_scene_of_the_only_picture_or_of_a_chosen_one) {
@@ -135,6 +243,7 @@ TEST(a_model_of_the_command_line_is_the_scene_of_the_only_picture_or_of_a_chosen
            "-o frame.stl scene.lua", 1, "--frames N-N chooses it");
     expect("gr.frames{count = 2, draw = function() return {node = gr.sphere{radius = 1}, width = 8} end}\n",
            "-o frame.stl --frames 2-2 scene.lua", 0, NULL);
+    expect(two, "-o one.stl -o two.stl scene.lua", 2, "a run writes one model");
     expect("print(1)\n", "-o none.stl scene.lua", 2, "the script renders no picture");
 }
 
@@ -147,6 +256,10 @@ TEST(what_is_no_solid_is_an_error_that_names_the_node_and_writes_nothing) {
            ":export('x.stl')\n",
            "scene.lua", 1, "node 'hole' is no solid, because its mesh is open");
     expect("gr.node('nothing'):export('x.stl')\n", "scene.lua", 1, "node 'nothing' is empty");
+    expect("gr.intersection(gr.sphere{}, gr.sphere{centre = {5, 0, 0}, name = 'far'}):export('x.stl')\n", "scene.lua",
+           1, "node 'csg' is empty");
+    expect("gr.difference(gr.sphere{}, gr.sphere{radius = 2}):export('x.stl')\n", "scene.lua", 1,
+           "node 'csg' is empty");
     CHECK(!file_is_regular(test_path("x.stl")));
 }
 
@@ -200,6 +313,13 @@ TEST(the_thinnest_wall_of_a_shell_a_tube_and_two_plates_is_found_within_2_percen
         0.02);
 }
 
+TEST(a_model_of_a_frame_has_the_pose_of_its_time) {
+    expect("local b = gr.box{min = {0, 0, 0}, max = {4, 1, 2}}\nb:spin({0, 0, 1}, 90)\n"
+           "gr.frames{count = 11, draw = function() return {node = b, width = 8, eye = {0, 0, 9}, view = {0, 0, -1}} "
+           "end}\n",
+           "--check-print --frames 11-11 --fps 10 scene.lua", 0, "size: 1 x 4 x 2");
+}
+
 TEST(check_print_reports_volume_overhang_and_contact) {
     struct test_result result = test_gray_scene(
         "local t = gr.union{gr.box{min = {4, 4, 0}, max = {6, 6, 8}}, gr.box{min = {0, 0, 8}, max = {10, 10, 10}}}\n"
@@ -220,37 +340,140 @@ TEST(check_print_reports_volume_overhang_and_contact) {
     test_free_result(&result);
 }
 
-TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 20) {
-    static const char *const endings[] = {"stl", "obj", "ply", "3mf"};
-    test_need_tools("timeout");
-    for (int kind = 0; kind < 4; kind++) {
-        char scene[1024], name[32], command[256];
-        size_t old_size = 0, new_size = 0, size = 0;
-        (void)snprintf(name, sizeof name, "x.%s", endings[kind]);
-        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 1}:export('x.%s', {tolerance = 0.02})\n",
-                       endings[kind]);
-        expect(scene, "scene.lua", 0, NULL);
-        char *old = test_read_file(test_path(name), &old_size);
-        (void)snprintf(scene, sizeof scene, "gr.sphere{radius = 2}:export('x.%s', {tolerance = 0.02})\n",
-                       endings[kind]);
-        test_write_text(test_path("new.lua"), scene);
-        (void)snprintf(command, sizeof command, "cp %s keep && $gray -q new.lua && mv %s new && mv keep %s", name, name,
-                       name);
-        CHECK_EQ_INT(test_run_shell(command, ""), 0);
-        char *new = test_read_file(test_path("new"), &new_size);
-        for (int i = 0; i < 2 * times; i++) {
-            (void)snprintf(command, sizeof command, "timeout -s KILL %.4f $gray -q new.lua; true",
-                           0.02 + 0.1 * (i + 0.5) / (2 * times));
-            CHECK_EQ_INT(test_run_shell(command, ""), 0);
-            char *now = test_read_file(test_path(name), &size);
-            bool is_old = now && size == old_size && memcmp(now, old, size) == 0;
-            bool is_new = now && size == new_size && memcmp(now, new, size) == 0;
-            if (!is_old && !is_new)
-                test_fail(__FILE__, __LINE__, "%s is neither the old nor the new model", name);
-            free(now);
-            test_write_file(test_path(name), old, old_size);
-        }
-        free(old);
-        free(new);
+/* A sphere of this radius as x.KIND. */
+static const char *sphere_as(const char *kind, int radius) {
+    static char text[256];
+    (void)snprintf(text, sizeof text, "gr.sphere{radius = %d}:export('x.%s', {tolerance = 0.1})\n", radius, kind);
+    return text;
+}
+
+static bool may_change_files(const struct ptrace_syscall_info *info) {
+    switch (info->entry.nr) {
+    case SYS_openat:
+        return (info->entry.args[2] & (O_CREAT | O_TMPFILE)) != 0;
+    case SYS_write:
+    case SYS_ftruncate:
+    case SYS_fsync:
+    case SYS_linkat:
+    case SYS_renameat2:
+    case SYS_unlinkat:
+    case SYS_close:
+        return true;
+    default:
+        return false;
     }
+}
+
+/* Runs scene.lua and kills the supervisor before the call `at` of those that may change files. The number of these
+ * calls, or -1: it was killed. */
+static int run_until(int at) {
+    int status = 0, calls = 0;
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(test_folder()) == 0 && ptrace(PTRACE_TRACEME, 0, NULL, NULL) == 0)
+            (void)execl(test_program(), "gray", "-q", "scene.lua", (char *)NULL);
+        _exit(99);
+    }
+    CHECK(waitpid(child, &status, 0) == child && WIFSTOPPED(status));
+    (void)ptrace(PTRACE_SETOPTIONS, child, NULL, (void *)(PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL));
+    for (long signal = 0; ptrace(PTRACE_SYSCALL, child, NULL, (void *)signal) == 0;) {
+        struct ptrace_syscall_info info = {0};
+        if (waitpid(child, &status, 0) != child || !WIFSTOPPED(status))
+            break;
+        signal = WSTOPSIG(status) == SIGTRAP ? 0 : WSTOPSIG(status);
+        if (signal != (SIGTRAP | 0x80))
+            continue;
+        signal = 0;
+        (void)ptrace(PTRACE_GET_SYSCALL_INFO, child, (void *)sizeof info, &info);
+        if (info.op != PTRACE_SYSCALL_INFO_ENTRY || !may_change_files(&info) || calls++ != at)
+            continue;
+        (void)kill(child, SIGKILL);
+        (void)waitpid(child, &status, 0);
+        return -1;
+    }
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    return calls;
+}
+
+/* Each file is the old one or the new one. */
+static void check_files(const char *const *names, int count, int at) {
+    for (int i = 0; i < count; i++) {
+        char old[32], new[32];
+        (void)snprintf(old, sizeof old, "old-%s", names[i]);
+        (void)snprintf(new, sizeof new, "new-%s", names[i]);
+        if (!test_same_files(names[i], old) && !test_same_files(names[i], new))
+            test_fail(__FILE__, __LINE__, "killed before call %d: %s is neither the old nor the new file", at,
+                      names[i]);
+    }
+}
+
+/* step: of how many calls one is tried. */
+static void kill_writer(const char *kind, int step) {
+    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}};
+    int which = strcmp(kind, "obj") == 0 ? 1 : strcmp(kind, "ply") == 0 ? 2 : strcmp(kind, "3mf") == 0 ? 3 : 0;
+    int count = which == 1 ? 2 : 1;
+    expect(sphere_as(kind, 2), "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("for f in x.*; do mv $f new-$f; done", ""), 0);
+    expect(sphere_as(kind, 1), "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("for f in x.*; do cp $f old-$f; done", ""), 0);
+    test_write_text(test_path("scene.lua"), sphere_as(kind, 2));
+    int calls = run_until(-1);
+    CHECK(calls > 10);
+    for (int at = calls - 1; at >= 0 && at > calls - 101; at -= step) {
+        CHECK_EQ_INT(test_run_shell("for f in old-*; do cp $f ${f#old-}; done", ""), 0);
+        (void)run_until(at);
+        check_files(files[which], count, at);
+    }
+}
+
+TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
+    static const char *const kinds[] = {"stl", "obj", "ply", "3mf"};
+    for (int i = 0; i < 4; i++) {
+        kill_writer(kinds[i], times > 1 ? 1 : 9);
+        CHECK_EQ_INT(test_run_shell("rm -f x.* old-* new-*", ""), 0);
+    }
+}
+
+TEST(a_model_that_does_not_fit_on_the_disk_leaves_the_old_model_and_its_materials) {
+    static const char scene[] =
+        "gr.sphere{radius = 1, material = gr.material{kd = {%d, 0, 0}}}:export('x.obj', {tolerance = 0.1})\n";
+    char text[256];
+    (void)snprintf(text, sizeof text, scene, 0);
+    expect(text, "scene.lua", 0, NULL);
+    CHECK_EQ_INT(test_run_shell("cp x.obj old.obj && cp x.mtl old.mtl", ""), 0);
+    (void)snprintf(text, sizeof text, scene, 1);
+    test_write_text(test_path("scene.lua"), text);
+    test_shell_errors("ulimit -f 2; $gray -q scene.lua", 3, "File too large");
+    CHECK(test_same_files("x.obj", "old.obj") && test_same_files("x.mtl", "old.mtl"));
+    expect(text, "--script-memory 1 scene.lua", 1, "--script-memory is the limit");
+    CHECK(test_same_files("x.obj", "old.obj") && test_same_files("x.mtl", "old.mtl"));
+}
+
+/* 16 solids in other programs (docs/export.md). */
+static void open_in(const char *program) {
+    char line[8192];
+    test_need_tools(program);
+    (void)snprintf(line, sizeof line, "GRAY='%s' tools/check_exports.sh %s >'%s' 2>&1", test_program(), program,
+                   test_path("said.txt"));
+    int status = system(line);
+    char *said = test_read_file(test_path("said.txt"), NULL);
+    if (status != 0)
+        test_fail(__FILE__, __LINE__, "%s", said ? said : program);
+    free(said);
+}
+
+TEST_LONG(admesh_opens_models_without_repair) {
+    open_in("admesh");
+}
+
+TEST_LONG(openscad_takes_models_as_exact_polyhedra) {
+    open_in("openscad");
+}
+
+TEST_LONG(blender_finds_models_manifold) {
+    open_in("blender");
+}
+
+TEST_LONG(prusa_slicer_slices_models_without_repair) {
+    open_in("prusa-slicer");
 }

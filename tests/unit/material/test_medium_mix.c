@@ -27,7 +27,7 @@ static const struct density *slope_of_grid(struct arena *arena, double looseness
     float *values = arena_alloc_array(arena, N, sizeof *values);
     for (int i = 0; i < N; i++)
         values[i] = (float)((i + 0.5) * 2 / N);
-    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {N, 1, 1}, values, looseness};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {N, 1, 1}, values, looseness, false};
     const struct density *density = density_of_grid(arena, &grid, &error);
     CHECK(density != NULL);
     return density;
@@ -48,8 +48,8 @@ static struct means track(const struct medium_mix *mix, const struct medium_line
     struct means means = {.left = {0, 0, 0}};
     for (int i = 0; i < count; i++) {
         uint64_t key = random_combine(77, (uint64_t)i);
-        const struct medium_draw draw = {{random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))},
-                                         random_combine(key, 3)};
+        const struct medium_draw draw = {
+            {random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))}, random_combine(key, 3), NULL};
         struct medium_track out;
         medium_mix_track(mix, line, colour_make(1, 1, 1), draw, &out);
         struct colour *sum = out.scatterer ? &means.scattered : &means.passed;
@@ -153,18 +153,19 @@ TEST_TIMES(media_that_overlap_add, 20) {
     arena_destroy(&arena);
 }
 
-TEST(densities_above_their_bound_count_as_the_bound_and_the_point_is_noted) {
+TEST(densities_above_their_bound_count_as_the_bound_and_the_first_cell_is_noted) {
     const struct medium_line line = {{-1, 0, 0}, {1, 0, 0}, 2, 0};
     struct arena arena = {0};
-    struct vec3 point;
-    double value;
+    struct box cell;
+    double bound;
     const struct density *density = slope_of(&arena, 1, 1);
     const struct medium medium = medium_by(density, colour_all(1), colour_all(0), colour_all(0));
     const struct medium_mix mix = {1, {&medium}};
-    CHECK(!density_excess(density, &point, &value));
+    CHECK(!density_excess(density, &cell, &bound));
     check_colour(track(&mix, &line, 20000).left, colour_all(exp(-1.5)), 0.012);
-    CHECK(density_excess(density, &point, &value));
-    CHECK(point.x > 0 && value > 1);
-    CHECK_NEAR(value, point.x + 1, 1e-12);
+    CHECK(density_excess(density, &cell, &bound));
+    CHECK_NEAR(bound, 1, 0);
+    CHECK_NEAR(cell.min.x, 0, 1e-12);
+    CHECK_NEAR(cell.max.x, 2.0 / 32, 1e-12);
     arena_destroy(&arena);
 }

@@ -1,8 +1,10 @@
 /* Light that a medium scatters, along paths: against closed forms and integrals. */
 #include "tests/harness.h"
 
+#include "light/light_bounds.h"
 #include "material/density.h"
 #include "tests/stage.h"
+#include "tests/unit/path_estimate.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,10 +67,11 @@ TEST(white_media_are_invisible_in_uniform_light) {
     }
 }
 
-/* Along -z through a lamp's light: the integral of scattering, phase function and attenuation in the room. */
+/* Along -z through the light of a lamp, at last of a spot: the integral of scattering, phase function and attenuation
+ * in the room. */
 TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_sight) {
-    const double g[] = {0, 0.7, -0.6};
-    for (int i = 0; i < 3; i++) {
+    const double g[] = {0, 0.7, -0.6, 0.2};
+    for (int i = 0; i < 4; i++) {
         const struct medium medium = medium_of(colour_all(0.2), colour_make(0.5, 0.25, 1.5), g[i]);
         struct stage s;
         (void)begin_room(&s, &medium);
@@ -77,7 +80,12 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                                                    .position = lamp,
                                                    .colour = {1, 1, 1},
                                                    .attenuation = ATTENUATION_INVERSE_SQUARE,
+                                                   .direction = {-1, 0, 0},
+                                                   .cos_inner = 0.95,
+                                                   .cos_outer = 0.85,
                                                    .intensity = 1};
+        s.lights[0].kind = i == 3 ? LIGHT_SPOT : LIGHT_POINT;
+        const struct light lamp_there = s.lights[0];
         s.camera.fov = 0.01;
         struct colour mean = mean_of(&s, 4, 8192, 1);
         enum { STEPS = 20000 };
@@ -87,7 +95,8 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                 double t = (k + 0.5) / STEPS, z = -t, r2 = lamp.x * lamp.x + (lamp.z - z) * (lamp.z - z), r = sqrt(r2);
                 double cosine = -(lamp.z - z) / r, q = 1 + g[i] * g[i] - 2 * g[i] * cosine;
                 double phase = (1 - g[i] * g[i]) / (4 * pi * q * sqrt(q));
-                sum += scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
+                double cone = i == 3 ? light_cone(&lamp_there, vec3_make(-lamp.x / r, 0, (z - lamp.z) / r)) : 1;
+                sum += cone * scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
             }
             CHECK_NEAR(colour_get(mean, axis) / pi, sum, 0.015 * sum);
         }
@@ -237,18 +246,30 @@ TEST(an_open_shape_holds_no_medium) {
     stage_end(&s);
 }
 
+static int seeds_of(int times) {
+    return times > 1 ? 3 : 1;
+}
+
+/* Against a value with four digits: within four standard errors, which are at most .1 % in the long form. */
+static void check_share(const char *claim, double want, struct estimate e, int seed, int times) {
+    estimate_record(claim, want, e, seed);
+    if (!(fabs(e.mean - want) <= 4 * e.error + (times > 1 ? 0.0001 : 0.0015)) ||
+        !(e.error <= (times > 1 ? 0.001 : 0.05) * want))
+        test_fail(__FILE__, __LINE__, "%s, seed %d: %.6f +- %.2g, not %.4f", claim, seed, e.mean, e.error, want);
+}
+
 /* Shares of a normal beam, known values of transport theory (the last one: van de Hulst, "Multiple Light Scattering",
  * 1980): by reciprocity what the camera sees along the normal of a slab in front of, or behind, a plane of radiance 1.
  */
-TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
+TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 40) {
     static const struct {
         double albedo, g, depth, reflected, transmitted;
     } slabs[] = {{1, 0, 1, 0.3413, 0.6587},
                  {1, 0, 4, 0.6910, 0.3090},
                  {0.9, 0, 1, 0.2674, 0.5916},
                  {0.9, 0.75, 2, 0.09740, 0.66096}};
-    const int samples = 4096 * times;
-    for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 4 * seeds_of(times); k++) {
+        const int i = k % 4, samples = 4096 * times * (times > 1 && i == 3 ? 4 : 1);
         const struct medium medium =
             filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, slabs[i].g);
         for (int behind = 0; behind < 2; behind++) {
@@ -265,24 +286,30 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
             stage_scale(&s, slab, 400, 400, 1);
             s.camera.fov = 0.01;
             s.settings.integrator = INTEGRATOR_PATH;
-            double seen = mean_of(&s, 4, samples, 1000).g, want = behind ? slabs[i].transmitted : slabs[i].reflected;
-            CHECK_NEAR(seen, want, 4 * 0.48 / sqrt(16.0 * samples) + 0.0002);
+            s.settings.seed = (uint64_t)(k / 4);
+            (void)mean_of(&s, 8, samples / 4, 1000);
+            double want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            check_share(behind ? "slab, normal beam: transmitted" : "slab, normal beam: reflected", want,
+                        estimate_of(&s, 1), k / 4 + 1, times);
             stage_end(&s);
         }
     }
 }
 
-/* Fog around a lamp, a spot and a floor; and smoke in a ball: Whitted's strata against paths cut to one scattering. */
+/* Fog around a lamp, a spot and a floor; and smoke in a ball: Whitted's strata against paths cut to one scattering.
+ * Emission, whose light Whitted's integrator does not scatter, is compared without the lamp and without scattering. */
 TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
     struct arena arena = {0};
     struct error error = {0};
     const struct box box = {{-5, -0.5, -5}, {5, 1.2, 5}};
     const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
-    const struct density_grid grid = {{{-1, 0, -1}, {1, 1.5, 1}}, {2, 2, 2}, values, 1};
-    for (int i = 0; i < 4; i++) {
+    const struct density_grid grid = {{{-1, 0, -1}, {1, 1.5, 1}}, {2, 2, 2}, values, 1, false};
+    for (int k = 0; k < 8; k++) {
+        const int i = k / 2;
+        const bool glows = k & 1;
         const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
                                         .scattering = colour_make(0.2, 0.3, 0.1),
-                                        .emission = colour_make(0, 0.01, 0.02),
+                                        .emission = glows ? colour_make(0.005, 0.01, 0.02) : colour_all(0),
                                         .phase = {PHASE_HENYEY_GREENSTEIN, 0.3},
                                         .density = i == 1   ? density_of_box(&arena, &box, &error)
                                                    : i == 2 ? density_of_grid(&arena, &grid, &error)
@@ -300,14 +327,15 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
             s.camera.eye = vec3_make(0, 1, 4);
             s.camera.view = vec3_make(0, -0.1, -1);
             s.camera.fov = 60;
+            s.light_count = !glows;
             s.medium = i < 3 ? &outside : NULL;
             if (i == 3)
                 stage_move(&s, stage_sphere(&s, s.root, filled(&s, &inside)), 0, 1, 0);
             s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
-            s.settings.medium_samples = 16;
+            s.settings.medium_samples = 16 * times;
             s.settings.full = true;
             s.settings.samples = 4;
-            means[path] = mean_of(&s, 16, 64 * times, 1);
+            means[path] = mean_of(&s, 16, 64 * times, !glows);
             stage_end(&s);
         }
         CHECK_NEAR(means[0].r, means[1].r, 0.05 * means[1].r);
@@ -318,28 +346,29 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
 }
 
 /* Lamps that are sampled at distances of their own: the same light as by brute force, where only scattered rays find
- * the lamp. */
+ * the lamp. One lamp, or more of unlike brightness than a ray chooses from. */
 TEST_TIMES(aimed_distances_and_scattered_rays_find_the_same_light_of_a_lamp, 16) {
     struct arena arena = {0};
     struct error error = {0};
     const float values[8] = {0, 1, 2, 1, 0.5, 0, 3, 1};
-    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 1, false};
     const struct medium_input in = {.absorption = colour_make(0.1, 0, 0.2),
                                     .scattering = colour_make(0.2, 0.6, 1),
                                     .phase = {PHASE_HENYEY_GREENSTEIN, 0.3}};
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         struct medium_input own = in;
-        own.density = i ? density_of_grid(&arena, &grid, &error) : NULL;
+        own.density = i == 1 ? density_of_grid(&arena, &grid, &error) : NULL;
         const struct medium medium = medium_scattering(&own);
         struct colour means[2];
         for (int brute = 0; brute < 2; brute++) {
             struct stage s;
             (void)begin_room(&s, &medium);
-            s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
-                                                       .position = {0.3, 0.2, -0.4},
-                                                       .radius = 0.25,
-                                                       .colour = {1, 1, 1},
-                                                       .intensity = 1};
+            for (int k = 0; k < (i == 2 ? 18 : 1); k++)
+                s.lights[s.light_count++] = (struct light){.kind = LIGHT_SPHERE,
+                                                           .position = {0.3 - 0.05 * k, 0.2 - 0.04 * k, -0.4},
+                                                           .radius = 0.25,
+                                                           .colour = {1 + k % 5, 1, 1},
+                                                           .intensity = 1};
             s.settings.path_strategy = brute ? PATH_STRATEGY_BSDF : PATH_STRATEGY_MIS;
             means[brute] = mean_of(&s, 8, 1024 * times, 2);
             stage_end(&s);
@@ -358,7 +387,7 @@ TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
     static const float values[8] = {0, 5, 2, 1, 0.5, 0, 30, 1};
     struct arena arena = {0};
     struct error error = {0};
-    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 3};
+    const struct density_grid grid = {{vec3_all(-1), vec3_all(1)}, {2, 2, 2}, values, 3, false};
     const struct box box = {vec3_all(-2), {2, 0.3, 2}};
     const struct medium_input cloud = {.scattering = colour_make(0.3, 1, 3),
                                        .phase = {PHASE_HENYEY_GREENSTEIN, 0.6},
@@ -387,6 +416,50 @@ TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
     arena_destroy(&arena);
 }
 
+/* A cube that is moved, turned and scaled, with a grid in its own space or one that fits it, and the same in the world.
+ */
+TEST(a_density_moves_with_its_solid) {
+    static const float own[8] = {0, 1, 2, 3, 0.5, 0, 4, 1}, turned[8] = {2, 0, 3, 1, 4, 0.5, 1, 0};
+    struct colour means[3], one[3];
+    for (int i = 0; i < 3; i++) {
+        struct arena arena = {0};
+        struct error error = {0};
+        const struct density_grid grid = {i == 0 ? (struct box){{-1, -2, -8}, {3, 2, -4}}
+                                                 : (struct box){vec3_all(0), vec3_all(1)},
+                                          {2, 2, 2},
+                                          i == 0 ? turned : own,
+                                          1,
+                                          i == 2};
+        const struct medium_input in = {.absorption = colour_make(0.1, 0.3, 0.6),
+                                        .density = density_of_grid(&arena, &grid, &error)};
+        const struct medium outside = medium_scattering(&in), inside = medium_filling(&in);
+        struct stage s;
+        stage_begin(&s, 2);
+        if (i > 0) {
+            struct node *cube = stage_cube(&s, s.root, filled(&s, &inside));
+            stage_scale(&s, cube, 4, 4, 4);
+            stage_rotate(&s, cube, 2, 90);
+            stage_move(&s, cube, 3, -2, -8);
+        }
+        s.medium = i == 0 ? &outside : NULL;
+        s.sky.colour = colour_all(1);
+        s.camera.eye = vec3_make(0, 1, 0);
+        for (int path = 0; path < 2; path++) {
+            s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+            (path ? means : one)[i] = mean_of(&s, 16, path ? 64 : 1, 10);
+        }
+        CHECK_NEAR(means[i].g, one[i].g, 0.005);
+        stage_end(&s);
+        arena_destroy(&arena);
+    }
+    for (int i = 1; i < 3; i++) {
+        CHECK(means[i].b < 0.9);
+        CHECK_NEAR(means[i].g, means[0].g, 0.005);
+        CHECK_NEAR(one[i].r, one[0].r, 1e-6);
+        CHECK_NEAR(one[i].b, one[0].b, 1e-6);
+    }
+}
+
 /* The index is 1, so the surface is there in name only. */
 TEST(a_medium_behind_a_surface_of_index_1_is_the_one_that_fills_the_solid) {
     struct medium fills = filling_of(0.4, 1.5, 0.3), behind = fills;
@@ -413,7 +486,7 @@ TEST(a_medium_behind_a_surface_of_index_1_is_the_one_that_fills_the_solid) {
 
 /* What a slab of this depth shows in a direction with this cosine to its normal, of a plane of radiance 1 on the side
  * of the camera or behind it. */
-static double shown(const struct medium *medium, double cosine, bool behind, int samples) {
+static struct estimate shown(const struct medium *medium, double cosine, bool behind, int samples, int seed) {
     struct stage s;
     stage_begin(&s, 2);
     struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
@@ -428,14 +501,16 @@ static double shown(const struct medium *medium, double cosine, bool behind, int
     s.camera.view = vec3_make(sqrt(1 - cosine * cosine), 0, -cosine);
     s.camera.up = vec3_make(0, 1, 0);
     s.settings.integrator = INTEGRATOR_PATH;
-    double mean = mean_of(&s, 4, samples, 1000).g;
+    s.settings.seed = (uint64_t)seed;
+    (void)mean_of(&s, 4, samples, 1000);
+    struct estimate e = estimate_of(&s, 1);
     stage_end(&s);
-    return mean;
+    return e;
 }
 
 /* Known values of transport theory, of diffuse light by the mean over directions; depth 60 is as good as a half space.
  */
-TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory, 4) {
+TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory, 16) {
     static const struct {
         double albedo, depth, cosine, reflected, transmitted; /* cosine 0: diffuse light */
     } slabs[] = {{1, 1, 0, 0.4466, 0.5534},
@@ -443,18 +518,22 @@ TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory,
                  {0.9, 60, 1, 0.4149, -1},
                  {0.9, 60, 0.5, 0.5079, -1},
                  {0.9, 60, 0, 0.4780, -1}};
-    enum { DIRECTIONS = 8 };
-    const int samples = 128 * times;
-    for (int i = 0; i < 5; i++) {
+    const int samples = 128 * times, directions = times > 1 ? 64 : 8;
+    for (int n = 0; n < 5 * seeds_of(times); n++) {
+        const int i = n % 5;
         const struct medium medium =
             filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, 0);
         for (int behind = 0; behind < (slabs[i].transmitted >= 0 ? 2 : 1); behind++) {
-            double sum = 0, want = behind ? slabs[i].transmitted : slabs[i].reflected;
-            for (int k = 0; k < DIRECTIONS; k++)
-                sum += shown(&medium, slabs[i].cosine > 0 ? slabs[i].cosine : sqrt((k + 0.5) / DIRECTIONS), behind,
-                             samples) /
-                       DIRECTIONS;
-            CHECK_NEAR(sum, want, 4 * 0.5 / sqrt(16.0 * samples * DIRECTIONS) + 0.0015);
+            struct estimate sum = {0, 0};
+            for (int k = 0; k < directions; k++) {
+                double cosine = slabs[i].cosine > 0 ? slabs[i].cosine : sqrt((k + 0.5) / directions);
+                struct estimate e = shown(&medium, cosine, behind, samples, 1000 * (n / 5) + k);
+                sum.mean += e.mean / directions;
+                sum.error += e.error * e.error / directions / directions;
+            }
+            sum.error = sqrt(sum.error);
+            check_share(behind ? "slab, diffuse light: transmitted" : "slab or half space: reflected",
+                        behind ? slabs[i].transmitted : slabs[i].reflected, sum, n / 5 + 1, times);
         }
     }
 }

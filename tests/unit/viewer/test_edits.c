@@ -126,6 +126,22 @@ TEST(a_kept_world_has_changed_colours_once_its_materials_are_updated) {
     stage_end(&s);
 }
 
+/* A box for every call of a node, a point light for every other one. */
+static bool make_box(void *context, const struct change *change, void **object, struct error *error) {
+    struct stage *s = context;
+    struct scene_light *made = arena_alloc(&s->scene.arena, sizeof *made);
+    *made = (struct scene_light){.light = {.kind = LIGHT_POINT, .falloff = {1, 0, 0}, .colour = {1, 1, 1}}};
+    *object = made;
+    if (change->kind == CHANGE_ADD_LIGHT)
+        return true;
+    uint32_t nodes = s->scene.node_count;
+    struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "box", error);
+    s->scene.node_count = nodes;
+    node->shape = (struct shape){.kind = SHAPE_BOX, .box = {vec3_all(-1), vec3_all(1)}};
+    *object = node;
+    return true;
+}
+
 TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     static struct stage s;
     struct changed_scene changed;
@@ -137,15 +153,16 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     stage_move(&s, ball, 1, 2, 3);
     stage_point_light(&s, vec3_make(1, 2, 3), colour_all(1));
     struct transform before = ball->parent_from_node;
+    const struct change_maker maker = {make_box, &s};
     uint32_t nodes = s.scene.node_count, materials = s.scene.material_count;
     const struct change changes[] = {
-        {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_CUBE, .numbers = {0.1, 0.2, 0.3}},
-        {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_COPY, .number = 1, .source = ball->serial},
+        {.kind = CHANGE_ADD, .serial = group->serial, .call = "box", .numbers = {0.1, 0.2, 0.3}},
+        {.kind = CHANGE_ADD, .serial = group->serial, .number = 1, .source = ball->serial},
         {.kind = CHANGE_TRANSFORM, .serial = UINT32_MAX, .numbers = {2, 0, 0, 5, 0, 2, 0, 0, 0, 0, 2, 0}},
         {.kind = CHANGE_TRANSFORM, .serial = ball->serial, .numbers = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 7}},
         {.kind = CHANGE_GONE, .serial = ball->serial},
         {.kind = CHANGE_MATERIAL, .serial = red->serial, .numbers = {0, 1, 0}},
-        {.kind = CHANGE_ADD_LIGHT, .numbers = {9, 8, 7, 0.5, 0.5, 0.5}},
+        {.kind = CHANGE_ADD_LIGHT, .call = "light", .numbers = {9, 8, 7, 0.5, 0.5, 0.5}},
         {.kind = CHANGE_LIGHT, .serial = 1, .numbers = {0, 0, 1, 2, 2, 2}},
         {.kind = CHANGE_DARK, .serial = 2},
         {.kind = CHANGE_TRANSFORM, .serial = 12345, .name = "nowhere"},
@@ -154,7 +171,7 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     };
     for (int round = 0; round < 3; round++) {
         CHECK(changes_lay_over((struct change_range){changes, sizeof changes / sizeof *changes},
-                               &(struct change_target){&s.scene, s.root, stage_lights(&s), s.light_count},
+                               &(struct change_target){&maker, &s.scene, s.root, stage_lights(&s), s.light_count},
                                count_warning, &warnings, &changed, &error));
         CHECK_EQ_INT(group->child_count, 3);
         const struct node *cube = group->first_child->next->node, *copy = group->last_child->node;
@@ -189,14 +206,14 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
     a->name = "left";
     b->name = "right";
     const struct change gone = {.kind = CHANGE_GONE, .serial = a->serial, .name = "right"};
-    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){&s.scene, s.root, NULL, 0},
+    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){NULL, &s.scene, s.root, NULL, 0},
                            count_warning, &warnings, &changed, &error));
     CHECK(b->singular && !a->singular);
     changes_remove(&changed);
     a->name = "right";
     a->serial = 1000;
     b->serial = 1001;
-    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){&s.scene, s.root, NULL, 0},
+    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){NULL, &s.scene, s.root, NULL, 0},
                            count_warning, &warnings, &changed, &error));
     CHECK(!b->singular && !a->singular);
     CHECK_EQ_INT(warnings, 1);
@@ -294,7 +311,7 @@ TEST(reports_count_nodes_that_were_added_in_the_window_from_1) {
                                    "gr.change_material(77, {1, 0, 0})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
                         "--pixel 30,20 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    CHECK(strstr(result.out, "root#0 / added cube#1, ") != NULL);
+    CHECK(strstr(result.out, "root#0 / added box#1, ") != NULL);
     CHECK(strstr(result.err, "an edit of the node 'cone' (added 5) is skipped: it no longer exists") != NULL);
     CHECK(strstr(result.err, "an edit of the material (own copy 3) is skipped") != NULL);
     CHECK(strstr(result.err, "an edit of the material (77) is skipped") != NULL);
@@ -315,11 +332,16 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
     struct change_list list = {0};
     struct test_random random = {5};
     struct change changes[] = {
-        {.kind = CHANGE_ADD, .name = "root", .added = ADDED_CONE, .numbers = {0.1, 0.7, 1.0 / 3}},
+        {.kind = CHANGE_ADD,
+         .name = "root",
+         .call = "gr.cone{from = {0, 1, 0}, to = {0, -1, 0}}",
+         .numbers = {0.1, 0.7, 1.0 / 3}},
         {.kind = CHANGE_TRANSFORM, .serial = UINT32_MAX, .name = "cone"},
         {.kind = CHANGE_TRANSFORM, .serial = 2, .name = "ba'l\\l\n"},
         {.kind = CHANGE_MATERIAL, .serial = 1, .numbers = {1.0 / 7, 2.0 / 7, 3.0 / 7}},
-        {.kind = CHANGE_ADD_LIGHT, .numbers = {0.3, 3, 1, 0.1, 0.2, 0.3}},
+        {.kind = CHANGE_ADD_LIGHT,
+         .call = "gr.light{position = {0, 0, 0}, colour = {1, 1, 1}}",
+         .numbers = {0.3, 3, 1, 0.1, 0.2, 0.3}},
         {.kind = CHANGE_LIGHT,
          .serial = 1,
          .turns = true,
@@ -351,6 +373,21 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
     CHECK_EQ_INT(result.status, 0);
     test_free_result(&result);
     change_list_destroy(&list);
+}
+
+/* Of a script, and of a model, which cannot require a file. */
+TEST(edits_of_the_command_line_apply_to_scripts_and_models) {
+    test_write_text(test_path("scene.lua"), SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT));
+    test_write_text(test_path("ball.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    test_write_text(test_path("edits.lua"),
+                    "gr.change_add_light({0, 9, 9}, {3, 3, 3})\ngr.change_add('', 1, 'gr.sphere{}')\n");
+    const char *line =
+        "{ echo \"require 'edits'\"; cat scene.lua; } >again.lua && $gray -q again.lua -o a.png && "
+        "$gray -q scene.lua --edits edits.lua -o b.png && cmp a.png b.png && $gray -q scene.lua -o c.png && "
+        "! cmp -s a.png c.png && $gray -q --size 64x48 --spp 1 ball.obj -o d.png && "
+        "$gray -q --size 64x48 --spp 1 ball.obj --edits edits.lua -o e.png && ! cmp -s d.png e.png";
+    CHECK_EQ_INT(test_run_shell(line, ">out.txt 2>err.txt"), 0);
+    CHECK_EQ_INT(test_run_shell("$gray scene.lua --edits none.lua", ">out.txt 2>err.txt"), 1);
 }
 
 /* Clicks. */

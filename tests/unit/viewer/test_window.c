@@ -812,11 +812,11 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_GONE && t.viewer.edit.selection.kind == SELECTED_NOTHING);
     refine(&t);
-    do_action(&t.fake, DO_ADD_SPHERE);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_ADD, .text = "gr.sphere{}"};
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_CHANGE && t.viewer.command.change.kind == CHANGE_ADD &&
           t.viewer.command.more);
-    CHECK(t.viewer.command.change.added == ADDED_SPHERE && t.viewer.command.change.serial == 0);
+    CHECK(strcmp(t.viewer.command.change.call, "gr.sphere{}") == 0 && t.viewer.command.change.serial == 0);
     print_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t); /* and its position */
     CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.change.serial == UINT32_MAX &&

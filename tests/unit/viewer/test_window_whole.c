@@ -3,6 +3,7 @@
  * are tried), overlay lines, outlines, edits whose saved calls give the same bytes without a window. */
 #define _GNU_SOURCE
 #include "host/supervisor.h"
+#include "script/addable.h"
 #include "tests/harness.h"
 
 #include <math.h>
@@ -141,6 +142,7 @@ struct setting {
     const char *other_scene;    /* for the deed WINDOW_LEAVE */
     uint8_t *large;             /* as in struct person */
     struct person *person;      /* or NULL: takes it as it is at the end */
+    const char *demo;           /* or NULL: this scene, small, as shown%d.png */
 };
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting) {
@@ -161,10 +163,24 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting) 
     const char *overlay = setting->overlay ? setting->overlay : "none";
     char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)option, "--overlay", (char *)(uintptr_t)overlay,
                      "scene.lua"};
-    char before[4096];
+    char *demo[] = {"gray",
+                    "-gui",
+                    "-q",
+                    "--progress=none",
+                    "--size",
+                    "48x32",
+                    "--spp",
+                    "4",
+                    "-o",
+                    "shown%d.png",
+                    (char *)(uintptr_t)setting->demo};
+    char before[4096], library[4200];
     CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
+    (void)snprintf(library, sizeof library, "%s/lua", before);
     test_write_text("scene.lua", setting->scene ? setting->scene : scene);
-    CHECK(options_parse(&options, 7, words, &arena, &error));
+    CHECK(setting->demo ? options_parse(&options, 11, demo, &arena, &error)
+                        : options_parse(&options, 7, words, &arena, &error));
+    options.script.library_folder = library;
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
     if (setting->person)
@@ -283,6 +299,44 @@ TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
     char *said = test_read_file(test_path("said.txt"), &size);
     CHECK_TEXT(said, "");
     free(said);
+}
+
+TEST(window_exports_the_model_that_the_command_line_writes_and_says_what_is_wrong) {
+#define EXPORT(name)                                                                                                   \
+    { .kind = WINDOW_ACTION, .action = DO_EXPORT_MODEL, .text = name }
+    static const char ball[] =
+        "for i = 1, 2 do\n"
+        "    gr.render{node = gr.sphere{radius = i}, file = 'ball' .. i .. '.png', width = 64, eye = {0, "
+        "0, 9}, view = {0, 0, -1}}\n"
+        "end\n";
+    const struct deed deeds[] = {{"ready", ACTION(DO_NEXT_PICTURE), 0},
+                                 {"ball2.png", ACTION(DO_HIDE), 0},
+                                 {"ready", EXPORT("ball.stl"), 0},
+                                 {"ball.stl is written", EXPORT("ball.wrl"), 0},
+                                 {"ball.wrl: the name of a model ends in", EXPORT("notes.stl"), 0},
+                                 {"notes.stl: exists already and is not a model", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("notes.stl"), "my notes\n");
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = ball}), 0);
+    struct test_result result = test_gray(NULL, "-q scene.lua -o same.stl --picture 2");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("ball.stl", "same.stl"));
+    /* A deleted ball is not there. */
+    static const char two[] =
+        "local all = gr.node{name = 'all', children = {gr.sphere{name = 'near', radius = 1},\n"
+        "    gr.sphere{name = 'far', centre = {5, 0, 0}, radius = 1}}}\n"
+        "gr.render{node = all, file = 'two.png', width = 64, eye = {0, 0, 9}, view = {0, 0, -1}}\n";
+    const struct window_event press = PRESS, release = RELEASE;
+    const struct deed edit[] = {{"ready", press, 0},
+                                {NULL, release, 0},
+                                {"ready", ACTION(DO_DELETE), 0},
+                                {"ready", EXPORT("two.stl"), 0},
+                                {"two.stl is written", ACTION(DO_QUIT), 0}};
+    CHECK_EQ_INT(viewer_that(edit, &(struct setting){.scene = two}), 0);
+    result = test_gray(NULL, "-q scene.lua -o same.stl --node far");
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    CHECK(test_same_files("two.stl", "same.stl"));
 }
 
 /* Frames that depend on those before. */
@@ -743,4 +797,154 @@ TEST(window_changes_a_material_of_the_list_and_saves_under_a_chosen_name) {
     CHECK(person.seen_nodes[1] >= 1 && test_same_files("mine.png", "out-view1.png"));
     check_saved(1);
     check_contains("out-changes1.lua", (const char *[]){"gr.change_material(", NULL});
+}
+
+/* Adding. */
+
+#define ADD(lua)                                                                                                       \
+    { .kind = WINDOW_ADD, .text = lua }
+
+/* All at once: the file has every call, and no edit was skipped. */
+static void add_all(int rows) {
+    enum { LIMIT = 128 };
+    static struct deed deeds[LIMIT];
+    static struct person person;
+    const struct setting setting = {.scene = BALL RENDER(LIGHT), .person = &person};
+    int count = 0, step = 0;
+    while (addable_txt[ADDABLE_COLUMNS * step])
+        step++;
+    step = step / rows > 0 ? step / rows : 1;
+    for (const char *const *row = addable_txt; *row && count < LIMIT - 4; row++) {
+        bool call = (row - addable_txt) % ADDABLE_COLUMNS == ADDABLE_CALL;
+        if (!call || (row - addable_txt) / ADDABLE_COLUMNS % step != 0)
+            continue;
+        deeds[count] = (struct deed){"ready", ADD(""), 10};
+        (void)snprintf(deeds[count++].event.text, 1024, "%s", *row);
+    }
+    int added = count;
+    deeds[count++] = (struct deed){"ready", ACTION(DO_SAVE_CHANGES), 10};
+    deeds[count++] = (struct deed){"ready", ACTION(DO_SAVE_PICTURE), 0};
+    deeds[count++] = (struct deed)QUIT;
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    check_saved(1);
+    char *saved = test_read_file(test_path("out-changes1.lua"), NULL);
+    int calls = 0;
+    for (const char *at = saved; at && (at = strstr(at, "gr.change_add")); at++)
+        calls++;
+    CHECK_EQ_INT(calls, added);
+    free(saved);
+    CHECK_EQ_INT(test_run_shell("! grep -q skipped err.txt", ">>out.txt"), 0);
+}
+
+TEST(window_that_adds_from_its_list_saves_what_gives_the_same_bytes) {
+    add_all(5);
+}
+
+TEST_LONG(window_that_adds_everything_of_its_list_saves_what_gives_the_same_bytes) {
+    add_all(1000);
+}
+
+/* The inspector has the arguments of the call; what the function refuses goes back to what was there. */
+TEST(window_changes_the_arguments_of_what_it_has_added) {
+    const struct deed deeds[] = {
+        {"ready", ADD("gr.torus{major = 2, minor = 0.25}"), 0},
+        {"ready", FIELD(0.5), 10, "minor"},
+        {"ready", FIELD(0.1, 0.6, 0.2), 10, "kd"},
+        {"ready", FIELD(1e9), 10, "major"},
+        {"minor must be at least", ADD("gr.spot_light{position = {0, 0, 0}, colour = {1, 1, 1}}"), 0},
+        {"ready", FIELD(10), 20, "outer"},
+        {"ready", FIELD(20), 20, "outer"},
+        UNDO,
+        {"ready", ACTION(DO_SAVE_CHANGES), 20},
+        {"ready", ACTION(DO_SAVE_PICTURE), 0},
+        QUIT};
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT)}), 0);
+    check_saved(1);
+    check_contains("out-changes1.lua",
+                   (const char *[]){"'gr.torus{major = 2, minor = 0.5}'", "gr.change_material(4294967295, {0.1",
+                                    "colour = {1, 1, 1}, outer = 10}'", NULL});
+}
+
+/* Pictures and skies that are dropped, on a surface and beside it. */
+TEST(window_takes_a_picture_as_the_texture_of_what_it_was_dropped_on_and_a_sky_as_light_and_background) {
+    const struct window_event on = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 320, .y = 240, .text = "gr.texture('p.png')"};
+    const struct window_event beside = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 2, .y = 2, .text = "gr.texture('a.png')"};
+    const struct deed deeds[] = {{"ready", beside, 0},
+                                 {"a picture is for a surface", on, 0},
+                                 {"ready", ADD("gr.sky_light{sky = gr.sky_map{image = 'p.png'}}"), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 20},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 0},
+                                 UNDO,
+                                 UNDO,
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 QUIT};
+    struct test_result made = test_gray_scene(
+        "gr.render{node = gr.sphere{}, file = 'p.png', width = 32, height = 16, background = {0.2, 0.9, 0.3}}",
+        "-q scene.lua", NULL);
+    test_free_result(&made);
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT)}), 0);
+    check_saved(1);
+    check_contains("out-changes1.lua", (const char *[]){"gr.change_texture(1, 'gr.texture(", "gr.sky_map{image", NULL});
+    CHECK(test_same_files("out-view2.png", "out.png"));
+    struct test_picture picture = test_read_picture(test_path("out-view1.png")),
+                        plain = test_read_picture(test_path("out.png"));
+    CHECK(memcmp(picture.rgb, plain.rgb, 3) != 0); /* the background */
+    free(picture.rgb);
+    free(plain.rgb);
+}
+
+/* What is hidden is hidden in the window only; a call that is wrong says so. */
+TEST(window_hides_without_deleting_in_what_it_saves) {
+    const struct window_event hide = {.kind = WINDOW_HIDE, .node.serial = 2, .text = "ball"};
+    const struct deed deeds[] = {{"ready", hide, 0},
+                                 {"ready", ADD("gr.no_such_shape{}"), 20},
+                                 {"no_such_shape does not exist", ACTION(DO_UNDO), 0},
+                                 {"ready", ACTION(DO_UNDO), 0},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 0},
+                                 QUIT};
+    static struct person person;
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT), .person = &person}), 0);
+    CHECK(!test_same_files("out-view1.png", "out.png") && !person.state.unsaved);
+    CHECK_EQ_INT(test_run_shell("! grep '^gr' out-changes1.lua", ">>out.txt"), 0);
+}
+
+/* Demos: the first picture of each. The window writes it as the program without it does, and closes. */
+
+static void check_demo(const char *path) {
+    static const struct deed deeds[] = {{"is written", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("demo.txt"), path);
+    (void)test_run_shell(
+        "demo=$(cat demo.txt) && cd \"$(dirname \"$demo\")\" && $gray -q --progress=none --size 48x32 --spp 4 "
+        "--allow-write \"$OLDPWD\" \"$demo\" -o \"$OLDPWD\"/plain%d.png",
+        ">>out.txt 2>>err.txt");
+    if (access(test_path("plain1.png"), F_OK) != 0) /* a module of other scenes */
+        return;
+    const struct setting setting = {.demo = path};
+    (void)viewer_that(deeds, &setting);
+    if (!test_same_files("plain1.png", "shown1.png"))
+        test_fail(__FILE__, __LINE__, "%s: the picture of the window differs", path);
+    CHECK_EQ_INT(test_run_shell("rm -f plain*.png shown*.png", ""), 0);
+}
+
+/* One of forty, or all; without animations, which have tests of their own, and those that write models for minutes. */
+TEST_TIMES(window_writes_the_bytes_of_the_program_for_the_demos, 40) {
+    char path[4096];
+    int number = 0;
+    CHECK_EQ_INT(
+        test_run_shell("cd \"$(dirname \"$(dirname \"$(dirname \"$(realpath $gray)\")\")\")\" && find $PWD/data -name "
+                       "'*.lua' ! -path '*/animation/*' ! -path '*/print/*' ! -name 'make_*' | sort",
+                       ">demos.txt"),
+        0);
+    FILE *list = fopen(test_path("demos.txt"), "r");
+    while (list && fgets(path, sizeof path, list)) {
+        path[strcspn(path, "\n")] = '\0';
+        if (number++ % (40 / times) == 0)
+            check_demo(path);
+    }
+    CHECK(number > 50);
+    if (list)
+        (void)fclose(list);
 }
