@@ -211,8 +211,8 @@ static bool test_point(const struct corners *c, int number, struct vec3 *out) {
 static uint64_t strays(struct solid_probe *probe, const struct corners *c, double tolerance) {
     struct vec3 normal = vec3_normalize(triangle_normal(c->point)), at;
     uint64_t out = 0;
-    if (!(vec3_length(normal) > 0))
-        return 8;
+    if (!(vec3_length(normal) > 0)) /* the corners are in a line */
+        normal = vec3_make(0, 0, 1);
     for (int i = 0; i < TEST_POINTS * TEST_POINTS; i++)
         if (test_point(c, i, &at) && !solid_is_near_for_sure(probe, at, normal, tolerance))
             out |= UINT64_C(1) << i;
