@@ -1612,6 +1612,16 @@ function gr.change_material(serial, colour) end
 ---@overload fun(fields: gr.change_look.fields)
 function gr.change_look(serial, part, value) end
 
+---@class gr.change_texture.fields
+---@field serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
+---@field call string call (a string): The call that makes the texture, such as 'gr.texture("wood.png")'.
+
+---Makes a texture the kd of a base material in all later pictures.
+---@param serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
+---@param call string call (a string): The call that makes the texture, such as 'gr.texture("wood.png")'.
+---@overload fun(fields: gr.change_texture.fields)
+function gr.change_texture(serial, call) end
+
 ---@class gr.change_own.fields
 ---@field name string name (a string): Name of the node; gray ignores a node with another name.
 ---@field serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.

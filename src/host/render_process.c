@@ -150,8 +150,8 @@ struct world_input render_process_world_input(const struct picture_work *work) {
                                 .warn_context = work->process};
 }
 
-static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
-                        struct error *error) {
+/* changed: by a window, or NULL. */
+static bool build_world(struct picture_work *work, const struct changed_scene *changed, struct error *error) {
     struct render_process *process = work->process;
     struct control *control = process->services->control;
     if (!notes_changes(work))
@@ -161,8 +161,11 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
     atomic_store(&control->build_done, 0);
     atomic_store(&control->build_step, 1);
     struct world_input input = render_process_world_input(work);
-    input.lights = lights;
-    input.light_count = light_count;
+    if (changed) {
+        input.lights = changed->lights;
+        input.light_count = changed->light_count;
+        input.sky = changed->sky ? changed->sky : input.sky;
+    }
     input.cache = is_frame(work) ? &process->world_cache : NULL;
     input.keeps_tables = notes_changes(work);
     bool ok = work->built = world_build(&work->world, &input, &process->job, process->pool, error);
@@ -173,11 +176,11 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
 
 /* A picture in a window. */
 
-static bool preview_build(void *context, const struct scene_light *lights, uint32_t light_count, struct error *error) {
+static bool preview_build(void *context, const struct changed_scene *changed, struct error *error) {
     struct picture_work *work = context;
     world_destroy(&work->world);
     arena_reset(&work->process->job);
-    return build_world(work, lights, light_count, error);
+    return build_world(work, changed, error);
 }
 
 static void preview_fill_report(void *context, const struct film *film, struct picture_report *report) {
@@ -225,7 +228,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct picture_report *report = &work->report;
     bool in_window = work->picture_request.in_window;
     double begun = clock_now(), worked = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-    if (build_world(work, work->request->lights, work->request->light_count, error))
+    if (build_world(work, NULL, error))
         job->world = &work->world;
     else if (!in_window || !preview_was_stopped(process->services->control, error))
         return false;

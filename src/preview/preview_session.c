@@ -130,11 +130,8 @@ static void describe_lights(const struct preview_state *work, uint32_t first, st
 
 static bool build_again(struct preview_state *work, struct error *error) {
     struct preview_session *preview = work->preview;
-    const struct render_request *request = preview->request;
-    bool over = work->changes.count > 0;
     double begun = clock_now();
-    bool ok = preview->build(preview->context, over ? work->changed.lights : request->lights,
-                             over ? work->changed.light_count : request->light_count, error);
+    bool ok = preview->build(preview->context, work->changes.count > 0 ? &work->changed : NULL, error);
     work->build_seconds = clock_now() - begun;
     work->stale = !ok;
     pool_reset_cancel(preview->pool);

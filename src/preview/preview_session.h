@@ -17,8 +17,9 @@ struct preview_session {
     struct render_job *job; /* as the script requests it; with the world to use */
     struct world *world;
     void *context; /* of the functions below */
-    /* Builds job->world again with these lights. False: there is no world; building can be stopped like a pass. */
-    bool (*build)(void *context, const struct scene_light *lights, uint32_t light_count, struct error *error);
+    /* Builds job->world again with the lights, and the sky, of the changes; NULL: of the script. False: there is no
+     * world; building can be stopped like a pass. */
+    bool (*build)(void *context, const struct changed_scene *changed, struct error *error);
     void (*fill)(void *context, const struct film *film, struct picture_report *report);
     void (*warn)(void *context, const char *text);
 };

@@ -260,9 +260,8 @@ static struct colour colour_of(const double *numbers) {
 }
 
 /* The object of the call; *made NULL: the call is wrong, which was reported. */
-static bool make_object(struct change_application *l, bool light, void **made) {
-    const struct change *change = l->change;
-    if (l->maker->make(l->maker->context, change->call, change->number, light, made, l->error))
+static bool make_object(struct change_application *l, void **made) {
+    if (l->maker->make(l->maker->context, l->change, made, l->error))
         return true;
     *made = NULL;
     if (l->error->kind == ERROR_SCENE)
@@ -294,30 +293,31 @@ static bool give_material(struct change_application *l, struct added_node *made)
     return true;
 }
 
-/* The node, or the light, of the change; *out NULL: its call is wrong. An existing one is reused: dragging an object
+/* The object of the change; *out NULL: its call is wrong. An existing one is reused: dragging an object
  * applies changes many times per second. */
-static bool added_object(struct change_application *l, struct node *source, bool light, struct added_node **out) {
+static bool added_object(struct change_application *l, struct node *source, struct added_node **out) {
     const struct change *change = l->change;
     struct added_node *made = l->scene->added;
-    while (made && (made->number != change->number || made->light != light || made->source != source ||
+    while (made && (made->number != change->number || made->kind != (int)change->kind || made->source != source ||
                     strcmp(made->call, change->call) != 0))
         made = made->next;
     *out = made;
     if (made)
         return true;
     void *object = NULL;
-    if (!source && (!make_object(l, light, &object) || !object))
+    if (!source && (!make_object(l, &object) || !object))
         return object != NULL || l->error->kind == ERROR_SCENE;
     made = arena_alloc(&l->scene->arena, sizeof *made);
     const char *call = made ? arena_copy_text(&l->scene->arena, change->call, strlen(change->call)) : NULL;
     if (!call)
         return error_no_memory(l->error, "a node");
-    *made = (struct added_node){change->number, light, call, source, object, NULL, l->scene->added};
+    *made = (struct added_node){change->number, (int)change->kind, call, source, object, NULL, l->scene->added};
     if (source && !(made->object = copy_of(l, source)))
         return false;
-    if (!light && !source && !give_material(l, made))
+    bool node = change->kind == CHANGE_ADD;
+    if (node && !source && !give_material(l, made))
         return false;
-    if (!light)
+    if (node)
         ((struct node *)made->object)->serial = UINT32_MAX - change->number;
     l->scene->added = made;
     *out = made;
@@ -334,7 +334,7 @@ static bool add_node(struct change_application *l) {
     struct node *parent = begin_node(l);
     if (!parent)
         return true;
-    if (!added_object(l, source, false, &made))
+    if (!added_object(l, source, &made))
         return false;
     if (!made)
         return true;
@@ -353,14 +353,21 @@ static struct material *material_of(const struct change_application *l, uint32_t
     return material;
 }
 
-static void change_material(struct change_application *l) {
+static bool change_material(struct change_application *l) {
     struct material *material = material_of(l, l->change->serial);
+    struct added_node *made;
     if (!material || material->base) {
         report_missing(l, "the material", l->change->serial);
-        return;
+        return true;
     }
     l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
-    material_part_set(material, l->change->part, l->change->numbers);
+    if (l->change->kind == CHANGE_MATERIAL)
+        material_part_set(material, l->change->part, l->change->numbers);
+    else if (!added_object(l, NULL, &made))
+        return false;
+    else if (made)
+        material->inputs[INPUT_KD] = made->object;
+    return true;
 }
 
 /* Own materials. */
@@ -466,7 +473,7 @@ static bool add_light(struct change_application *l) {
     struct scene_light *added = &l->out->lights[number];
     struct added_node *made = NULL;
     *added = (struct scene_light){.light = {.kind = LIGHT_POINT, .falloff = {1, 0, 0}}};
-    if (l->change->call[0] != '\0' && !added_object(l, NULL, true, &made))
+    if (l->change->call[0] != '\0' && !added_object(l, NULL, &made))
         return false;
     if (made)
         *added = *(const struct scene_light *)made->object;
@@ -474,6 +481,8 @@ static bool add_light(struct change_application *l) {
         *added = l->out->lights[like - 1];
     else if (l->change->call[0] == '\0')
         report_missing(l, "a copy of the light", like);
+    if (made && added->light.kind == LIGHT_SKY)
+        l->out->sky = added->light.sky;
     light_move(&added->light, three(l->change->numbers));
     added->light.colour = colour_mul(added->light.colour, colour_of(l->change->numbers + 3));
     return true;
@@ -495,8 +504,8 @@ static bool lay(struct change_application *l) {
     case CHANGE_OWN:
         return give_own(l);
     case CHANGE_MATERIAL:
-        change_material(l);
-        break;
+    case CHANGE_TEXTURE:
+        return change_material(l);
     case CHANGE_LIGHT:
     case CHANGE_DARK:
         change_light(l);

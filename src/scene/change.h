@@ -17,6 +17,7 @@ enum change_kind {
     CHANGE_GONE,      /* a node is not drawn */
     CHANGE_OWN,       /* a shape gets its own material */
     CHANGE_MATERIAL,  /* a part of a material's base */
+    CHANGE_TEXTURE,   /* a texture is the kd of a material's base */
     CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
     CHANGE_DARK,      /* a light is removed */
@@ -41,7 +42,8 @@ struct change {
     /* Of the node, or of the one that the new node hangs under; of the material; the light's number, from 1. */
     uint32_t serial;
     char name[CHANGE_NAME]; /* of that node, cut; "" fits all */
-    /* Of ADD and ADD_LIGHT: the Lua call that makes the object, as "gr.torus{minor = 0.1}"; empty: it is a copy. */
+    /* Of ADD, ADD_LIGHT and TEXTURE: the Lua call that makes the object, as "gr.torus{minor = 0.1}"; empty: it is a
+     * copy. */
     char call[CHANGE_CALL];
     /* Of added objects, from 0; a node's serial is UINT32_MAX - number. Of OWN, counted separately: the material's
      * serial is OWN_SERIAL - number. */
@@ -91,6 +93,7 @@ struct changed_material {
 struct changed_scene {
     struct scene_light *lights; /* the list of the picture */
     uint32_t light_count;
+    const struct sky *sky;      /* of an added light: it is the background; NULL: that of the picture */
     struct changed_node *nodes; /* in order */
     struct changed_material *materials;
     struct node **added;
@@ -100,10 +103,10 @@ struct change_range {
     const struct change *items;
     uint32_t count;
 };
-/* Makes the node, or the scene_light, of a call, in the arena of the scene; its parts have the serials of `number`. An
- * ERROR_SCENE: the call is wrong. */
+/* Makes the object of the call of a change, in the arena of the scene: a node, a scene_light or a texture. Its parts
+ * have the serials of the number of the change. An ERROR_SCENE: the call is wrong. */
 struct change_maker {
-    bool (*make)(void *context, const char *call, uint32_t number, bool light, void **object, struct error *error);
+    bool (*make)(void *context, const struct change *change, void **object, struct error *error);
     void *context;
 };
 /* What a picture shows, and changes are laid over. */

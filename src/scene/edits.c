@@ -137,6 +137,10 @@ static void format_change(const struct change *c, char *line, size_t size) {
         else
             (void)snprintf(line, size, "gr.change_look(%u, '%s', %s)\n", c->serial, material_part_name(c->part), a);
         return;
+    case CHANGE_TEXTURE:
+        quote(call, sizeof call, c->call);
+        (void)snprintf(line, size, "gr.change_texture(%u, %s)\n", c->serial, call);
+        return;
     case CHANGE_LIGHT:
         format_light(c, line, size);
         return;

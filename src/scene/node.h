@@ -106,13 +106,13 @@ struct node {
     uint32_t line;
 };
 
-/* A node or a light that a change adds (scene/change.h), kept for the next time. */
+/* A node, a light or a texture that a change adds (scene/change.h), kept for the next time. */
 struct added_node {
     uint32_t number;
-    bool light;
+    int kind; /* of the change */
     const char *call;
     const struct node *source; /* of a copy */
-    void *object;              /* a node, or a scene_light */
+    void *object;              /* a node, a scene_light or a texture */
     struct material *material; /* that a shape has got, or NULL */
     struct added_node *next;
 };

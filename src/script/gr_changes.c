@@ -121,17 +121,23 @@ static int run_call(lua_State *L) {
     if (!handle || handle->type != making->type)
         return luaL_error(L, "%s makes %s, not %s", making->call,
                           handle ? handle_words(handle->type) : "something else", handle_words(making->type));
-    making->object = handle->pointer;
+    const struct script_texture *texture = handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
+    making->object = texture ? (void *)(uintptr_t)texture->texture : handle->pointer;
+    if (!making->object || (texture && texture->is_bump))
+        return luaL_error(L, "%s makes no texture of colours", making->call);
     return 0;
 }
 
 /* The arguments of the call that renders stay: those of a call in the text are in another arena. Numbers of nodes and
  * materials of the script are not used up. */
-static bool make_object(void *user, const char *call, uint32_t number, bool light, void **object, struct error *error) {
+static bool make_object(void *user, const struct change *change, void **object, struct error *error) {
+    const enum handle_type type = change->kind == CHANGE_ADD         ? HANDLE_NODE
+                                  : change->kind == CHANGE_ADD_LIGHT ? HANDLE_LIGHT
+                                                                     : HANDLE_TEXTURE;
     struct script_context *context = user;
     struct sandbox *sandbox = &context->sandbox;
     lua_State *L = sandbox->lua;
-    struct making making = {context, call, light ? HANDLE_LIGHT : HANDLE_NODE, NULL};
+    struct making making = {context, change->call, type, NULL};
     const struct script_function *function = context->function;
     struct running_function running = sandbox->running;
     struct arena arguments = sandbox->call;
@@ -139,8 +145,8 @@ static bool make_object(void *user, const char *call, uint32_t number, bool ligh
     if (!lua_checkstack(L, 8))
         return error_no_memory(error, "an added object");
     sandbox->call = (struct arena){0};
-    context->scene.node_count = ADDED_PART_SERIAL + number * ADDED_PARTS;
-    context->scene.material_count = ADDED_MATERIAL_SERIAL + number * ADDED_PARTS;
+    context->scene.node_count = ADDED_PART_SERIAL + change->number * ADDED_PARTS;
+    context->scene.material_count = ADDED_MATERIAL_SERIAL + change->number * ADDED_PARTS;
     lua_pushcfunction(L, run_call);
     lua_pushlightuserdata(L, &making);
     bool ok = lua_pcall(L, 1, 0, 0) == LUA_OK;
@@ -162,11 +168,10 @@ static bool make_object(void *user, const char *call, uint32_t number, bool ligh
 }
 
 /* While the limits of the script are paused. */
-static bool make_in_window(void *user, const char *call, uint32_t number, bool light, void **object,
-                           struct error *error) {
+static bool make_in_window(void *user, const struct change *change, void **object, struct error *error) {
     struct script_context *context = user;
     limits_resume(&context->sandbox.limits);
-    bool ok = make_object(context, call, number, light, object, error);
+    bool ok = make_object(context, change, object, error);
     limits_pause(&context->sandbox.limits);
     return ok;
 }
@@ -266,6 +271,21 @@ static bool gr_change_look(struct script_context *context, const struct script_v
     change->part = part;
     memcpy(change->numbers, value->numbers, wanted * sizeof *value->numbers);
     return true;
+}
+
+enum { CHANGETEXTURE_SERIAL, CHANGETEXTURE_CALL };
+static const struct script_parameter change_texture_parameters[] = {
+    [CHANGETEXTURE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                              "Number of the material in order of creation, from 1."},
+    [CHANGETEXTURE_CALL] = {"call", KIND_TEXT, 0, ANY, NULL, NULL,
+                            "The call that makes the texture, such as 'gr.texture(\"wood.png\")'."},
+};
+
+static bool gr_change_texture(struct script_context *context, const struct script_value *args,
+                              struct script_result *result, struct error *error) {
+    (void)result;
+    struct change *change = note(context, CHANGE_TEXTURE, NULL, args[CHANGETEXTURE_SERIAL].number, error);
+    return change && set_call(change, args[CHANGETEXTURE_CALL].text, error);
 }
 
 enum { CHANGEOWN_NAME, CHANGEOWN_SERIAL, CHANGEOWN_LIKE };
@@ -468,6 +488,8 @@ bool changes_begin(struct script_context *context, struct render_request *reques
     changes->reported = true;
     request->lights = changed->lights;
     request->light_count = changed->light_count;
+    if (changed->sky)
+        request->sky = *changed->sky;
     return true;
 }
 
@@ -483,6 +505,8 @@ static const struct script_function change_rows[] = {
        "Changes the colour of a material in all later pictures.", "serial colour"),
     GR("change_look", change_look_parameters, RESULT_NOTHING, gr_change_look,
        "Changes an input of a base material in all later pictures.", "serial part value"),
+    GR("change_texture", change_texture_parameters, RESULT_NOTHING, gr_change_texture,
+       "Makes a texture the kd of a base material in all later pictures.", "serial call"),
     GR("change_own", change_own_parameters, RESULT_NOTHING, gr_change_own,
        "Gives a shape its own copy of its material in all later pictures. The copies are numbered 2147483647, "
        "2147483646 and so on.",

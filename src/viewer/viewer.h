@@ -106,7 +106,8 @@ struct viewer_edit {
     struct selection selection;
     struct selection click; /* the position of the click, while click_waits: it was not sent yet */
     bool click_waits;
-    bool by_node; /* the click is on this node in the tree */
+    bool by_node;              /* the click is on this node in the tree */
+    char texture[CHANGE_CALL]; /* the call of one for what was clicked, or empty */
     struct node_query node;
     bool probes; /* the click only asks what is under the mouse: the point that orbits go round */
     enum edit_tool tool;

@@ -562,6 +562,8 @@ void viewer_select_up(struct viewer *viewer, bool down) {
     viewer->edit.probes = viewer->edit.by_node = false;
 }
 
+static void give_texture(struct viewer *viewer);
+
 void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     struct selection *selection = &viewer->edit.selection;
     if (picked->hit && picked->path.path[0] == SECTION_NODES)
@@ -585,6 +587,8 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.joins = false;
     struct change change = viewer_change(viewer, CHANGE_TRANSFORM, 0);
     (void)map_of(&change, &selection->applied);
+    if (viewer->edit.texture[0] != '\0')
+        give_texture(viewer);
 }
 
 /* Adding and taking away. */
@@ -775,6 +779,28 @@ void viewer_make_own_material(struct viewer *viewer) {
         held[i].serial = picked->material_serial;
         make_step(viewer, &held[i], true);
     }
+}
+
+/* Of the waiting call, as the kd of the selection. */
+static void give_texture(struct viewer *viewer) {
+    const struct selection *selection = &viewer->edit.selection;
+    if (selection->kind == SELECTED_NODE && selection->picked.material_serial == 0)
+        viewer_make_own_material(viewer);
+    struct change change = {.kind = CHANGE_TEXTURE, .serial = selection->picked.material_serial};
+    (void)snprintf(change.call, sizeof change.call, "%s", viewer->edit.texture);
+    viewer->edit.texture[0] = '\0';
+    if ((selection->kind == SELECTED_NODE || selection->kind == SELECTED_MATERIAL) && change.serial != 0)
+        make_step(viewer, &change, true);
+    else
+        viewer_show_notice(viewer, "a picture is for a surface: drop it on one, or select one before", true);
+}
+
+void viewer_drop_texture(struct viewer *viewer, const struct window_event *event) {
+    (void)snprintf(viewer->edit.texture, sizeof viewer->edit.texture, "%.500s", event->text);
+    if (event->down)
+        viewer_click(viewer, event->x, event->y, false);
+    if (!viewer->edit.click_waits)
+        give_texture(viewer);
 }
 
 void viewer_set_exposure(struct viewer *viewer, double stops) {

@@ -63,6 +63,7 @@ void viewer_solo(struct viewer *viewer); /* only the selection is drawn, or ever
 void viewer_delete_selection(struct viewer *viewer);
 void viewer_copy_selection(struct viewer *viewer);
 void viewer_add(struct viewer *viewer, const char *call); /* a node or a light, where the user clicked last */
+void viewer_drop_texture(struct viewer *viewer, const struct window_event *event);
 /* The change that has added the selection by a call; false: there is none. And another call for it. */
 bool viewer_added(const struct viewer *viewer, struct change *out);
 void viewer_set_call(struct viewer *viewer, const char *call);

@@ -769,8 +769,13 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
         select_row(viewer, &event->node);
         return;
     case WINDOW_ADD:
-        if (viewer->block)
+    case WINDOW_TEXTURE:
+        if (strlen(event->text) >= CHANGE_CALL)
+            viewer_show_notice(viewer, "a call, with the names of its files, has at most 511 characters", true);
+        else if (viewer->block && event->kind == WINDOW_ADD)
             viewer_add(viewer, event->text);
+        else if (viewer->block)
+            viewer_drop_texture(viewer, event);
         return;
     case WINDOW_HIDE:
         if (viewer->block)

@@ -91,6 +91,70 @@ void gui_add_calls(GMenu *menu) {
     }
 }
 
+/* As a string of Lua. NULL: the name has control characters. Owner: the caller. */
+static char *lua_name(const char *path) {
+    GString *text = g_string_new("'");
+    for (const char *c = path; *c; c++) {
+        if (strchr("'\\", *c))
+            g_string_append_c(text, '\\');
+        g_string_append_c(text, *c);
+    }
+    g_string_append_c(text, '\'');
+    bool ok = true;
+    for (const char *c = path; *c; c++)
+        ok = ok && (unsigned char)*c >= ' ' && *c != 127;
+    return g_string_free(text, !ok);
+}
+
+static bool ends_as(const char *path, const char *const endings[]) {
+    const char *dot = strrchr(path, '.');
+    for (int i = 0; dot && endings[i]; i++) {
+        if (g_ascii_strcasecmp(dot, endings[i]) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* At this place of the window. False: the file is neither a picture nor a sky, or there is no scene. */
+static bool drop_picture(struct gui *gui, const char *path, double x, double y) {
+    static const char *const pictures[] = {".png", ".jpg", ".jpeg", NULL}, *const skies[] = {".hdr", ".exr", ".pfm",
+                                                                                             NULL};
+    bool sky = ends_as(path, skies);
+    char *name = gui->state.has_scene && (sky || ends_as(path, pictures)) ? lua_name(path) : NULL;
+    struct window_event event = {.kind = sky ? WINDOW_ADD : WINDOW_TEXTURE};
+    if (!name)
+        return false;
+    if (gtk_widget_translate_coordinates(gui->window, gui->picture, x, y, &x, &y) &&
+        gtk_widget_contains(gui->picture, x, y)) {
+        event.down = true;
+        event.x = x * gtk_widget_get_scale_factor(gui->picture);
+        event.y = y * gtk_widget_get_scale_factor(gui->picture);
+    }
+    (void)g_snprintf(event.text, sizeof event.text,
+                     sky ? "gr.sky_light{sky = gr.sky_map{image = %s}}" : "gr.texture(%s)", name);
+    gui_send_event(gui, &event);
+    g_free(name);
+    return true;
+}
+
+static gboolean handle_drop(GtkDropTarget *target, const GValue *value, double x, double y, gpointer data) {
+    GSList *files = gdk_file_list_get_files(g_value_get_boxed(value));
+    char *path = files ? g_file_get_path(files->data) : NULL;
+    (void)target;
+    if (files && !(path && drop_picture(data, path, x, y)))
+        gui_open_scene(data, files->data);
+    g_free(path);
+    bool any = files != NULL;
+    g_slist_free(files);
+    return any;
+}
+
+void gui_accept_drops(struct gui *gui) {
+    GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
+    g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
+    gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
+}
+
 void gui_add_actions(struct gui *gui) {
     static const GActionEntry entries[] = {{.name = "add", .activate = show_add_list},
                                            {.name = "add-call", .parameter_type = "s", .activate = choose_call}};

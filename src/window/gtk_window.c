@@ -105,16 +105,6 @@ void gui_open_scene(struct gui *gui, GFile *file) {
     ask_to_leave(gui, file);
 }
 
-static gboolean handle_drop(GtkDropTarget *target, const GValue *value, double x, double y, gpointer data) {
-    (void)target, (void)x, (void)y;
-    GSList *files = gdk_file_list_get_files(g_value_get_boxed(value));
-    bool any = files != NULL;
-    if (any)
-        gui_open_scene(data, files->data);
-    g_slist_free(files);
-    return any;
-}
-
 /* Menus and actions. */
 
 static void choose_action(GSimpleAction *action, GVariant *value, gpointer data) {
@@ -610,7 +600,6 @@ static gboolean ask_close(GtkWindow *window, gpointer data) {
 
 static void make_window(struct gui *gui) {
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
-    GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
     GtkCssProvider *css = gtk_css_provider_new();
     gui->window = gtk_application_window_new(gui->application);
 
@@ -641,8 +630,7 @@ static void make_window(struct gui *gui) {
                                                GTK_STYLE_PROVIDER_PRIORITY_APPLICATION);
     g_object_unref(css);
     g_signal_connect(gui->window, "close-request", G_CALLBACK(ask_close), gui);
-    g_signal_connect(drop, "drop", G_CALLBACK(handle_drop), gui);
-    gtk_widget_add_controller(gui->window, GTK_EVENT_CONTROLLER(drop));
+    gui_accept_drops(gui);
     gui_add_keys(gui);
     gui_load_settings(gui);
 }
@@ -811,6 +799,19 @@ static void choose_renderer(void) {
     g_clear_error(&error);
 }
 
+/* Without one, GTK gives its widgets sizes without sense. */
+static bool has_font(void) {
+    PangoFontMap *map = pango_cairo_font_map_get_default();
+    PangoContext *context = pango_font_map_create_context(map);
+    PangoFontDescription *any = pango_font_description_from_string("Sans 10");
+    PangoFont *font = pango_font_map_load_font(map, context, any);
+    bool has = font != NULL;
+    g_clear_object(&font);
+    pango_font_description_free(any);
+    g_object_unref(context);
+    return has;
+}
+
 int gtk_window_run(struct channel channel) {
     static struct gui gui;
     sigset_t none;
@@ -826,6 +827,10 @@ int gtk_window_run(struct channel channel) {
     (void)g_setenv("GTK_A11Y", g_getenv("DBUS_SESSION_BUS_ADDRESS") ? "atspi" : "none", FALSE);
     if (!gtk_init_check()) {
         (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "there is no display (DISPLAY or WAYLAND_DISPLAY)");
+        return 1;
+    }
+    if (!has_font()) {
+        (void)window_send_note(&gui.channel, NOTE_FAILED, NULL, "fontconfig finds no font (Debian: fonts-dejavu-core)");
         return 1;
     }
     choose_renderer();

@@ -26,6 +26,7 @@ enum window_event_kind {
     WINDOW_NODES,   /* rows of the children of `node` are wanted */
     WINDOW_SELECT,  /* `node` is selected in the tree */
     WINDOW_ADD,     /* the object of the Lua call `text` */
+    WINDOW_TEXTURE, /* the texture of the call `text`: for what is at x, y if `down`, else for the selection */
     WINDOW_HIDE,    /* the node with the serial of `node` and the name `text` is hidden, or shown again */
     WINDOW_FIELD,   /* the field with this number of the form: numbers; joins: it is part of the change before */
 };

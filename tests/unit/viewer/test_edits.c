@@ -127,15 +127,12 @@ TEST(a_kept_world_has_changed_colours_once_its_materials_are_updated) {
 }
 
 /* A box for every call of a node, a point light for every other one. */
-static bool make_box(void *context, const char *call, uint32_t number, bool light, void **object, struct error *error) {
+static bool make_box(void *context, const struct change *change, void **object, struct error *error) {
     struct stage *s = context;
     struct scene_light *made = arena_alloc(&s->scene.arena, sizeof *made);
-    (void)number;
-    if (strstr(call, "wrong"))
-        return error_set(error, ERROR_SCENE, "%s is wrong", call);
     *made = (struct scene_light){.light = {.kind = LIGHT_POINT, .falloff = {1, 0, 0}, .colour = {1, 1, 1}}};
     *object = made;
-    if (light)
+    if (change->kind == CHANGE_ADD_LIGHT)
         return true;
     uint32_t nodes = s->scene.node_count;
     struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "box", error);

@@ -4,6 +4,7 @@
 
 #include "window/actions.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -137,6 +138,27 @@ TEST(gtk_window_without_a_display_says_so) {
     char *said = test_read_file(test_path("err.txt"), NULL);
     CHECK(said && strstr(said, "-gui: no window can be opened: there is no display"));
     free(said);
+}
+
+TEST(gtk_window_without_any_font_says_so) {
+    need_display();
+    gives(
+        "echo '<fontconfig></fontconfig>' >none.conf; FONTCONFIG_FILE=$PWD/none.conf xvfb-run -a $gray -gui scene.lua",
+        3);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    CHECK(said && strstr(said, "-gui: no window can be opened: fontconfig finds no font"));
+    free(said);
+}
+
+/* A resize while the mouse holds the selection loses neither. */
+TEST(gtk_window_keeps_an_edit_during_a_resize) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1 key g mousemove 650 460 sleep 0.3\n"
+          "xdotool search --onlyvisible --name out.png windowsize 900 650 sleep 0.5; xdotool click 1 sleep 0.5\n"
+          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          0);
+    gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
 }
 
 /* A script with an error stays in the window, which renders it as soon as it is mended. */
@@ -394,4 +416,92 @@ TEST(gray_without_a_window_says_what_to_install) {
     CHECK(said && strstr(said, "alone-gui does not exist; it is built if pkg-config finds gtk4 (Debian: libgtk-4-dev; "
                                "tools/setup.sh --window)"));
     free(said);
+}
+
+/* Where the handles of a selection at the origin are: the camera is at {5, 4, 6}, the pixel of the mouse at 600, 460 is
+ * known from its explanation, the size of the picture from --verbose. A line for each: from where to where to drag. */
+static const char handles[] =
+    "function project(x, y, z,   depth) {\n"
+    "    depth = d + L * (x * f[0] + y * f[1] + z * f[2])\n"
+    "    px = cx + F * L * (x * r[0] + z * r[2]) / depth; py = cy - F * L * (x * u[0] + y * u[1] + z * u[2]) / depth "
+    "}\n"
+    "BEGIN {\n"
+    "    zoom = wide / 200 < high / 150 ? wide / 200 : high / 150\n"
+    "    cx = 600 + (99.5 - ux) * zoom; cy = 460 + (74.5 - uy) * zoom\n"
+    "    d = sqrt(77); e[0] = 5; e[1] = 4; e[2] = 6; for (i = 0; i < 3; i++) f[i] = -e[i] / d\n"
+    "    n = sqrt(f[0] * f[0] + f[2] * f[2]); r[0] = -f[2] / n; r[2] = f[0] / n\n"
+    "    u[0] = -r[2] * f[1]; u[1] = r[2] * f[0] - r[0] * f[2]; u[2] = r[0] * f[1]\n"
+    "    F = 75 * zoom * cos(0.34906585) / sin(0.34906585); L = 90 * d / F\n"
+    "    for (tool = 0; tool < 3; tool++) for (a = 0; a < 3; a++) {\n"
+    "        for (k = 0; k < 2; k++) {\n"
+    "            t = (0.5 + 0.4 * k) * 1.57079633; for (i = 0; i < 3; i++) p[i] = 0\n"
+    "            if (tool == 1) { p[(a + 1) % 3] = 0.6 * cos(t); p[(a + 2) % 3] = 0.6 * sin(t) }\n"
+    "            else p[a] = (tool ? 1.16 : 0.85) + 0.5 * k\n"
+    "            project(p[0], p[1], p[2]); printf \"%d %d \", px + 0.5, py + 0.5 }\n"
+    "        print tool * 3 + a + 1 } }\n";
+
+/* The matrix of the ball in the file of the saved edits with that number, or false. */
+static bool read_matrix(int number, double m[12]) {
+    char name[64];
+    (void)snprintf(name, sizeof name, "out-changes%d.lua", number);
+    char *text = test_read_file(test_path(name), NULL), *at = text ? strstr(text, "gr.change_node('ball', ") : NULL;
+    at = at ? strchr(at, '{') : NULL;
+    for (int i = 0; at && i < 12; i++)
+        m[i] = strtod(at + 1, &at);
+    free(text);
+    return at != NULL;
+}
+
+/* Only along its axis, only about it. */
+static void check_handle(int number) {
+    int tool = (number - 1) / 3, axis = (number - 1) % 3;
+    double m[12];
+    if (!read_matrix(number, m)) {
+        test_fail(__FILE__, __LINE__, "handle %d did nothing", number);
+        return;
+    }
+    for (int i = 0; i < 12; i++) {
+        int row = i / 4, column = i % 4;
+        bool own = tool == 0 ? column == 3 && row == axis : tool == 2 && column == row && row == axis;
+        bool turned = tool == 1 && column < 3 && row != axis && column != axis;
+        double plain = column == row ? 1 : 0;
+        if (own || turned ? fabs(m[i] - plain) < 0.02 : fabs(m[i] - plain) > 1e-9)
+            test_fail(__FILE__, __LINE__, "handle %d: entry %d of the matrix is %g", number, i, m[i]);
+    }
+}
+
+TEST_LONG(gtk_window_moves_turns_and_scales_by_the_handles_of_every_axis) {
+    need_display();
+    test_write_text(test_path("handles.awk"), handles);
+    gives("sed -i 's/{0, 0, 6}, {0, 0, -1}/{5, 4, 6}, {-5, -4, -6}/' scene.lua", 0);
+    drive(
+        "--verbose scene.lua",
+        "titled 'out.png - ready'; xdotool mousemove 600 460 sleep 0.3 key p\n"
+        "await \"grep -q ', pixel [0-9]*,[0-9]* of' out.txt\"; sleep 1.5; xdotool key Escape sleep 1\n"
+        "set -- $(sed -n 's/.*pixels* \\([0-9]*\\),\\([0-9]*\\) of.*/\\1 \\2/p' out.txt | tail -1)\n"
+        "size=$(sed -n 's/.*picture of \\([0-9]*\\)x\\([0-9]*\\) pixels.*/-v wide=\\1 -v high=\\2/p' err.txt | tail "
+        "-1)\n"
+        "xdotool click 1 sleep 1.5; titled 'out.png - ready'\n"
+        "awk -v ux=$1 -v uy=$2 $size -f handles.awk >places.txt\n"
+        "while read x0 y0 x1 y1 n; do\n"
+        "  xdotool mousemove $x0 $y0 sleep 0.2 mousedown 1 sleep 0.2 mousemove $x1 $y1 sleep 0.2 mouseup 1 sleep 0.5\n"
+        "  titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep 0.5\n"
+        "done <places.txt; xdotool key ctrl+q sleep 0.5 key alt+d",
+        0);
+    for (int number = 1; number <= 9; number++)
+        check_handle(number);
+}
+
+/* g x 1, r z 90, s y 2 and their like, for every tool and axis. */
+TEST_LONG(gtk_window_moves_turns_and_scales_by_typed_numbers_along_every_axis) {
+    need_display();
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1; n=0\n"
+          "for key in 'g x 3' 'g y 3' 'g z 3' 'r x 9 0' 'r y 9 0' 'r z 9 0' 's x 2' 's y 2' 's z 2'; do\n"
+          "  n=$((n + 1)); for k in $key; do xdotool key $k sleep 0.1; done; xdotool key Return sleep 0.5\n"
+          "  titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep 0.5\n"
+          "done; xdotool key ctrl+q sleep 0.5 key alt+d",
+          0);
+    for (int number = 1; number <= 9; number++)
+        check_handle(number);
 }

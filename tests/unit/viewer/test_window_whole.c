@@ -142,6 +142,7 @@ struct setting {
     const char *other_scene;    /* for the deed WINDOW_LEAVE */
     uint8_t *large;             /* as in struct person */
     struct person *person;      /* or NULL: takes it as it is at the end */
+    const char *demo;           /* or NULL: this scene, small, as shown%d.png */
 };
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting) {
@@ -162,10 +163,24 @@ static int viewer_that(const struct deed *deeds, const struct setting *setting) 
     const char *overlay = setting->overlay ? setting->overlay : "none";
     char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)option, "--overlay", (char *)(uintptr_t)overlay,
                      "scene.lua"};
-    char before[4096];
+    char *demo[] = {"gray",
+                    "-gui",
+                    "-q",
+                    "--progress=none",
+                    "--size",
+                    "48x32",
+                    "--spp",
+                    "4",
+                    "-o",
+                    "shown%d.png",
+                    (char *)(uintptr_t)setting->demo};
+    char before[4096], library[4200];
     CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
+    (void)snprintf(library, sizeof library, "%s/lua", before);
     test_write_text("scene.lua", setting->scene ? setting->scene : scene);
-    CHECK(options_parse(&options, 7, words, &arena, &error));
+    CHECK(setting->demo ? options_parse(&options, 11, demo, &arena, &error)
+                        : options_parse(&options, 7, words, &arena, &error));
+    options.script.library_folder = library;
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
     if (setting->person)
@@ -850,6 +865,36 @@ TEST(window_changes_the_arguments_of_what_it_has_added) {
                                     "colour = {1, 1, 1}, outer = 10}'", NULL});
 }
 
+/* Pictures and skies that are dropped, on a surface and beside it. */
+TEST(window_takes_a_picture_as_the_texture_of_what_it_was_dropped_on_and_a_sky_as_light_and_background) {
+    const struct window_event on = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 320, .y = 240, .text = "gr.texture('p.png')"};
+    const struct window_event beside = {
+        .kind = WINDOW_TEXTURE, .down = true, .x = 2, .y = 2, .text = "gr.texture('a.png')"};
+    const struct deed deeds[] = {{"ready", beside, 0},
+                                 {"a picture is for a surface", on, 0},
+                                 {"ready", ADD("gr.sky_light{sky = gr.sky_map{image = 'p.png'}}"), 20},
+                                 {"ready", ACTION(DO_SAVE_CHANGES), 20},
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 0},
+                                 UNDO,
+                                 UNDO,
+                                 {"ready", ACTION(DO_SAVE_PICTURE), 20},
+                                 QUIT};
+    struct test_result made = test_gray_scene(
+        "gr.render{node = gr.sphere{}, file = 'p.png', width = 32, height = 16, background = {0.2, 0.9, 0.3}}",
+        "-q scene.lua", NULL);
+    test_free_result(&made);
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT)}), 0);
+    check_saved(1);
+    check_contains("out-changes1.lua", (const char *[]){"gr.change_texture(1, 'gr.texture(", "gr.sky_map{image", NULL});
+    CHECK(test_same_files("out-view2.png", "out.png"));
+    struct test_picture picture = test_read_picture(test_path("out-view1.png")),
+                        plain = test_read_picture(test_path("out.png"));
+    CHECK(memcmp(picture.rgb, plain.rgb, 3) != 0); /* the background */
+    free(picture.rgb);
+    free(plain.rgb);
+}
+
 /* What is hidden is hidden in the window only; a call that is wrong says so. */
 TEST(window_hides_without_deleting_in_what_it_saves) {
     const struct window_event hide = {.kind = WINDOW_HIDE, .node.serial = 2, .text = "ball"};
@@ -864,4 +909,42 @@ TEST(window_hides_without_deleting_in_what_it_saves) {
     CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.scene = BALL RENDER(LIGHT), .person = &person}), 0);
     CHECK(!test_same_files("out-view1.png", "out.png") && !person.state.unsaved);
     CHECK_EQ_INT(test_run_shell("! grep '^gr' out-changes1.lua", ">>out.txt"), 0);
+}
+
+/* Demos: the first picture of each. The window writes it as the program without it does, and closes. */
+
+static void check_demo(const char *path) {
+    static const struct deed deeds[] = {{"is written", ACTION(DO_QUIT), 0}};
+    test_write_text(test_path("demo.txt"), path);
+    (void)test_run_shell(
+        "demo=$(cat demo.txt) && cd \"$(dirname \"$demo\")\" && $gray -q --progress=none --size 48x32 --spp 4 "
+        "--allow-write \"$OLDPWD\" \"$demo\" -o \"$OLDPWD\"/plain%d.png",
+        ">>out.txt 2>>err.txt");
+    if (access(test_path("plain1.png"), F_OK) != 0) /* a module of other scenes */
+        return;
+    const struct setting setting = {.demo = path};
+    (void)viewer_that(deeds, &setting);
+    if (!test_same_files("plain1.png", "shown1.png"))
+        test_fail(__FILE__, __LINE__, "%s: the picture of the window differs", path);
+    CHECK_EQ_INT(test_run_shell("rm -f plain*.png shown*.png", ""), 0);
+}
+
+/* One of forty, or all; without animations, which have tests of their own, and those that write models for minutes. */
+TEST_TIMES(window_writes_the_bytes_of_the_program_for_the_demos, 40) {
+    char path[4096];
+    int number = 0;
+    CHECK_EQ_INT(
+        test_run_shell("cd \"$(dirname \"$(dirname \"$(dirname \"$(realpath $gray)\")\")\")\" && find $PWD/data -name "
+                       "'*.lua' ! -path '*/animation/*' ! -path '*/print/*' ! -name 'make_*' | sort",
+                       ">demos.txt"),
+        0);
+    FILE *list = fopen(test_path("demos.txt"), "r");
+    while (list && fgets(path, sizeof path, list)) {
+        path[strcspn(path, "\n")] = '\0';
+        if (number++ % (40 / times) == 0)
+            check_demo(path);
+    }
+    CHECK(number > 50);
+    if (list)
+        (void)fclose(list);
 }
