@@ -111,13 +111,13 @@ TEST(glowing_points_have_the_density_that_they_are_said_to_have) {
     enum { COUNT = 4096 };
     struct arena arena = {0};
     struct error error = {0};
-    const struct medium_place place = {{{{2, 0, 0, 1}, {0, 0, 1, 2}, {0, -1, 0, 0.5}}},
-                                       {{{2, 0, 0, 3}, {0, 0, 1, 2}, {0, -1, 0, 0.5}}}};
+    const struct medium_placement placement = {{{{2, 0, 0, 1}, {0, 0, 1, 2}, {0, -1, 0, 0.5}}},
+                                               {{{2, 0, 0, 3}, {0, 0, 1, 2}, {0, -1, 0, 0.5}}}};
     struct medium media[3] = {{.ior = 1}, {.ior = 1}, {.ior = 1}};
     for (int i = 1; i < 3; i++) {
         media[i] = medium_filling(&(struct medium_input){
             .emission = colour_all(i), .density = grid_of(&arena, (struct box){vec3_all(-1), vec3_all(1)}, values)});
-        media[i].place = i == 2 ? &place : NULL;
+        media[i].placement = i == 2 ? &placement : NULL;
     }
     const struct glow *glow = NULL;
     CHECK(glow_build(&glow, media, 3, &arena, &error) && glow);
@@ -138,7 +138,7 @@ TEST(glowing_points_have_the_density_that_they_are_said_to_have) {
     arena_destroy(&arena);
 }
 
-TEST(heat_by_place_is_the_light_of_black_bodies) {
+TEST(heat_is_the_light_of_black_bodies) {
     struct arena arena = {0};
     struct error error = {0};
     for (double kelvin = 600; kelvin < 9e4; kelvin *= 1.7) {
