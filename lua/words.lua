@@ -191,6 +191,7 @@ end
 
 function M.glass(fields)
     local colour = fields.colour
+    if fields.glass and fields.ior then check.fail('gr.glass', 'glass has an index of its own: ior is not needed') end
     if type(colour) == 'string' or colour and colour.encoding then colour = gr.linear(colour) end
     return gr.openpbr_material {
         transmission_weight = 1, transmission_color = colour, transmission_depth = colour and not fields.thin and (fields.depth or 1) or nil,

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 export GRAY_TEST_BINARY="${GRAY_TEST_BINARY:-build/release/gray}"
 values=$(mktemp) || exit 1
 trap 'rm -f "$values"' EXIT
-[ $# -gt 0 ] || set -- test_path.c test_path_estimators test_subsurface paths_with_photons_show_what depth_1_is white_layered_surfaces
+[ $# -gt 0 ] || set -- test_path.c test_path_estimators test_subsurface slabs_ paths_with_photons_show_what depth_1_is white_layered_surfaces
 GRAY_TEST_VALUES=$values build/release/tests/run --long "$@" >&2
 status=$?
 awk -F'|' '

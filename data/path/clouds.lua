@@ -8,14 +8,14 @@ local function density(p)
         heap = heap + size * gr.noise(q)
         q, size = q * 2.03, size * .5
     end
-    local low = gr.smoothstep(2.0, 2.4, p.y) -- flat below, open above
+    local low = gr.smoothstep(2.0, 2.5, p.y + .35 * gr.noise(p * .9)) -- uneven below, open above
     return 4 * gr.clamp(1.6 * heap + .12 - .28 * (p.y - 2.4), 0, 1) * low
 end
 
 local scene = gr.node('land')
-scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = { .10, .15, .06 } } })
+scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = { .07, .085, .04 } } })
 gr.render { node = scene, file = 'clouds.png', width = 480, height = 300, max_depth = 10, integrator = 'path', eye = { 0, 1.1, 16 },
-    target = { 0, 3.4, 0 }, fov = 50, exposure = -.4, tone = 'filmic',
+    target = { 0, 3.4, 0 }, fov = 50, exposure = -1.1, tone = 'filmic',
     lights = { gr.sun_light { sun = { .7, .55, .35 }, colour = { 5, 4.7, 4.2 } } },
     background = gr.clear_sky { sun = { .7, .55, .35 }, turbidity = 2.2 },
     medium = gr.medium { albedo = { .998, .998, .998 }, distance = .5, g = .5, density = density, corner = { -12, 1.9, -16 },

@@ -1,5 +1,5 @@
 -- TITLE: A lighthouse in fog
--- OPTIONS: --spp 40 --denoise
+-- OPTIONS: --spp 24 --denoise
 -- The lamp behind its panes sends two beams into the fog of a sea at night. The fog is a medium that ends above the
 -- lamp; spots and lamp are seen by the light that it scatters.
 local scene = gr.node('coast')

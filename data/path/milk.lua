@@ -1,6 +1,6 @@
 -- Water, milk and juice in three glasses: what is inside absorbs and scatters light.
 -- TITLE: Water, milk and juice
--- OPTIONS: --spp 28
+-- OPTIONS: --spp 32
 
 local glass = gr.openpbr_material{transmission_weight = 1, specular_roughness = 0}
 -- Liquids reach a little into the wall of their glass, so that the light meets one surface between them.

@@ -628,8 +628,8 @@ static void find_relative_variance(struct denoise_scratch *s) {
                 product += products[x + i];
                 colour += colours[x + i];
             }
-            float least = colour * colour / pixels + FLT_MIN;
-            s->relative[c][y][x] = variance / (product > least ? product : least);
+            float lowest = colour * colour / pixels + FLT_MIN;
+            s->relative[c][y][x] = variance / (product > lowest ? product : lowest);
         }
     }
 }
@@ -639,7 +639,7 @@ static void floor_variance(const struct denoise_scratch *s, int half, int c, int
     const float *own = s->variance[c] + local_of(0, y), *first = s->estimates[0][half][c] + local_of(0, y);
     const float *relative = s->relative[c][y], largest = 1e30F;
     for (int x = 0; x < DENOISE_INNER; x++) {
-        float around = relative[x] * (first[x] * first[x]), variance = own[x] > around ? own[x] : around;
+        float scaled = relative[x] * (first[x] * first[x]), variance = own[x] > scaled ? own[x] : scaled;
         out[x] = variance < largest ? variance : largest;
     }
 }

@@ -285,8 +285,12 @@ static void part_of_loop(const struct cell_work *work, const struct loop *loop, 
     struct loop_point *ends[2] = {&part->points[0], &part->points[part->count - 1]};
     const struct loop_point inner[2] = {part->points[1], part->points[part->count - 2]};
     for (int i = 0; i < 2; i++) {
-        uint32_t surface = surface_joining(work, ends[i], &inner[i]);
-        ends[i]->side = vertex_of(work, ends[i])->surface[0] != surface;
+        const struct solid_vertex *end = vertex_of(work, ends[i]);
+        struct vec3 beside = vertex_of(work, &inner[i])->normal[inner[i].side];
+        if (end->surface[0] == end->surface[1]) /* an edge in a piece, as of a function: by the normals */
+            ends[i]->side = vec3_dot(end->normal[1], beside) > vec3_dot(end->normal[0], beside);
+        else
+            ends[i]->side = end->surface[0] != surface_joining(work, ends[i], &inner[i]);
         ends[i]->on_edge = false;
     }
 }
@@ -510,13 +514,13 @@ static uint32_t hash_arcs(const struct cell_work *work) {
     return (uint32_t)hash;
 }
 
-/* What was found good once stays good while its arcs are the same. */
+/* What was found good once stays good while its arcs are the same, but for new known points. */
 static bool passes(const struct cell_work *work, const struct cell *cell, size_t first) {
     struct contour *contour = work->contour;
     uint64_t key = cell_key(cell->at, cell->size, 0);
     uint32_t *passed = key_map_find(&contour->passed, key), hash = hash_arcs(work);
     if (passed && *passed == hash)
-        return true;
+        return !some_missed(work, cell, first);
     if ((is_mixed(contour, first) && some_stray(contour, first)) || some_missed(work, cell, first))
         return false;
     if (passed)

@@ -77,10 +77,10 @@ const char *export_plain_name(const char *name, char out[64]) {
     return out;
 }
 
-static struct vec3 normal_of(const struct export_part *part, size_t triangle) {
-    struct vec3 c[3];
-    export_corners(part, triangle, c);
-    return vec3_normalize(triangle_normal(c));
+/* The normal and the corners of a triangle. */
+static void facet_of(const struct export_part *part, size_t triangle, struct vec3 out[4]) {
+    export_corners(part, triangle, out + 1);
+    out[0] = vec3_normalize(triangle_normal(out + 1));
 }
 
 static void print_points(struct writer *w, const struct export_part *part, const char *format) {
@@ -96,10 +96,10 @@ static void write_stl(struct writer *w) {
     for (size_t i = 0; i < w->model->parts.count; i++) {
         const struct export_part *part = &export_parts(w->model)[i];
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &export_triangles(part)[t];
-            struct vec3 normal = normal_of(part, t);
+            struct vec3 facet[4];
+            facet_of(part, t, facet);
             for (int k = 0; k < 12; k++)
-                put_float(w, vec3_get(k < 3 ? normal : export_points(part)[triangle->vertex[k / 3 - 1]], k % 3));
+                put_float(w, vec3_get(facet[k / 3], k % 3));
             put_number(w, 0, 2);
         }
     }
@@ -111,13 +111,11 @@ static void write_text_stl(struct writer *w) {
         const struct export_part *part = &export_parts(w->model)[i];
         print(w, "solid %s\n", export_plain_name(part->name, name));
         for (size_t t = 0; t < part->triangles.count; t++) {
-            const struct export_triangle *triangle = &export_triangles(part)[t];
-            struct vec3 n = normal_of(part, t);
-            print(w, "facet normal %.9g %.9g %.9g\nouter loop\n", n.x, n.y, n.z);
-            for (int k = 0; k < 3; k++) {
-                struct vec3 p = export_points(part)[triangle->vertex[k]];
-                print(w, "vertex %.9g %.9g %.9g\n", p.x, p.y, p.z);
-            }
+            struct vec3 f[4];
+            facet_of(part, t, f);
+            print(w, "facet normal %.9g %.9g %.9g\nouter loop\n", f[0].x, f[0].y, f[0].z);
+            for (int k = 1; k < 4; k++)
+                print(w, "vertex %.9g %.9g %.9g\n", f[k].x, f[k].y, f[k].z);
             print(w, "endloop\nendfacet\n");
         }
         print(w, "endsolid %s\n", name);
@@ -170,12 +168,12 @@ static void write_ply(struct writer *w) {
         const struct export_part *part = &export_parts(w->model)[i];
         for (size_t t = 0; t < part->triangles.count; t++) {
             const struct export_triangle *triangle = &export_triangles(part)[t];
+            const uint8_t(*display)[3] = triangle->display;
             put_number(w, 3, 1);
             for (int k = 0; k < 3; k++)
                 put_number(w, first + triangle->vertex[k], 4);
             for (int k = 0; k < 3; k++)
-                put_number(w, (1U + triangle->display[0][k] + triangle->display[1][k] + triangle->display[2][k]) / 3,
-                           1);
+                put_number(w, (1U + display[0][k] + display[1][k] + display[2][k]) / 3, 1);
         }
         first += (uint32_t)part->points.count;
     }

@@ -122,8 +122,7 @@ static uint32_t move_marked(struct separation *s, double distance, struct solid_
         s->before[i] = *point;
         if (!s->marked[i])
             continue;
-        struct vec3 to = vec3_add_scaled(*point, outward, distance);
-        *point = vec3_make((float)to.x, (float)to.y, (float)to.z);
+        *point = solid_round(s->input->csg, vec3_add_scaled(*point, outward, distance));
         findings->position = s->before[i];
         moved++;
     }

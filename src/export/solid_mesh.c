@@ -11,6 +11,7 @@
 #include "export/simplify_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/triangles_internal.h"
+#include "math/exact.h"
 #include "mesh/mesh.h"
 
 enum { ROUNDS = 6, GRIDS = 4, MIN_CELLS = 24, MAX_CELLS = 64 };
@@ -40,6 +41,15 @@ bool solid_mesh_compact(struct solid_mesh *mesh) {
     }
     mem_free(numbers);
     return true;
+}
+
+double solid_grain(const struct csg *csg) {
+    return 0x1p-23 * fmax(vec3_max_abs(csg->bounds.min), vec3_max_abs(csg->bounds.max));
+}
+
+struct vec3 solid_round(const struct csg *csg, struct vec3 point) {
+    double step = two_to(ilogb(solid_grain(csg)));
+    return vec3_scale(vec3_make(rint(point.x / step), rint(point.y / step), rint(point.z / step)), step);
 }
 
 /* Positions are those of the file, in single precision: equal ones are one vertex. */
@@ -143,6 +153,9 @@ bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct er
 
 /* --- tests of a mesh --- */
 
+/* Of the tolerance: points that are further away are too far, for others beside them may be a little further. */
+static const double far_share = 0.98;
+
 /* Faults of a mesh, by the boxes in which vertices are kept. */
 struct verification {
     const struct solid_input *input;
@@ -209,7 +222,7 @@ static void test_chunk(void *context, uint32_t item, int worker) {
     uint32_t end = (item + 1) * CHUNK, count = (uint32_t)v->mesh->triangles.count;
     for (uint32_t i = item * CHUNK; i < end && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
-        v->stray[i] = strays(&v->probes[worker], &corners, v->input->tolerance);
+        v->stray[i] = strays(&v->probes[worker], &corners, far_share * v->input->tolerance);
     }
 }
 
@@ -238,7 +251,7 @@ static bool verify(struct verification *v, struct error *error) {
         return false;
     find_intersections(v->mesh, &tree, 1e-13 * v->size, add_intersection, v);
     for (size_t i = 0, step = 1 + v->known.count / KNOWN_TESTS; i < v->known.count; i += step)
-        if (!mesh_is_near(v->mesh, &tree, known[i].point, v->input->tolerance))
+        if (!mesh_is_near(v->mesh, &tree, known[i].point, far_share * v->input->tolerance))
             add_far_point(v, known[i].point);
     box_tree_destroy(&tree);
     if (!find_strays(v, error))
@@ -250,10 +263,10 @@ static bool verify(struct verification *v, struct error *error) {
 
 /* --- rounds --- */
 
-static void round_coordinates(struct solid_mesh *mesh) {
+static void round_coordinates(const struct csg *csg, struct solid_mesh *mesh) {
     for (uint32_t i = 0; i < mesh->vertices.count; i++) {
         struct vec3 *point = &solid_vertex_at(mesh, i)->point;
-        *point = vec3_make((float)point->x, (float)point->y, (float)point->z);
+        *point = solid_round(csg, *point);
     }
 }
 
@@ -273,10 +286,7 @@ static void mark_kept(struct verification *v, const struct solid_mesh *mesh, uin
 static bool simplify_and_test(struct verification *v, const struct solid_mesh *fine, struct solid_mesh *out,
                               uint8_t *keep, bool *good, struct error *error) {
     const struct simplify_input input = {
-        .tolerance = v->input->tolerance,
-        .size = v->size,
-        .resolution = 0x1p-22 * fmax(vec3_max_abs(v->input->csg->bounds.min), vec3_max_abs(v->input->csg->bounds.max)),
-        .keep = keep};
+        .tolerance = v->input->tolerance, .size = v->size, .resolution = 2 * solid_grain(v->input->csg), .keep = keep};
     *good = false;
     for (v->round = 0; v->round < ROUNDS && !*good; v->round++) {
         if (pool_cancelled(v->input->pool))
@@ -313,9 +323,9 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
     bool ok = contour_build(&contour, &fine, &v.known, error);
     if (ok && fine.triangles.count == 0)
         ok = is_empty(input, error);
-    round_coordinates(&fine);
-    ok = ok && separate_parts(&fine, input, findings, error);
+    round_coordinates(input->csg, &fine);
     uint8_t *keep = mem_alloc_zero(fine.vertices.count, 1);
+    ok = ok && separate_parts(&fine, input, findings, error);
     v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
     while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
         ready++;

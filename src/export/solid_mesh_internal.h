@@ -34,6 +34,11 @@ static inline struct solid_triangle *solid_triangle_at(const struct solid_mesh *
     return (struct solid_triangle *)mesh->triangles.items + index;
 }
 
+/* Coordinates are multiples of a number that is about this: single precision has them all, and what is nearly a plane
+ * or a line through the origin has no noise. */
+double solid_grain(const struct csg *csg);
+struct vec3 solid_round(const struct csg *csg, struct vec3 point);
+
 struct solid_input {
     const struct csg *csg; /* closed and finite */
     const char *name;      /* of its node, for messages */

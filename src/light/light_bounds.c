@@ -172,6 +172,43 @@ double light_cone(const struct light *light, struct vec3 from_light) {
     return s * s * (3 - 2 * s);
 }
 
+/* The points p from the tip with axis p >= cosine |p|: between or beyond the roots of A t^2 + 2 B t + C, on the side of
+ * the axis. */
+static bool cut_cone(const struct light *light, struct vec3 origin, struct vec3 d, double *from, double *to) {
+    struct vec3 o = vec3_sub(origin, light->position), axis = light->direction;
+    double square = light->cos_outer * light->cos_outer, along = vec3_dot(axis, d), start = vec3_dot(axis, o);
+    double a = along * along - square, b = along * start - square * vec3_dot(o, d);
+    double rest = b * b - a * (start * start - square * vec3_dot(o, o));
+    if (!(rest > 0) || a == 0)
+        return a == 0;
+    double root = sqrt(rest), one = (-b - root) / a, two = (-b + root) / a, low = fmin(one, two), high = fmax(one, two);
+    if (a < 0) {
+        if (start + along * (low + high) / 2 < 0)
+            return false;
+        *from = fmax(*from, low);
+        *to = fmin(*to, high);
+    } else if (along > 0) {
+        *from = fmax(*from, high);
+    } else {
+        *to = fmin(*to, low);
+    }
+    return *from < *to;
+}
+
+bool light_cut(const struct light *light, struct vec3 origin, struct vec3 direction, double *from, double *to) {
+    switch (light->kind) {
+    case LIGHT_SPOT:
+        return !(light->cos_outer > 0) || cut_cone(light, origin, direction, from, to);
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        SURFACE_LIGHTS(LIST_LABEL)
+        break;
+    }
+    return true;
+}
+
 void light_bounds_fade(const struct light *light, struct light_bounds *out) {
     double strength = light_strength(light);
     const double *c = light->falloff;

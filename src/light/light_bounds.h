@@ -28,6 +28,9 @@ double light_attenuation(const struct light *light, double distance);
 /* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
  * them the cubic 3 s^2 - 2 s^3 of the cosine. */
 double light_cone(const struct light *light, struct vec3 from_light);
+/* Cuts the part of a line (unit direction) to where the light may shine: a narrow spot only in its cone. False: nowhere.
+ */
+bool light_cut(const struct light *light, struct vec3 origin, struct vec3 direction, double *from, double *to);
 
 /* A delta light: from its attenuation. */
 void light_bounds_fade(const struct light *light, struct light_bounds *out);

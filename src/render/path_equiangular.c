@@ -9,7 +9,7 @@ struct view_of_line {
     double middle, apart, from, to; /* angles of the ends */
 };
 
-/* False: the lamp has no middle. */
+/* False: the lamp has no middle, or does not shine on the line. */
 static bool find_view(const struct world_lights *lights, uint32_t light, const struct ray *ray, double end,
                       struct view_of_line *out) {
     struct light_target target;
@@ -20,8 +20,11 @@ static bool find_view(const struct world_lights *lights, uint32_t light, const s
     out->apart = vec3_length(vec3_sub(to, vec3_scale(direction, out->middle)));
     /* On the line itself any small distance will do. */
     out->apart = fmax(out->apart, 0x1p-20 * vec3_length(to));
-    out->from = el_atan2(-out->middle, out->apart);
-    out->to = end < INFINITY ? el_atan2(end - out->middle, out->apart) : PI / 2;
+    double first = 0, last = end;
+    if (!light_cut(&lights->lights[light], ray->origin, direction, &first, &last))
+        return false;
+    out->from = el_atan2(first - out->middle, out->apart);
+    out->to = last < INFINITY ? el_atan2(last - out->middle, out->apart) : PI / 2;
     return out->apart > 0 && out->from < out->to;
 }
 

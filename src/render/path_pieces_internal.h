@@ -496,6 +496,14 @@ static __attribute__((noinline)) bool travel_sealed(const struct path_tracer *tr
     return true;
 }
 
+/* The depth is that of what is behind, as far as that is seen: that of single events would be noise, and so would be
+ * that of a horizon. */
+static double depth_in_medium(const struct medium *medium, double before, double end) {
+    const struct medium_mix mix = {1, {medium}};
+    double haze = medium_mix_haze(&mix), depth = haze > 0 ? fmin(end, 4 / haze) : end;
+    return depth < INFINITY ? before + depth : 0;
+}
+
 /* One vertex in the medium of the ray, after a distance. False: the path ends here. */
 static __attribute__((noinline)) bool meet_medium(const struct path_tracer *tracer, struct integrator_state *state,
                                                   struct path *path, const struct path_stretch *end,
@@ -508,10 +516,9 @@ static __attribute__((noinline)) bool meet_medium(const struct path_tracer *trac
     if (path->depth >= tracer->max_depth)
         return watch_end(watch, PATH_REACHES_MAX_DEPTH);
     struct path_parts *parts = parts_of(state);
-    /* The depth is that of what is behind: that of single events would be noise. */
     if (parts && path->sight)
         set_features(state, path, medium_albedo(end->medium), vec3_all(0),
-                     end->end < INFINITY ? parts->travelled + end->end : 0);
+                     depth_in_medium(end->medium, parts->travelled, end->end));
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};
     const struct path_vertex vertex = {.ray = &path->ray,
                                        .at = {.lobes = 1, .wo = vec3_negate(direction), .phase = &end->medium->phase},

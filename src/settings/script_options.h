@@ -29,12 +29,13 @@ struct script_define {
 struct script_options {
     enum script_order transform_order;
     bool lenient;
-    const char *dialect; /* --dialect: a name or a file, or NULL */
-    const char *sky;     /* --sky: a picture file, or NULL */
-    const char *edits;   /* --edits: a Lua file, or NULL */
-    const char *camera;  /* --camera: its name or number in the model, or NULL */
-    enum model_up up;    /* --up, of models */
-    uint64_t seed;       /* math.random starts from it */
+    const char *dialect;    /* --dialect: a name or a file, or NULL */
+    const char *sky;        /* --sky: a picture file, or NULL */
+    const char *edits;      /* --edits: a Lua file, or NULL */
+    const char *edits_text; /* Lua to run in its place, of a window, or NULL */
+    const char *camera;     /* --camera: its name or number in the model, or NULL */
+    enum model_up up;       /* --up, of models */
+    uint64_t seed;          /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
     /* By setting (settings/setting.h): the text of its option, "" of an option without a value, or NULL: not given. */
@@ -48,7 +49,6 @@ struct script_options {
     double time_limit;     /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
     uint64_t output_limit; /* bytes printed and written; 0: 64 MiB, without the sandbox none */
     struct frame_options frames;
-    const char *edits_text;     /* the same as text: the edits of a window, or NULL */
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 

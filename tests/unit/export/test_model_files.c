@@ -313,6 +313,13 @@ TEST(the_thinnest_wall_of_a_shell_a_tube_and_two_plates_is_found_within_2_percen
         0.02);
 }
 
+TEST(a_model_of_a_frame_has_the_pose_of_its_time) {
+    expect("local b = gr.box{min = {0, 0, 0}, max = {4, 1, 2}}\nb:spin({0, 0, 1}, 90)\n"
+           "gr.frames{count = 11, draw = function() return {node = b, width = 8, eye = {0, 0, 9}, view = {0, 0, -1}} "
+           "end}\n",
+           "--check-print --frames 11-11 --fps 10 scene.lua", 0, "size: 1 x 4 x 2");
+}
+
 TEST(check_print_reports_volume_overhang_and_contact) {
     struct test_result result = test_gray_scene(
         "local t = gr.union{gr.box{min = {4, 4, 0}, max = {6, 6, 8}}, gr.box{min = {0, 0, 8}, max = {10, 10, 10}}}\n"

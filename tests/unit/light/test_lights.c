@@ -1,6 +1,7 @@
 /* Lights against closed forms. A small patch of a white floor under a lamp of radiance 1 shows the view factor of the
  * lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12 (disc),
  * B-3 (rectangle over its corner), B-38 (sphere). */
+#include "light/light_bounds.h"
 #include "math/elementary.h"
 #include "math/sampling.h"
 #include "shape/planar.h"
@@ -534,4 +535,32 @@ TEST(samples_of_pixel_and_lamp_are_stratified_together) {
     }
     CHECK(together < 0.2 * single);
     stage_end(&s);
+}
+
+/* Lines from anywhere, also through the cone behind the tip; along them one part at most is lit. */
+TEST(a_spot_shines_on_the_part_of_a_line_that_its_cone_cuts) {
+    struct test_random random = {7};
+    int lit = 0;
+    for (int i = 0; i < 300; i++) {
+        struct vec3 origin = {test_uniform(&random, -3, 3), test_uniform(&random, -3, 3), test_uniform(&random, -3, 3)};
+        struct vec3 d = vec3_normalize(vec3_make(test_uniform(&random, -1, 1), test_uniform(&random, -1, 1), 0.5));
+        const struct light spot = {.kind = LIGHT_SPOT,
+                                   .position = {0.2, 0.1, -0.3},
+                                   .direction = vec3_normalize(vec3_make(1, test_uniform(&random, -1, 1), 0.3)),
+                                   .cos_outer =
+                                       i % 5 ? test_uniform(&random, 0.02, 0.99) : test_uniform(&random, -1, 0),
+                                   .cos_inner = 1};
+        double from = 0, to = 9;
+        bool any = light_cut(&spot, origin, d, &from, &to);
+        for (double t = 0.01; t < 9; t += 0.09) {
+            struct vec3 to_point = vec3_normalize(vec3_sub(vec3_add_scaled(origin, d, t), spot.position));
+            bool shines = vec3_dot(to_point, spot.direction) > spot.cos_outer;
+            lit += shines;
+            if (shines)
+                CHECK(any && t > from - 1e-9 && t < to + 1e-9);
+            else if (spot.cos_outer > 0)
+                CHECK(!any || t < from + 1e-9 || t > to - 1e-9);
+        }
+    }
+    CHECK(lit > 1000);
 }

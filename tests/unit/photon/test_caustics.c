@@ -677,10 +677,12 @@ TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
 /* --- paths --- */
 
 /* The mean picture of a white floor under a ball of glass under a lamp; walls send light on to both. alpha: roughness
- * of the ball, of which a part scatters diffusely. */
-static struct colour light_under_lens(int photons, int samples, double alpha, uint64_t seed) {
+ * of the ball, of which a part scatters diffusely. medium: around all, or NULL. */
+static struct colour light_under_lens(int photons, int samples, double alpha, const struct medium *medium,
+                                      uint64_t seed) {
     struct stage s;
     stage_begin(&s, 2);
+    s.medium = medium;
     s.settings.integrator = INTEGRATOR_PATH;
     s.settings.path_samples = samples;
     s.settings.max_depth = 60;
@@ -712,20 +714,28 @@ static struct colour light_under_lens(int photons, int samples, double alpha, ui
     return mean;
 }
 
-static void check_energy(double alpha, int samples) {
-    struct colour paths = light_under_lens(0, samples, alpha, 1),
-                  both = light_under_lens(300000, samples / 4, alpha, 2);
+static void check_energy(double alpha, int samples, const struct medium *medium) {
+    struct colour paths = light_under_lens(0, samples, alpha, medium, 1),
+                  both = light_under_lens(300000, samples / 4, alpha, medium, 2);
     CHECK_NEAR(both.r, paths.r, 0.01 * paths.r);
     CHECK_NEAR(both.g, paths.g, 0.01 * paths.g);
     CHECK_NEAR(both.b, paths.b, 0.01 * paths.b);
 }
 
 TEST(paths_with_photons_show_the_caustic_of_a_lamp_through_a_lens_once) {
-    check_energy(0, 512);
+    check_energy(0, 512, NULL);
 }
 
 TEST(paths_with_photons_show_the_light_of_rough_glass_over_diffuse_once) {
-    check_energy(0.3, 512);
+    check_energy(0.3, 512, NULL);
+}
+
+/* A fifth of the light of a channel is scattered on its way, and some of it absorbed. */
+TEST_TIMES(photons_and_paths_are_scattered_alike_by_a_medium_around_a_lens, 16) {
+    const struct medium medium = medium_scattering(&(struct medium_input){.absorption = colour_make(0.01, 0.02, 0),
+                                                                          .scattering = colour_make(0.02, 0.04, 0.06),
+                                                                          .phase = {PHASE_HENYEY_GREENSTEIN, 0.5}});
+    check_energy(0, 512 * times, &medium);
 }
 
 /* The error is that of the mean of runs with different seeds. */
@@ -733,7 +743,7 @@ static struct estimate lens_estimate(int photons, int samples, double alpha, uin
     enum { RUNS = 16 };
     double sum = 0, squares = 0;
     for (uint64_t run = 0; run < RUNS; run++) {
-        double light = light_under_lens(photons, samples, alpha, random_combine(seed, run)).g;
+        double light = light_under_lens(photons, samples, alpha, NULL, random_combine(seed, run)).g;
         sum += light / RUNS;
         squares += light * light / RUNS;
     }

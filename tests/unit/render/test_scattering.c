@@ -1,8 +1,10 @@
 /* Light that a medium scatters, along paths: against closed forms and integrals. */
 #include "tests/harness.h"
 
+#include "light/light_bounds.h"
 #include "material/density.h"
 #include "tests/stage.h"
+#include "tests/unit/path_estimate.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,10 +67,11 @@ TEST(white_media_are_invisible_in_uniform_light) {
     }
 }
 
-/* Along -z through a lamp's light: the integral of scattering, phase function and attenuation in the room. */
+/* Along -z through the light of a lamp, at last of a spot: the integral of scattering, phase function and attenuation
+ * in the room. */
 TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_sight) {
-    const double g[] = {0, 0.7, -0.6};
-    for (int i = 0; i < 3; i++) {
+    const double g[] = {0, 0.7, -0.6, 0.2};
+    for (int i = 0; i < 4; i++) {
         const struct medium medium = medium_of(colour_all(0.2), colour_make(0.5, 0.25, 1.5), g[i]);
         struct stage s;
         (void)begin_room(&s, &medium);
@@ -77,7 +80,12 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                                                    .position = lamp,
                                                    .colour = {1, 1, 1},
                                                    .attenuation = ATTENUATION_INVERSE_SQUARE,
+                                                   .direction = {-1, 0, 0},
+                                                   .cos_inner = 0.95,
+                                                   .cos_outer = 0.85,
                                                    .intensity = 1};
+        s.lights[0].kind = i == 3 ? LIGHT_SPOT : LIGHT_POINT;
+        const struct light lamp_there = s.lights[0];
         s.camera.fov = 0.01;
         struct colour mean = mean_of(&s, 4, 8192, 1);
         enum { STEPS = 20000 };
@@ -87,7 +95,8 @@ TEST(light_of_a_lamp_that_is_scattered_once_is_the_integral_along_the_line_of_si
                 double t = (k + 0.5) / STEPS, z = -t, r2 = lamp.x * lamp.x + (lamp.z - z) * (lamp.z - z), r = sqrt(r2);
                 double cosine = -(lamp.z - z) / r, q = 1 + g[i] * g[i] - 2 * g[i] * cosine;
                 double phase = (1 - g[i] * g[i]) / (4 * pi * q * sqrt(q));
-                sum += scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
+                double cone = i == 3 ? light_cone(&lamp_there, vec3_make(-lamp.x / r, 0, (z - lamp.z) / r)) : 1;
+                sum += cone * scattering * phase / r2 * exp(-e * (t + r)) / STEPS;
             }
             CHECK_NEAR(colour_get(mean, axis) / pi, sum, 0.015 * sum);
         }
@@ -237,18 +246,30 @@ TEST(an_open_shape_holds_no_medium) {
     stage_end(&s);
 }
 
+static int seeds_of(int times) {
+    return times > 1 ? 3 : 1;
+}
+
+/* Against a value with four digits: within four standard errors, which are at most .1 % in the long form. */
+static void check_share(const char *claim, double want, struct estimate e, int seed, int times) {
+    estimate_record(claim, want, e, seed);
+    if (!(fabs(e.mean - want) <= 4 * e.error + (times > 1 ? 0.0001 : 0.0015)) ||
+        !(e.error <= (times > 1 ? 0.001 : 0.05) * want))
+        test_fail(__FILE__, __LINE__, "%s, seed %d: %.6f +- %.2g, not %.4f", claim, seed, e.mean, e.error, want);
+}
+
 /* Shares of a normal beam, known values of transport theory (the last one: van de Hulst, "Multiple Light Scattering",
  * 1980): by reciprocity what the camera sees along the normal of a slab in front of, or behind, a plane of radiance 1.
  */
-TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
+TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 40) {
     static const struct {
         double albedo, g, depth, reflected, transmitted;
     } slabs[] = {{1, 0, 1, 0.3413, 0.6587},
                  {1, 0, 4, 0.6910, 0.3090},
                  {0.9, 0, 1, 0.2674, 0.5916},
                  {0.9, 0.75, 2, 0.09740, 0.66096}};
-    const int samples = 4096 * times;
-    for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 4 * seeds_of(times); k++) {
+        const int i = k % 4, samples = 4096 * times * (times > 1 && i == 3 ? 4 : 1);
         const struct medium medium =
             filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, slabs[i].g);
         for (int behind = 0; behind < 2; behind++) {
@@ -265,8 +286,11 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 16) {
             stage_scale(&s, slab, 400, 400, 1);
             s.camera.fov = 0.01;
             s.settings.integrator = INTEGRATOR_PATH;
-            double seen = mean_of(&s, 4, samples, 1000).g, want = behind ? slabs[i].transmitted : slabs[i].reflected;
-            CHECK_NEAR(seen, want, 4 * 0.48 / sqrt(16.0 * samples) + 0.0002);
+            s.settings.seed = (uint64_t)(k / 4);
+            (void)mean_of(&s, 8, samples / 4, 1000);
+            double want = behind ? slabs[i].transmitted : slabs[i].reflected;
+            check_share(behind ? "slab, normal beam: transmitted" : "slab, normal beam: reflected", want,
+                        estimate_of(&s, 1), k / 4 + 1, times);
             stage_end(&s);
         }
     }
@@ -462,7 +486,7 @@ TEST(a_medium_behind_a_surface_of_index_1_is_the_one_that_fills_the_solid) {
 
 /* What a slab of this depth shows in a direction with this cosine to its normal, of a plane of radiance 1 on the side
  * of the camera or behind it. */
-static double shown(const struct medium *medium, double cosine, bool behind, int samples) {
+static struct estimate shown(const struct medium *medium, double cosine, bool behind, int samples, int seed) {
     struct stage s;
     stage_begin(&s, 2);
     struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
@@ -477,14 +501,16 @@ static double shown(const struct medium *medium, double cosine, bool behind, int
     s.camera.view = vec3_make(sqrt(1 - cosine * cosine), 0, -cosine);
     s.camera.up = vec3_make(0, 1, 0);
     s.settings.integrator = INTEGRATOR_PATH;
-    double mean = mean_of(&s, 4, samples, 1000).g;
+    s.settings.seed = (uint64_t)seed;
+    (void)mean_of(&s, 4, samples, 1000);
+    struct estimate e = estimate_of(&s, 1);
     stage_end(&s);
-    return mean;
+    return e;
 }
 
 /* Known values of transport theory, of diffuse light by the mean over directions; depth 60 is as good as a half space.
  */
-TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory, 4) {
+TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory, 16) {
     static const struct {
         double albedo, depth, cosine, reflected, transmitted; /* cosine 0: diffuse light */
     } slabs[] = {{1, 1, 0, 0.4466, 0.5534},
@@ -492,18 +518,22 @@ TEST_TIMES(slabs_in_diffuse_light_and_half_spaces_are_those_of_transport_theory,
                  {0.9, 60, 1, 0.4149, -1},
                  {0.9, 60, 0.5, 0.5079, -1},
                  {0.9, 60, 0, 0.4780, -1}};
-    enum { DIRECTIONS = 8 };
-    const int samples = 128 * times;
-    for (int i = 0; i < 5; i++) {
+    const int samples = 128 * times, directions = times > 1 ? 64 : 8;
+    for (int n = 0; n < 5 * seeds_of(times); n++) {
+        const int i = n % 5;
         const struct medium medium =
             filling_of((1 - slabs[i].albedo) * slabs[i].depth, slabs[i].albedo * slabs[i].depth, 0);
         for (int behind = 0; behind < (slabs[i].transmitted >= 0 ? 2 : 1); behind++) {
-            double sum = 0, want = behind ? slabs[i].transmitted : slabs[i].reflected;
-            for (int k = 0; k < DIRECTIONS; k++)
-                sum += shown(&medium, slabs[i].cosine > 0 ? slabs[i].cosine : sqrt((k + 0.5) / DIRECTIONS), behind,
-                             samples) /
-                       DIRECTIONS;
-            CHECK_NEAR(sum, want, 4 * 0.5 / sqrt(16.0 * samples * DIRECTIONS) + 0.0015);
+            struct estimate sum = {0, 0};
+            for (int k = 0; k < directions; k++) {
+                double cosine = slabs[i].cosine > 0 ? slabs[i].cosine : sqrt((k + 0.5) / directions);
+                struct estimate e = shown(&medium, cosine, behind, samples, 1000 * (n / 5) + k);
+                sum.mean += e.mean / directions;
+                sum.error += e.error * e.error / directions / directions;
+            }
+            sum.error = sqrt(sum.error);
+            check_share(behind ? "slab, diffuse light: transmitted" : "slab or half space: reflected",
+                        behind ? slabs[i].transmitted : slabs[i].reflected, sum, n / 5 + 1, times);
         }
     }
 }

@@ -89,6 +89,7 @@ TEST(wrong_values_of_words_are_errors_that_say_what_is_right) {
         {"gr.daylight{sun = {azimuth = 3}}", "sun must be a direction {x, y, z} or {azimuth = ..., elevation = ...}"},
         {"gr.daylight{sun = {azimuth = 3, elevation = 95}}", "sun.elevation must be a number between -90 and 90"},
         {"gr.daylight{sun = {0, 0, 0}}", "sun must not be zero"},
+        {"gr.glass{glass = 'F2', ior = 1.5}", "gr.glass: glass has an index of its own: ior is not needed"},
         {"gr.daylight{sun = {0, 1, 0}, place = 'rome'}", "sun excludes place, time and zone"},
         {"gr.daylight{time = {2025, 6, 21}}", "time and zone need place"},
         {"gr.daylight{place = 'lodnon'}", "place 'lodnon' is not known; there are berlin, cairo,"},
