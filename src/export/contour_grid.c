@@ -160,19 +160,13 @@ static int lines_per_base(const struct csg *csg) {
 }
 
 static bool cast_base_lines(struct contour *contour, struct pool *pool, struct error *error) {
-    int workers = pool_workers(pool), ready = 0;
-    int step = contour->grid.base / lines_per_base(contour->probe.csg);
-    struct line_rows work = {.contour = contour,
-                             .step = step > 0 ? step : 1,
-                             .probes = mem_alloc_zero((size_t)workers, sizeof *work.probes)};
-    while (work.probes && ready < workers && solid_probe_init(&work.probes[ready], contour->probe.csg))
-        ready++;
-    bool ok = ready == workers || error_no_memory(error, "the lines through a solid");
+    const struct csg *csg = contour->probe.csg;
+    int workers = pool_workers(pool), step = contour->grid.base / lines_per_base(csg);
+    struct line_rows work = {.contour = contour, .step = step > 0 ? step : 1, .probes = solid_probes(csg, workers)};
+    bool ok = work.probes || error_no_memory(error, "the lines through a solid");
     for (work.axis = 0; ok && work.axis < 3; work.axis++)
         ok = cast_axis(&work, pool, error);
-    while (ready > 0)
-        solid_probe_destroy(&work.probes[--ready]);
-    mem_free(work.probes);
+    solid_probes_destroy(work.probes, workers);
     return ok;
 }
 

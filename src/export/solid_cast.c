@@ -23,6 +23,23 @@ void solid_probe_destroy(struct solid_probe *probe) {
     mem_free(probe->found);
 }
 
+struct solid_probe *solid_probes(const struct csg *csg, int count) {
+    struct solid_probe *probes = mem_alloc_zero((size_t)count, sizeof *probes);
+    for (int i = 0; probes && i < count; i++) {
+        if (solid_probe_init(&probes[i], csg))
+            continue;
+        solid_probes_destroy(probes, i);
+        return NULL;
+    }
+    return probes;
+}
+
+void solid_probes_destroy(struct solid_probe *probes, int count) {
+    for (int i = 0; probes && i < count; i++)
+        solid_probe_destroy(&probes[i]);
+    mem_free(probes);
+}
+
 /* Whether the parts of a shape are smooth pieces that meet in edges. Those of implicit solids are none; of many facets
  * most edges are to be forgotten: there an edge is where the normal turns much. */
 static bool has_pieces(const struct shape *shape) {

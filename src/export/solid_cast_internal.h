@@ -29,6 +29,9 @@ struct solid_probe {
 
 bool solid_probe_init(struct solid_probe *probe, const struct csg *csg);
 void solid_probe_destroy(struct solid_probe *probe);
+/* One for each worker; NULL: no memory. */
+struct solid_probe *solid_probes(const struct csg *csg, int count);
+void solid_probes_destroy(struct solid_probe *probes, int count);
 /* Sets probe->found. */
 void solid_cast(struct solid_probe *probe, struct vec3 origin, struct vec3 direction);
 /* The crossing nearest to the origin, on either side, if it is nearer than `limit`; the direction has unit length. */

@@ -54,7 +54,9 @@ struct vec3 solid_round(const struct csg *csg, struct vec3 point) {
 
 /* Positions are those of the file, in single precision: equal ones are one vertex. */
 static bool add_position(struct solid_mesh *out, struct key_map *positions, struct vec3 point, uint32_t *vertex) {
-    const float rounded[3] = {(float)point.x, (float)point.y, (float)point.z};
+    /* volatile: else GCC 12 stores x and y of the vertex as they were before they were rounded. */
+    const volatile float single[3] = {(float)point.x, (float)point.y, (float)point.z};
+    const float rounded[3] = {single[0], single[1], single[2]};
     uint64_t key = hash_bytes(rounded, sizeof rounded, 0) | 1;
     for (uint32_t *found; (found = key_map_find(positions, key)) != NULL; key += 2) {
         struct vec3 other = solid_vertex_at(out, *found)->point;
@@ -153,7 +155,7 @@ bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct er
 
 /* --- tests of a mesh --- */
 
-/* Of the tolerance: points that are further away are too far, for others beside them may be a little further. */
+/* Of the tolerance: known points that are further away are too far, for others beside them may be a little further. */
 static const double far_share = 0.98;
 
 /* Faults of a mesh, by the boxes in which vertices are kept. */
@@ -222,7 +224,7 @@ static void test_chunk(void *context, uint32_t item, int worker) {
     uint32_t end = (item + 1) * CHUNK, count = (uint32_t)v->mesh->triangles.count;
     for (uint32_t i = item * CHUNK; i < end && i < count; i++) {
         struct corners corners = corners_of(v->mesh, i);
-        v->stray[i] = strays(&v->probes[worker], &corners, far_share * v->input->tolerance);
+        v->stray[i] = strays(&v->probes[worker], &corners, v->input->tolerance);
     }
 }
 
@@ -316,7 +318,7 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
                      struct solid_findings *findings, bool *good, struct error *error) {
     double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
     const struct contour_input contour = {input->csg, input->tolerance, cells, input->pool};
-    int workers = pool_workers(input->pool), ready = 0;
+    int workers = pool_workers(input->pool);
     struct verification v = {.input = input, .size = size};
     struct solid_mesh fine;
     *good = false;
@@ -326,14 +328,10 @@ static bool try_grid(const struct solid_input *input, uint32_t cells, struct sol
     round_coordinates(input->csg, &fine);
     uint8_t *keep = mem_alloc_zero(fine.vertices.count, 1);
     ok = ok && separate_parts(&fine, input, findings, error);
-    v.probes = mem_alloc_zero((size_t)workers, sizeof *v.probes);
-    while (v.probes && ready < workers && solid_probe_init(&v.probes[ready], input->csg))
-        ready++;
-    ok = ok && ((keep && ready == workers) || error_no_memory(error, "the mesh of a solid"));
+    v.probes = solid_probes(input->csg, workers);
+    ok = ok && ((keep && v.probes) || error_no_memory(error, "the mesh of a solid"));
     ok = ok && simplify_and_test(&v, &fine, out, keep, good, error);
-    while (ready > 0)
-        solid_probe_destroy(&v.probes[--ready]);
-    mem_free(v.probes);
+    solid_probes_destroy(v.probes, workers);
     mem_free(keep);
     list_destroy(&v.boxes);
     list_destroy(&v.known);
