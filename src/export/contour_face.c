@@ -258,8 +258,8 @@ static bool joins_first(struct face_search *search, const struct boundary_point 
     middle = vec3_with(vec3_with(middle, search->u, x[0] + t * ax), search->v, y[0] + t * ay);
     bool inside = solid_contains(&search->contour->probe, middle);
     for (int i = p[0].enter ? 1 : 0; inside && i < 4; i += 2) {
-        struct vec3 aside = vec3_scale(vec3_add(point[i], point[(i + 1) % 4]), 0.5);
-        inside = solid_contains(&search->contour->probe, vec3_towards(middle, aside, touch_share));
+        struct vec3 outside = vec3_scale(vec3_add(point[i], point[(i + 1) % 4]), 0.5);
+        inside = solid_contains(&search->contour->probe, vec3_towards(middle, outside, touch_share));
     }
     return inside != p[0].enter;
 }
