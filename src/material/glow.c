@@ -128,8 +128,8 @@ static bool make_part(struct glow_part *part, const struct glow_part *before, st
         until[i] /= sum;
     struct vec3 size = part->cells.size;
     part->power = sum * (size.x * size.y * size.z / (double)count);
-    if (medium->place)
-        part->power /= fabs(affine_determinant(&medium->place->open));
+    if (medium->placement)
+        part->power /= fabs(affine_determinant(&medium->placement->open));
     return true;
 }
 
@@ -177,12 +177,12 @@ static uint64_t chosen(const double *until, uint64_t count, double x) {
     return low;
 }
 
-static struct affine place_at(const struct medium_place *place, double time) {
-    if (!place)
+static struct affine placement_at(const struct medium_placement *placement, double time) {
+    if (!placement)
         return affine_identity();
-    struct affine at = place->open;
+    struct affine at = placement->open;
     for (int i = 0; i < 12; i++)
-        at.m[i / 4][i % 4] += time * (place->close.m[i / 4][i % 4] - at.m[i / 4][i % 4]);
+        at.m[i / 4][i % 4] += time * (placement->close.m[i / 4][i % 4] - at.m[i / 4][i % 4]);
     return at;
 }
 
@@ -202,13 +202,13 @@ bool glow_sample(const struct glow *glow, double time, struct sample2 u, struct 
     const struct glow_part *part = &glow->parts[i];
     double before = i > 0 ? part[-1].power : 0, left = (wanted - before) / (part->power - before);
     uint64_t cell = chosen(part->until, fog_cell_count(&part->cells), left);
-    struct affine map = place_at(part->medium->place, time);
-    struct transform place;
+    struct affine map = placement_at(part->medium->placement, time);
+    struct transform placement;
     out->medium = part->medium;
     out->pdf = cell_pdf(glow, part, cell) * fabs(affine_determinant(&map));
-    if (!(out->pdf > 0) || !transform_from_affine(&map, &place))
+    if (!(out->pdf > 0) || !transform_from_affine(&map, &placement))
         return false;
-    out->point = affine_point(&place.inverse, point_in(&part->cells, cell, u.y, v.x, v.y));
+    out->point = affine_point(&placement.inverse, point_in(&part->cells, cell, u.y, v.x, v.y));
     return true;
 }
 
@@ -217,9 +217,9 @@ double glow_pdf(const struct glow *glow, const struct medium *medium, struct vec
     uint32_t part = number < glow->medium_count ? glow->part_of[number] : 0;
     if (part == 0)
         return 0;
-    struct affine place = place_at(medium->place, time);
-    uint64_t cell = density_cell(cells_of(medium), affine_point(&place, point));
-    return cell_pdf(glow, &glow->parts[part - 1], cell) * fabs(affine_determinant(&place));
+    struct affine placement = placement_at(medium->placement, time);
+    uint64_t cell = density_cell(cells_of(medium), affine_point(&placement, point));
+    return cell_pdf(glow, &glow->parts[part - 1], cell) * fabs(affine_determinant(&placement));
 }
 
 /* A ray takes one point of each cell, so its density per length is about one over the edge. */
@@ -227,12 +227,12 @@ double glow_met_weight(const struct glow_met *met, const struct medium *medium, 
     double found = glow_pdf(met->glow, medium, point, time);
     if (!(found > 0))
         return 1;
-    struct affine place = place_at(medium->place, time);
+    struct affine placement = placement_at(medium->placement, time);
     struct fog_cells cells;
     (void)density_cells(cells_of(medium), &cells);
     double volume = cells.size.x * cells.size.y * cells.size.z / (double)fog_cell_count(&cells);
-    struct vec3 way = vec3_sub(point, met->from);
-    double by_ray = met->pdf * el_cbrt(fabs(affine_determinant(&place)) / volume);
-    double by_cell = found * vec3_dot(way, way);
+    struct vec3 off = vec3_sub(point, met->from);
+    double by_ray = met->pdf * el_cbrt(fabs(affine_determinant(&placement)) / volume);
+    double by_cell = found * vec3_dot(off, off);
     return by_ray * by_ray / (by_ray * by_ray + by_cell * by_cell);
 }

@@ -187,7 +187,8 @@ static bool are_equal(const struct medium *a, const struct medium *b) {
            a->heat == b->heat && colour_equal(a->extinction, b->extinction) &&
            colour_equal(a->scattering, b->scattering) && colour_equal(a->emission, b->emission) &&
            a->phase.kind == b->phase.kind && a->phase.g == b->phase.g &&
-           (!a->place || !b->place ? a->place == b->place : memcmp(a->place, b->place, sizeof *a->place) == 0);
+           (!a->placement || !b->placement ? a->placement == b->placement
+                                           : memcmp(a->placement, b->placement, sizeof *a->placement) == 0);
 }
 
 bool medium_stacks_equal(const struct medium_stack *a, const struct medium_stack *b) {

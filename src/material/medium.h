@@ -28,27 +28,27 @@ struct heat;
 
 /* The map from the world to the space of what is given by place, when the shutter opens and closes; between these,
  * points move straight. */
-struct medium_place {
+struct medium_placement {
     struct affine open, close;
 };
 
 struct medium {
     double ior;
-    struct dispersion dispersion;     /* of the index */
-    struct colour tint;               /* of light that passes the surface of the solid */
-    const struct fog *fog;            /* or NULL; then nothing of the following */
-    struct colour extinction;         /* absorption and scattering: the logarithm of light decreases by this per unit */
-    struct colour scattering;         /* at most the extinction */
-    struct colour emission;           /* radiance per unit */
-    struct phase phase;               /* of scattering */
-    const struct density *density;    /* the factor of these three by place (density.h); NULL: 1 */
-    const struct heat *heat;          /* the factor of the emission by place (glow.h); only with a density, or NULL */
-    const struct medium_place *place; /* of these; NULL: the world */
-    const struct medium *inner;       /* one more in the same solid, or NULL */
-    bool scatters;                    /* scattering is not black */
-    bool fills;                       /* inside of solids whose surface is invisible */
-    bool mixed;                       /* with a density or others in the same place: medium_mix.h */
-    unsigned affects;                 /* the set of enum medium_ray that do not pass it as if nothing were there */
+    struct dispersion dispersion;  /* of the index */
+    struct colour tint;            /* of light that passes the surface of the solid */
+    const struct fog *fog;         /* or NULL; then nothing of the following */
+    struct colour extinction;      /* absorption and scattering: the logarithm of light decreases by this per unit */
+    struct colour scattering;      /* at most the extinction */
+    struct colour emission;        /* radiance per unit */
+    struct phase phase;            /* of scattering */
+    const struct density *density; /* the factor of these three by place (density.h); NULL: 1 */
+    const struct heat *heat;       /* the factor of the emission by place (glow.h); only with a density, or NULL */
+    const struct medium_placement *placement; /* of these; NULL: the world */
+    const struct medium *inner;               /* one more in the same solid, or NULL */
+    bool scatters;                            /* scattering is not black */
+    bool fills;                               /* inside of solids whose surface is invisible */
+    bool mixed;                               /* with a density or others in the same place: medium_mix.h */
+    unsigned affects; /* the set of enum medium_ray that do not pass it as if nothing were there */
 };
 
 /* Around all solids. fog: or NULL. */

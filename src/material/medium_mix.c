@@ -34,22 +34,22 @@ bool medium_mix_scatters(const struct medium_mix *mix) {
 
 /* --- where --- */
 
-struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time) {
-    if (!place)
+struct vec3 medium_placement_point(const struct medium_placement *placement, struct vec3 p, double time) {
+    if (!placement)
         return p;
-    struct vec3 open = affine_point(&place->open, p), close = affine_point(&place->close, p);
+    struct vec3 open = affine_point(&placement->open, p), close = affine_point(&placement->close, p);
     return vec3_add_scaled(open, vec3_sub(close, open), time);
 }
 
-struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line) {
-    struct medium_line placed = *line;
-    if (!place)
-        return placed;
-    struct vec3 open = affine_vector(&place->open, line->direction),
-                close = affine_vector(&place->close, line->direction);
-    placed.origin = medium_place_point(place, line->origin, line->time);
-    placed.direction = vec3_add_scaled(open, vec3_sub(close, open), line->time);
-    return placed;
+struct medium_line medium_placement_line(const struct medium_placement *placement, const struct medium_line *line) {
+    struct medium_line local = *line;
+    if (!placement)
+        return local;
+    struct vec3 open = affine_vector(&placement->open, line->direction),
+                close = affine_vector(&placement->close, line->direction);
+    local.origin = medium_placement_point(placement, line->origin, line->time);
+    local.direction = vec3_add_scaled(open, vec3_sub(close, open), line->time);
+    return local;
 }
 
 bool medium_needs_solid(const struct medium *medium) {
@@ -57,13 +57,15 @@ bool medium_needs_solid(const struct medium *medium) {
 }
 
 double medium_density(const struct medium *medium, struct vec3 p, double time) {
-    return medium->density ? density_value(medium->density, medium_place_point(medium->place, p, time), time) : 1;
+    return medium->density ? density_value(medium->density, medium_placement_point(medium->placement, p, time), time)
+                           : 1;
 }
 
 struct colour medium_emission_at(const struct medium *medium, double density, struct vec3 p, double time) {
     struct colour emission = colour_scale(medium->emission, density);
-    return medium->heat ? colour_mul(emission, heat_at(medium->heat, medium_place_point(medium->place, p, time), time))
-                        : emission;
+    return medium->heat
+               ? colour_mul(emission, heat_at(medium->heat, medium_placement_point(medium->placement, p, time), time))
+               : emission;
 }
 
 /* --- along a line --- */
@@ -88,7 +90,7 @@ static void begin_pieces(struct pieces *pieces, const struct medium_mix *mix, co
         pieces->inside[i] = false;
         if (!mix->media[i]->density)
             continue;
-        pieces->lines[i] = medium_place_line(mix->media[i]->place, line);
+        pieces->lines[i] = medium_placement_line(mix->media[i]->placement, line);
         density_begin(mix->media[i]->density, &pieces->lines[i], &pieces->traversals[i]);
         pieces->inside[i] = density_next(&pieces->traversals[i]);
     }
@@ -352,9 +354,9 @@ struct colour medium_mix_dimmed(const struct medium_mix *mix, const struct mediu
     struct colour depth = {0, 0, 0};
     for (uint32_t i = 0; i < mix->count; i++) {
         const struct density *density = mix->media[i]->density;
-        const struct medium_line placed = medium_place_line(mix->media[i]->place, line);
+        const struct medium_line local = medium_placement_line(mix->media[i]->placement, line);
         depth = colour_add(
-            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, &placed) : line->distance));
+            depth, depth_of(mix->media[i]->extinction, density ? density_depth(density, &local) : line->distance));
     }
     return exponential(depth);
 }

@@ -20,8 +20,8 @@ void medium_stack_mix(const struct medium_stack *stack, struct medium_mix *out);
 bool medium_mix_scatters(const struct medium_mix *mix);
 
 /* A point and a line where the density of the medium is; t remains that of the line. */
-struct vec3 medium_place_point(const struct medium_place *place, struct vec3 p, double time);
-struct medium_line medium_place_line(const struct medium_place *place, const struct medium_line *line);
+struct vec3 medium_placement_point(const struct medium_placement *placement, struct vec3 p, double time);
+struct medium_line medium_placement_line(const struct medium_placement *placement, const struct medium_line *line);
 /* Whether its density or temperature is to fill the box of a solid. */
 bool medium_needs_solid(const struct medium *medium);
 /* The factor of the coefficients of a medium at a point. */

@@ -105,6 +105,7 @@ struct preview_command {
         overlay;            /* of PASS: made after it; of OVERLAY. After PICK the outline is that of the picked node */
     double x, y;            /* of PICK and PIXEL_TRACE: pixels of the whole picture */
     int32_t up;             /* of PICK: nodes above the one that is hit, or operands below it */
+    bool probes;            /* of PICK: only where the object is; no outline */
     bool by_node;           /* of PICK: not at x, y, but this node */
     struct node_query node; /* of PICK; of NODES: whose children */
     uint32_t first_light;   /* of CHANGE and LIGHTS: report lights from this one on, counted from 0 */

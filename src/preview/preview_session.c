@@ -283,7 +283,7 @@ static bool pick(struct preview_state *work, const struct preview_command *comma
     request.serial = reply->picked.serial;
     request.route = reply->picked.route;
     request.solid = reply->picked.solid;
-    return !reply->picked.hit || make_overlay(work, &command->view, &request, reply, error);
+    return !reply->picked.hit || command->probes || make_overlay(work, &command->view, &request, reply, error);
 }
 
 static bool execute_command(struct preview_state *work, const struct preview_command *command,

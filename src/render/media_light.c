@@ -121,8 +121,8 @@ static bool find_strata(const struct medium_mix *mix, const struct medium_line *
         struct colour e = medium->extinction;
         double from = 0, to = line->distance;
         if (medium->density) {
-            const struct medium_line placed = medium_place_line(medium->place, line);
-            const struct ray ray = {.origin = placed.origin, .direction = placed.direction, .t_max = line->distance};
+            const struct medium_line local = medium_placement_line(medium->placement, line);
+            const struct ray ray = {.origin = local.origin, .direction = local.direction, .t_max = line->distance};
             struct box box = density_box(medium->density);
             if (!box_clip(&box, &ray, &from, &to))
                 continue;

@@ -156,7 +156,7 @@ static bool find_glow(struct path_tracer *tracer, const struct world *world, str
         for (const struct medium *medium = &world->media.all[i]; medium; medium = medium->inner)
             tracer->lights.met = tracer->lights.met || colour_max_abs(medium->emission) > 0;
     return tracer->strategy == PATH_STRATEGY_BSDF ||
-           glow_build(&tracer->glow, &world->media.all[first], world->placed_count + 1, &tracer->arena, error);
+           glow_build(&tracer->glow, &world->media.all[first], world->local_media_count + 1, &tracer->arena, error);
 }
 
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,

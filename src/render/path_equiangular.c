@@ -51,16 +51,16 @@ static double point_of_view(const struct view_of_line *view, double u) {
 }
 
 /* The integral over the line of the light that comes from the lamp and goes on to the origin of the ray. */
-static double light_on_line(const struct world_lights *lights, const struct aimed_light *lamp, const struct ray *ray,
+static double light_on_line(const struct world_lights *lights, const struct aimed_light *aimed, const struct ray *ray,
                             double end, double haze) {
     const struct vec3 direction = vec3_normalize(ray->direction);
     struct view_of_line view;
     double sum = 0;
-    if (!find_view(lights, lamp->light, ray, end, &view))
+    if (!find_view(lights, aimed->light, ray, end, &view))
         return 0;
     for (int i = 0; i < POINTS; i++) {
         double t = fmax(point_of_view(&view, (i + 0.5) / POINTS), 0);
-        sum += light_bounds_importance(&lamp->bounds, vec3_add_scaled(ray->origin, direction, t), vec3_all(0)) /
+        sum += light_bounds_importance(&aimed->bounds, vec3_add_scaled(ray->origin, direction, t), vec3_all(0)) /
                view_pdf(&view, t);
     }
     /* Dimmed by what is on the way over the point nearest to the lamp. */
@@ -69,23 +69,23 @@ static double light_on_line(const struct world_lights *lights, const struct aime
     return sum;
 }
 
-static void weigh_lamps(const struct path_tracer *tracer, const struct path *path, const struct medium_mix *mix,
-                        double end, struct path_lamps *out) {
+static void weigh_lights(const struct path_tracer *tracer, const struct path *path, const struct medium_mix *mix,
+                         double end, struct path_aimed *out) {
     const uint32_t all = tracer->aimed_light_count;
     const double haze = medium_mix_haze(mix);
     double sum = 0;
-    out->count = all < AIMED_LAMPS ? all : AIMED_LAMPS;
+    out->count = all < AIMED_LIGHTS ? all : AIMED_LIGHTS;
     out->first = 0;
     if (out->count == 1) {
         out->shares[0] = 1;
         return;
     }
     /* Of many lamps any few that follow each other. */
-    if (all > AIMED_LAMPS)
-        out->first = (uint32_t)(random_unit(random_combine(path->sampler.key, path->dimension | SAMPLER_LAMPS)) * all);
+    if (all > AIMED_LIGHTS)
+        out->first = (uint32_t)(random_unit(random_combine(path->sampler.key, path->dimension | SAMPLER_LIGHTS)) * all);
     for (uint32_t i = 0; i < out->count; i++) {
-        const struct aimed_light *lamp = &tracer->aimed_lights[(out->first + i) % all];
-        sum += out->shares[i] = light_on_line(&tracer->lights, lamp, &path->ray, end, haze);
+        const struct aimed_light *aimed = &tracer->aimed_lights[(out->first + i) % all];
+        sum += out->shares[i] = light_on_line(&tracer->lights, aimed, &path->ray, end, haze);
     }
     for (uint32_t i = 0; i < out->count; i++)
         out->shares[i] = (sum > 0 ? (1 - alike) * out->shares[i] / sum + alike / out->count : 1.0 / out->count);
@@ -93,16 +93,17 @@ static void weigh_lamps(const struct path_tracer *tracer, const struct path *pat
 
 double path_tracked_weight(const struct path_tracer *tracer, const struct path_tracked *tracked, struct light_part part,
                            double pmf) {
-    const struct path_lamps *lamps = &tracked->lamps;
+    const struct path_aimed *choice = &tracked->choice;
     struct view_of_line view;
     uint32_t i = 0;
     if (!(tracked->density > 0))
         return 1;
-    while (i < lamps->count && tracer->aimed_lights[(lamps->first + i) % tracer->aimed_light_count].light != part.light)
+    while (i < choice->count &&
+           tracer->aimed_lights[(choice->first + i) % tracer->aimed_light_count].light != part.light)
         i++;
-    if (i == lamps->count || !find_view(&tracer->lights, part.light, tracked->ray, tracked->end, &view))
+    if (i == choice->count || !find_view(&tracer->lights, part.light, tracked->ray, tracked->end, &view))
         return 1;
-    return squared_share(tracked->density * pmf, view_pdf(&view, tracked->distance) * lamps->shares[i]);
+    return squared_share(tracked->density * pmf, view_pdf(&view, tracked->distance) * choice->shares[i]);
 }
 
 /* What the media at the point scatter of the sample, weighted against rays that meet the light. */
@@ -124,7 +125,7 @@ static struct colour scattered(const struct path_tracer *tracer, const struct pa
 
 /* path->scatter is the point on the ray. */
 static struct colour aimed_light(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                                 const struct medium_mix *mix, double distance, struct path_lamps *lamps) {
+                                 const struct medium_mix *mix, double distance, struct path_aimed *choice) {
     const struct world_lights *lights = &tracer->lights;
     const struct sampler *sampler = &path->sampler;
     const struct sample2 u = sampler_point(sampler, path->dimension | SAMPLER_AIMED);
@@ -133,10 +134,10 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
     /* A lamp, and a point on the ray. */
     uint32_t chosen = 0;
     double until;
-    weigh_lamps(tracer, path, mix, distance, lamps);
-    for (until = lamps->shares[0]; chosen + 1 < lamps->count && !(u.x < until); until += lamps->shares[chosen])
+    weigh_lights(tracer, path, mix, distance, choice);
+    for (until = choice->shares[0]; chosen + 1 < choice->count && !(u.x < until); until += choice->shares[chosen])
         chosen++;
-    const uint32_t number = (lamps->first + chosen) % tracer->aimed_light_count;
+    const uint32_t number = (choice->first + chosen) % tracer->aimed_light_count;
     shadow.part = (struct light_part){tracer->aimed_lights[number].light, 0};
     if (!find_view(lights, shadow.part.light, &path->ray, distance, &view))
         return colour_all(0);
@@ -155,7 +156,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
         return light;
     const struct medium_line before = {path->ray.origin, direction, t, path->ray.time};
     double tracked = medium_mix_density(mix, &before, path->weight);
-    double own = view_pdf(&view, t) * lamps->shares[chosen], weight = squared_share(own, tracked * pmf_there);
+    double own = view_pdf(&view, t) * choice->shares[chosen], weight = squared_share(own, tracked * pmf_there);
     light =
         colour_mul(light, medium_mix_left(mix, &before, random_combine(sampler->key, path->dimension | SAMPLER_AIMED)));
     const struct path_vertex vertex = {.ray = &path->ray, .receiver = &path->scatter};
@@ -166,9 +167,9 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
 }
 
 struct colour path_aimed_light(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                               const struct medium_mix *mix, double distance, struct path_lamps *lamps) {
+                               const struct medium_mix *mix, double distance, struct path_aimed *choice) {
     const struct light_receiver scatter = path->scatter;
-    struct colour light = aimed_light(tracer, state, path, mix, distance, lamps);
+    struct colour light = aimed_light(tracer, state, path, mix, distance, choice);
     path->scatter = scatter;
     return light;
 }

@@ -19,22 +19,22 @@ static inline bool path_is_aimed(const struct path_tracer *tracer, const struct 
 
 /* The lamps of which a ray chooses one, by estimates of the light that the media scatter of them: those from `first`
  * on, cyclic. */
-enum { AIMED_LAMPS = 16 };
-struct path_lamps {
+enum { AIMED_LIGHTS = 16 };
+struct path_aimed {
     uint32_t first, count;
-    double shares[AIMED_LAMPS]; /* probabilities */
+    double shares[AIMED_LIGHTS]; /* probabilities */
 };
 
 /* The light of a lamp that media scatter on the ray, for a path of weight 1; `path` has the weight before the ray. */
 struct colour path_aimed_light(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                               const struct medium_mix *mix, double distance, struct path_lamps *lamps);
+                               const struct medium_mix *mix, double distance, struct path_aimed *choice);
 
 /* A vertex that tracking has found on such a ray. */
 struct path_tracked {
     const struct ray *ray;
     double end, distance; /* of the ray, and to the vertex */
     double density;       /* estimate of that of tracking; 0: the ray has no other samples */
-    struct path_lamps lamps;
+    struct path_aimed choice;
 };
 /* The weight of light from a part that the vertex chooses with probability pmf. */
 double path_tracked_weight(const struct path_tracer *tracer, const struct path_tracked *tracked, struct light_part part,

@@ -139,11 +139,11 @@ struct colour path_glow_light(const struct path_tracer *tracer, struct integrato
                      sampler_point(sampler, (dimension + 1) | SAMPLER_GLOW), &at))
         return colour_all(0);
     /* What the vertex scatters of its light. */
-    const struct vec3 way = vec3_sub(at.point, vertex->receiver->point);
-    const double square = vec3_dot(way, way);
+    const struct vec3 off = vec3_sub(at.point, vertex->receiver->point);
+    const double square = vec3_dot(off, off);
     if (!(square > 0))
         return colour_all(0);
-    *direction = vec3_normalize(way);
+    *direction = vec3_normalize(off);
     struct colour light = scattered(vertex, vertex->at.lobes, *direction);
     if (colour_is_black(light))
         return light;

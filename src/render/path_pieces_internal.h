@@ -155,8 +155,8 @@ static uint64_t medium_key(const struct path *path) {
 static __attribute__((noinline)) void sample_aimed_light(const struct path_tracer *tracer,
                                                          struct integrator_state *state, struct path *path,
                                                          const struct medium_mix *mix, double distance,
-                                                         struct path_lamps *lamps) {
-    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance, lamps));
+                                                         struct path_aimed *choice) {
+    struct colour light = colour_mul(path->weight, path_aimed_light(tracer, state, path, mix, distance, choice));
     struct path_parts *parts = parts_of(state);
     path->light = colour_add(path->light, light);
     if (!parts || colour_is_black(light))
@@ -189,7 +189,7 @@ static void pass_single(const struct path_tracer *tracer, struct integrator_stat
         const struct colour weight = path->weight;
         add_light(state, path, medium_emission(medium, end));
         if (aimed)
-            sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
+            sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.choice);
         struct medium_sample sample = medium_sample(medium, end, weight, u);
         path->weight = colour_mul(weight, sample.weight);
         out->distance = sample.distance;
@@ -231,7 +231,7 @@ static __attribute__((noinline)) void pass_mix(const struct path_tracer *tracer,
     }
     const bool aimed = path_is_aimed(tracer, path);
     if (aimed)
-        sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.lamps);
+        sample_aimed_light(tracer, state, path, &mix, end, &out->tracked.choice);
     path->weight = colour_mul(weight, track.weight);
     out->distance = track.distance;
     out->medium = track.scatterer;

@@ -101,7 +101,7 @@ enum { SAMPLER_VERTEX_DIMENSIONS = 3 };
 #define SAMPLER_MEDIUM (UINT32_C(1) << 31)  /* with the first dimension of a vertex: the way of the ray to it */
 #define SAMPLER_AIMED (UINT32_C(1) << 29)   /* likewise: light along that way */
 #define SAMPLER_GLOW (UINT32_C(1) << 28)    /* likewise: light of glowing media */
-#define SAMPLER_LAMPS (UINT32_C(1) << 27)   /* likewise: the lamps of which one is chosen for that way */
+#define SAMPLER_LIGHTS (UINT32_C(1) << 27)  /* likewise: the lamps of which one is chosen for that way */
 #define SAMPLER_STRETCH (UINT32_C(1) << 30) /* in the same way: the rays to lights */
 
 /* Sample `number` of a pixel (counted row by row over the whole picture) of side x side. */

@@ -220,7 +220,7 @@ static bool read_field(struct script_context *context, const struct script_value
 /* Temperatures above this count as this. */
 static const double hottest = 1e5;
 
-static bool read_places(struct script_context *context, const struct script_value *args, struct medium_input *in,
+static bool read_fields(struct script_context *context, const struct script_value *args, struct medium_input *in,
                         struct error *error) {
     struct arena *arena = &context->scene.arena;
     const struct script_value *density = &args[MEDIUM_DENSITY], *temperature = &args[MEDIUM_TEMPERATURE];
@@ -281,7 +281,7 @@ static bool gr_medium(struct script_context *context, const struct script_value 
         return error_set(error, ERROR_SCENE, "phase = 'rayleigh' has no g; give one of them");
     if (args[MEDIUM_PHASE].given)
         in.phase = (struct phase){PHASE_RAYLEIGH, 0};
-    if (!read_places(context, args, &in, error))
+    if (!read_fields(context, args, &in, error))
         return false;
     struct medium medium = medium_filling(&in);
     if (!colour_finite(medium.extinction) || !colour_finite(medium.emission))

@@ -427,6 +427,7 @@ static void command_pick(struct viewer *viewer) {
                                                .x = viewer->edit.click.x,
                                                .y = viewer->edit.click.y,
                                                .up = viewer->edit.click.up,
+                                               .probes = viewer->edit.probes,
                                                .by_node = viewer->edit.by_node,
                                                .node = viewer->edit.node};
     viewer->edit.by_node = false;

@@ -51,7 +51,7 @@ static bool count_solids(const struct world *world, uint32_t *list, uint32_t *of
 
 /* --- by place --- */
 
-static bool has_places(const struct world *world, uint32_t material) {
+static bool has_density(const struct world *world, uint32_t material) {
     const struct medium *medium = &world->media.all[material];
     return medium->density || (medium->inner && medium->inner->density);
 }
@@ -77,36 +77,36 @@ static struct box own_box(const struct world *world, uint32_t solid) {
 }
 
 /* Gives each solid with a density a medium of its own. Errors: no memory, a grid without a box. */
-static bool make_places(struct flattening *f, uint32_t solid_count, struct solid *solids) {
+static bool make_local_media(struct flattening *f, uint32_t solid_count, struct solid *solids) {
     struct world *world = f->world;
     uint32_t count = 0, first = world->media.outside + 1;
     for (uint32_t i = 0; i < solid_count; i++)
-        count += has_places(world, solids[i].medium);
+        count += has_density(world, solids[i].medium);
     if (count == 0)
         return true;
     struct medium *all = arena_alloc_array(f->arena, (size_t)first + count, sizeof *all);
-    world->placed = arena_alloc_array(f->arena, count, sizeof *world->placed);
-    if (!all || !world->placed)
+    world->local_media = arena_alloc_array(f->arena, count, sizeof *world->local_media);
+    if (!all || !world->local_media)
         return error_no_memory(f->error, "the media of the scene");
     memcpy(all, world->media.all, first * sizeof *all);
     world->media.all = all;
     for (uint32_t i = 0; i < solid_count; i++) {
         struct box box;
-        if (!has_places(world, solids[i].medium))
+        if (!has_density(world, solids[i].medium))
             continue;
         if (is_fitted(world, solids[i].medium) &&
             (box = own_box(world, i), !vec3_finite(box.min) || !vec3_finite(box.max)))
             return error_set(f->error, ERROR_SCENE,
                              "node '%.100s' has no end, so the grid of its medium needs corner and size",
                              primitive_node(world, solids[i].primitive)->name);
-        world->placed[world->placed_count].solid = i;
-        solids[i].medium = first + world->placed_count++;
+        world->local_media[world->local_media_count].solid = i;
+        solids[i].medium = first + world->local_media_count++;
     }
     return true;
 }
 
 /* From the world to the space of the shape; the box that a grid fits becomes the unit box. */
-static struct affine place_of(const struct world *world, uint32_t solid, bool fits, double time) {
+static struct affine placement_of(const struct world *world, uint32_t solid, bool fits, double time) {
     uint32_t primitive = world->media.solids[solid].primitive;
     const struct csg *csg = primitive_geometry(world, primitive)->csg;
     struct affine map = world_placement(world, primitive, time).inverse;
@@ -124,21 +124,21 @@ static struct affine place_of(const struct world *world, uint32_t solid, bool fi
     return map;
 }
 
-void solids_place(struct world *world) {
-    for (uint32_t i = 0; i < world->placed_count; i++) {
-        struct placed_medium *placed = &world->placed[i];
-        uint32_t material = world->solid_materials[placed->solid];
+void solids_update_media(struct world *world) {
+    for (uint32_t i = 0; i < world->local_media_count; i++) {
+        struct local_medium *local = &world->local_media[i];
+        uint32_t material = world->solid_materials[local->solid];
         struct medium *medium = &world->media.all[world->media.outside + 1 + i];
         bool fits = is_fitted(world, material);
-        placed->place =
-            (struct medium_place){place_of(world, placed->solid, fits, 0), place_of(world, placed->solid, fits, 1)};
+        local->placement = (struct medium_placement){placement_of(world, local->solid, fits, 0),
+                                                     placement_of(world, local->solid, fits, 1)};
         *medium = world->media.all[material];
-        medium->place = &placed->place;
+        medium->placement = &local->placement;
         if (!medium->inner)
             continue;
-        placed->inner = *medium->inner;
-        placed->inner.place = &placed->place;
-        medium->inner = &placed->inner;
+        local->inner = *medium->inner;
+        local->inner.placement = &local->placement;
+        medium->inner = &local->inner;
     }
 }
 
@@ -173,5 +173,6 @@ bool solids_make(struct flattening *f) {
     world->first_solid = materials ? first : NULL;
     mem_free(list);
     mem_free(of_prototype);
-    return materials ? make_places(f, (uint32_t)count, solids) : error_no_memory(f->error, "the solids of the scene");
+    return materials ? make_local_media(f, (uint32_t)count, solids)
+                     : error_no_memory(f->error, "the solids of the scene");
 }

@@ -8,12 +8,12 @@
 bool solids_make(struct flattening *f);
 
 /* A medium with a density, in the space of one solid. */
-struct placed_medium {
+struct local_medium {
     uint32_t solid;
     struct medium inner; /* behind the surface of a material */
-    struct medium_place place;
+    struct medium_placement placement;
 };
 /* Puts them where their solids are. */
-void solids_place(struct world *world);
+void solids_update_media(struct world *world);
 
 #endif

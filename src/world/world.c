@@ -691,7 +691,7 @@ void world_update_materials(struct world *world) {
         surface_material_update(&world->surfaces.materials[i], world->authored.materials[i], world->classic);
         world->media.all[i] = medium_of(world, i);
     }
-    solids_place(world);
+    solids_update_media(world);
 }
 
 /* The tables of materials and of the media inside. */
@@ -763,7 +763,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening) || !solids_make(&flattening)))
         return false;
     world->media.all[world->media.outside] = input->outside ? *input->outside : medium_outside(NULL);
-    solids_place(world);
+    solids_update_media(world);
     add_up_meshes(world, input->scene->assets);
     /* The accelerator comes last, since it needs the boxes; that of the frame before fits if they are equal. */
     reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,

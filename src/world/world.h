@@ -65,7 +65,7 @@ struct primitive {
 #define LINEAR_NONE UINT32_MAX            /* world_from_object changes nothing */
 #define LINEAR_MOVING (UINT32_C(1) << 31) /* with the number of an entry in world->moving */
 
-struct placed_medium;
+struct local_medium;
 struct world {
     const struct primitive *primitives;
     struct prototype *prototypes; /* owned, as are maps and moving */
@@ -88,8 +88,8 @@ struct world {
     struct media media;          /* by material; behind the outside those that are given by place, by solid */
     const uint32_t *first_solid; /* by primitive, one more at the end; NULL: light passes none */
     const uint32_t *solid_materials;
-    struct placed_medium *placed; /* world/solids_internal.h */
-    uint32_t placed_count;
+    struct local_medium *local_media; /* world/solids_internal.h */
+    uint32_t local_media_count;
     double emission_bound; /* a bound of the largest component of emission */
     const struct light *lights;
     uint32_t light_count;

@@ -982,7 +982,7 @@ TEST(a_density_above_its_bound_is_one_warning_that_names_the_point) {
     struct test_result result = test_gray_scene(scene, "-j 1 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     const char *warning = strstr(result.err, "warning: the density of a medium is ");
-    CHECK(warning && strstr(warning, "at p = {"));
+    CHECK(warning && strstr(warning, "between p = {-0.125, "));
     CHECK(warning && !strstr(warning + 20, "the density of a medium is "));
     test_free_result(&result);
 }

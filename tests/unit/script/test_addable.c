@@ -17,10 +17,10 @@ static bool is_listed(const char *name) {
     return false;
 }
 
-/* Other names of the same shapes, and what needs nodes that exist. */
+/* Other names of the same shapes, and what needs nodes or files that exist. */
 static bool is_other_name(const char *name) {
-    static const char *const names[] = {"nh_sphere", "nh_box",       "geometry", "fast_mesh",
-                                        "vn_mesh",   "fast_vn_mesh", "displace"};
+    static const char *const names[] = {"nh_sphere", "nh_box", "geometry",     "fast_mesh",
+                                        "vn_mesh",   "model",  "fast_vn_mesh", "displace"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(name, names[i]) == 0)
             return true;

@@ -505,3 +505,53 @@ TEST_LONG(gtk_window_moves_turns_and_scales_by_typed_numbers_along_every_axis) {
     for (int number = 1; number <= 9; number++)
         check_handle(number);
 }
+
+/* What a new user does: opens a model, frames it, adds a lamp, saves the edits and the picture before it is complete;
+ * the edits apply to the model again. */
+TEST_LONG(gtk_window_opens_a_model_frames_it_adds_a_lamp_and_saves) {
+    need_display();
+    test_write_text(test_path("ball.obj"),
+                    "v -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    drive("",
+          "titled gray; sleep 1; xdotool key ctrl+o sleep 2 type \"$PWD/ball.obj\"; xdotool sleep 0.5 key Return\n"
+          "titled 'ball.png - .* left'; xdotool mousemove 600 460 click 1 sleep 2 key period sleep 1 key shift+a sleep "
+          "1\n"
+          "xdotool type spot; xdotool sleep 1 key Return sleep 2 key ctrl+s; until_file ball-changes1.lua\n"
+          "xdotool key ctrl+shift+s; until_file ball-view1.png; xdotool key ctrl+q",
+          130);
+    gives("grep -q 'gr.spot_light{' ball-changes1.lua && grep -q gr.change_view ball-changes1.lua && $gray -q --size "
+          "32x18 "
+          "--spp 1 ball.obj --edits ball-changes1.lua && $gray -q --size 32x18 --spp 1 ball.obj -o plain.png && "
+          "! cmp -s ball.png plain.png",
+          0);
+}
+
+TEST_LONG(gtk_window_finds_a_node_among_ten_thousand) {
+    need_display();
+    test_write_text(
+        test_path("scene.lua"),
+        "local r = gr.node 'root'\nfor i = 1, 10000 do r:add_child(gr.sphere{name = 'tree ' .. i, radius = 0.3, "
+        "centre = {i % 100, 0, -(i // 100)}}) end\n"
+        "gr.render{node = r, file = 'out.png', width = 200, height = 150, eye = {0, 20, 30}}\n");
+    drive("scene.lua",
+          "titled 'out.png - ready'; xdotool key ctrl+f sleep 0.5 type 'tree 7777'; xdotool key Return sleep 2 key x "
+          "sleep 1\n"
+          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          0);
+    gives("grep -q \"gr.change_delete('tree 7777'\" out-changes1.lua", 0);
+}
+
+/* Letters of one and a half times the size: the panels are wider, the picture smaller. */
+TEST_LONG(gtk_window_has_larger_letters_where_the_desktop_has) {
+    need_display();
+    test_need_tools("xprop");
+    gives("cat >letters.sh <<'END'\n"
+          "openbox >/dev/null 2>&1 & manager=$!\nfor dpi in 96 144; do\n"
+          "xprop -root -format RESOURCE_MANAGER 8s -set RESOURCE_MANAGER \"Xft.dpi: $dpi\"\nrm -f out.png\n"
+          "$gray -gui --verbose --progress=none scene.lua 2>$dpi.txt & pid=$!\nawait 'test -s out.png'\n"
+          "kill -INT $pid; wait $pid\nsed -n 's/.*picture of [0-9]*x\\([0-9]*\\) .*/\\1/p' $dpi.txt | tail -1 "
+          ">$dpi.high\n"
+          "done; kill $manager; test $(cat 144.high) -lt $(cat 96.high)\nEND\n"
+          "xvfb-run -a -s '-screen 0 1400x900x24' sh letters.sh",
+          0);
+}
