@@ -95,17 +95,10 @@ struct light_point {
 
 /* xi.x, rescaled to the unit interval within the share of its triangle. */
 static struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
-    uint32_t low = 0, high = mesh->count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (mesh->until[middle] > xi.x)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
+    uint64_t chosen = sample_entry(mesh->until, mesh->count, xi.x);
+    double begin = chosen > 0 ? mesh->until[chosen - 1] : 0, share = mesh->until[chosen] - begin;
     double x = share > 0 ? (xi.x - begin) / share : 0.5;
-    const struct light_triangle *t = &mesh->triangles[low];
+    const struct light_triangle *t = &mesh->triangles[chosen];
     return (struct light_point){t, triangle_point(t, x, xi.y)};
 }
 

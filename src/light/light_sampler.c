@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "math/sampling.h"
 
 static const double below_one = 1 - 0x1p-53;
 
@@ -330,15 +331,7 @@ static double tree_pmf(const struct light_sampler *s, struct vec3 point, struct 
 }
 
 static struct light_part sample_shares(const struct light_sampler *s, double u, double *pmf) {
-    uint32_t low = 0, high = s->count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (s->until[middle] > u)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    struct light_part part = s->candidates[low];
+    struct light_part part = s->candidates[sample_entry(s->until, s->count, u)];
     *pmf = s->share[s->first_part[part.light] + part.triangle];
     return part;
 }

@@ -14,6 +14,7 @@
 #include "expr/expr_affine.h"
 #include "light/light_shapes_internal.h"
 #include "math/elementary.h"
+#include "math/sampling.h"
 
 enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };
 enum { BREADTH = 4096, MAX_PARTS = 1 << 17 }; /* parts divided in a round; all parts */
@@ -397,19 +398,12 @@ const struct sky_table *sky_table_build(const struct sky *sky, struct arena *are
 
 /* The entry selected by a number; *within: its position inside the entry. */
 static uint32_t find_share(const double *until, uint32_t count, double share, double *within, double *width) {
-    uint32_t low = 0, high = count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (until[middle] > share)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    double begin = low > 0 ? until[low - 1] : 0;
-    *width = until[low] - begin;
+    uint32_t found = (uint32_t)sample_entry(until, count, share);
+    double begin = found > 0 ? until[found - 1] : 0;
+    *width = until[found] - begin;
     *within = *width > 0 ? (share - begin) / *width : 0.5;
     *within = *within < 1 ? *within : 1;
-    return low;
+    return found;
 }
 
 /* Of directions by solid angle, from the shares of a row and of a cell in it. */

@@ -4,6 +4,7 @@
 #include "material/density_internal.h"
 #include "material/medium_mix.h"
 #include "math/elementary.h"
+#include "math/sampling.h"
 #include "math/spectrum.h"
 
 #include <math.h>
@@ -164,19 +165,6 @@ bool glow_build(const struct glow **out, const struct medium *media, uint32_t co
 
 /* --- samples --- */
 
-/* The first entry of rising sums that is above x. */
-static uint64_t chosen(const double *until, uint64_t count, double x) {
-    uint64_t low = 0, high = count - 1;
-    while (low < high) {
-        uint64_t middle = low + (high - low) / 2;
-        if (until[middle] > x)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
 static struct affine placement_at(const struct medium_placement *placement, double time) {
     if (!placement)
         return affine_identity();
@@ -201,7 +189,7 @@ bool glow_sample(const struct glow *glow, double time, struct sample2 u, struct 
         i++;
     const struct glow_part *part = &glow->parts[i];
     double before = i > 0 ? part[-1].power : 0, left = (wanted - before) / (part->power - before);
-    uint64_t cell = chosen(part->until, fog_cell_count(&part->cells), left);
+    uint64_t cell = sample_entry(part->until, fog_cell_count(&part->cells), left);
     struct affine map = placement_at(part->medium->placement, time);
     struct transform placement;
     out->medium = part->medium;

@@ -40,6 +40,19 @@ uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key);
 /* Maps the unit square onto the unit disc; keeps the ratio of areas, and is continuous. */
 struct sample2 sample_disc(struct sample2 square);
 
+/* The entry of a table that a number of [0, 1) selects; until: rising shares up to and with each of the entries. */
+static inline uint64_t sample_entry(const double *until, uint64_t count, double x) {
+    uint64_t low = 0, high = count - 1;
+    while (low < high) {
+        uint64_t middle = low + (high - low) / 2;
+        if (until[middle] > x)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
 /* Rectangles and boxes sampled by their solid angle. */
 
 /* The directions and lengths of the edges of a rectangle. */
