@@ -31,6 +31,10 @@ static inline struct box box_meet(struct box a, struct box b) {
 static inline struct box box_add_point(struct box a, struct vec3 p) {
     return (struct box){vec3_min(a.min, p), vec3_max(a.max, p)};
 }
+/* Corner i of 0 to 7: where bit 1, 2 or 4 is set the maximum of x, y or z. */
+static inline struct vec3 box_corner(const struct box *b, unsigned i) {
+    return vec3_make(i & 1 ? b->max.x : b->min.x, i & 2 ? b->max.y : b->min.y, i & 4 ? b->max.z : b->min.z);
+}
 static inline bool box_contains(const struct box *b, struct vec3 p) {
     return p.x >= b->min.x && p.x <= b->max.x && p.y >= b->min.y && p.y <= b->max.y && p.z >= b->min.z &&
            p.z <= b->max.z;

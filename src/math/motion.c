@@ -192,11 +192,8 @@ static bool is_finite(const struct box *box) {
 /* The box of the region that a box covers while it rotates about an axis through the origin. */
 static struct box turned_bounds(const struct box *box, struct vec3 axis, double from, double to) {
     double radius = 0;
-    for (int i = 0; i < 8; i++) {
-        struct vec3 corner = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
-                              i & 4 ? box->max.z : box->min.z};
-        radius = fmax(radius, vec3_length(vec3_cross(axis, corner)));
-    }
+    for (unsigned i = 0; i < 8; i++)
+        radius = fmax(radius, vec3_length(vec3_cross(axis, box_corner(box, i))));
     int steps = 1 + (int)(fabs(to - from) / bounds_step);
     double step = (to - from) / steps, half_sine = el_sin(step * degree / 4);
     double off = radius * 2 * half_sine * half_sine; /* 1 - cos(x) = 2 sin(x / 2)^2 */

@@ -179,10 +179,8 @@ void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box, doub
     if (!(radius > 0) || !isfinite(radius))
         return;
     fly_camera->centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
-    for (int i = 0; i < 8; i++) {
-        struct vec3 corner = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
-                              i & 4 ? box->max.z : box->min.z};
-        struct vec3 from = vec3_sub(corner, fly_camera->centre);
+    for (unsigned i = 0; i < 8; i++) {
+        struct vec3 from = vec3_sub(box_corner(box, i), fly_camera->centre);
         double aside = fmax(fabs(vec3_dot(from, right)) / wide, fabs(vec3_dot(from, up)) / high);
         distance = fmax(distance, aside - vec3_dot(from, forward_of(pose)));
     }

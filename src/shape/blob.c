@@ -67,11 +67,7 @@ static bool may_be_inside(struct extent *search, const struct box *cell) {
     return sum >= search->blob->threshold * (1 - 0x1p-30);
 }
 
-static struct vec3 corner(const struct box *box, unsigned i) {
-    return vec3_make(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y, i & 4 ? box->max.z : box->min.z);
-}
-
-/* The corner furthest along g: bits of corner(). */
+/* The corner furthest along g: bits of box_corner(). */
 static unsigned front(struct vec3 g) {
     return (g.x > 0 ? 1u : 0) | (g.y > 0 ? 2u : 0) | (g.z > 0 ? 4u : 0);
 }
@@ -79,7 +75,7 @@ static unsigned front(struct vec3 g) {
 /* Cells behind the current maximum are left out, and so are those in which the sum cannot attain the threshold; the
  * cells in front come first. A cell of the last level, or any when the search has taken too long, counts as full. */
 static void extent_along(struct extent *search, const struct box *cell, int depth) {
-    double max = vec3_dot(search->g, corner(cell, front(search->g)));
+    double max = vec3_dot(search->g, box_corner(cell, front(search->g)));
     if (max <= search->furthest)
         return;
     if (search->work < CELL_WORK) {
@@ -88,7 +84,7 @@ static void extent_along(struct extent *search, const struct box *cell, int dept
         if (depth < CELL_DEPTH) {
             struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
             for (unsigned i = 0; i < 8; i++) {
-                struct vec3 end = corner(cell, i ^ front(search->g));
+                struct vec3 end = box_corner(cell, i ^ front(search->g));
                 struct box child = {vec3_min(middle, end), vec3_max(middle, end)};
                 extent_along(search, &child, depth + 1);
             }

@@ -151,9 +151,8 @@ static bool any_material(const struct flattening *f, const struct prototype *pro
 static bool holds_box(const struct csg_leaf *leaf, const struct box *box) {
     enum hit_convexity convexity = shape_convexity(&leaf->shape);
     bool holds = convexity == CONVEXITY_BEHIND || convexity == CONVEXITY_PLANAR;
-    for (int i = 0; i < 8 && holds; i++) {
-        struct vec3 corner = vec3_make(i & 1 ? box->min.x : box->max.x, i & 2 ? box->min.y : box->max.y,
-                                       i & 4 ? box->min.z : box->max.z);
+    for (unsigned i = 0; i < 8 && holds; i++) {
+        struct vec3 corner = box_corner(box, i);
         holds = vec3_finite(corner) &&
                 shape_contains(&leaf->shape, affine_point(&leaf->csg_from_leaf.inverse, corner), NULL);
     }
