@@ -196,17 +196,8 @@ static bool cut_cone(const struct light *light, struct vec3 origin, struct vec3 
 }
 
 bool light_cut(const struct light *light, struct vec3 origin, struct vec3 direction, double *from, double *to) {
-    switch (light->kind) {
-    case LIGHT_SPOT:
-        return !(light->cos_outer > 0) || cut_cone(light, origin, direction, from, to);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_MESH:
-    case LIGHT_SKY:
-        SURFACE_LIGHTS(LIST_LABEL)
-        break;
-    }
-    return true;
+    bool narrow = light->kind == LIGHT_SPOT && light->cos_outer > 0;
+    return !narrow || cut_cone(light, origin, direction, from, to);
 }
 
 void light_bounds_fade(const struct light *light, struct light_bounds *out) {
