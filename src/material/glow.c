@@ -65,6 +65,7 @@ struct glow_part {
     struct fog_cells cells; /* in the space of the density */
     const double *until;    /* by cell: sum of the powers up to and with it, over that of all */
     double power;           /* up to and with this part */
+    double per_length;      /* one over the edge of a cell in the world, when the shutter opens */
 };
 
 struct glow {
@@ -128,9 +129,11 @@ static bool make_part(struct glow_part *part, const struct glow_part *before, st
     for (uint64_t i = 0; i < count && until && sum > 0; i++)
         until[i] /= sum;
     struct vec3 size = part->cells.size;
-    part->power = sum * (size.x * size.y * size.z / (double)count);
+    double volume = size.x * size.y * size.z / (double)count;
     if (medium->placement)
-        part->power /= fabs(affine_determinant(&medium->placement->open));
+        volume /= fabs(affine_determinant(&medium->placement->open));
+    part->power = sum * volume;
+    part->per_length = 1 / el_cbrt(volume);
     return true;
 }
 
@@ -190,24 +193,33 @@ bool glow_sample(const struct glow *glow, double time, struct sample2 u, struct 
     const struct glow_part *part = &glow->parts[i];
     double before = i > 0 ? part[-1].power : 0, left = (wanted - before) / (part->power - before);
     uint64_t cell = sample_entry(part->until, fog_cell_count(&part->cells), left);
+    *out = (struct glow_sample){part->medium, point_in(&part->cells, cell, u.y, v.x, v.y), cell_pdf(glow, part, cell)};
+    if (!(out->pdf > 0) || !part->medium->placement)
+        return out->pdf > 0;
+    /* Out of the space of its solid. */
     struct affine map = placement_at(part->medium->placement, time);
     struct transform placement;
-    out->medium = part->medium;
-    out->pdf = cell_pdf(glow, part, cell) * fabs(affine_determinant(&map));
-    if (!(out->pdf > 0) || !transform_from_affine(&map, &placement))
+    if (!transform_from_affine(&map, &placement))
         return false;
-    out->point = affine_point(&placement.inverse, point_in(&part->cells, cell, u.y, v.x, v.y));
+    out->point = affine_point(&placement.inverse, out->point);
+    out->pdf *= fabs(affine_determinant(&map));
     return true;
 }
 
-double glow_pdf(const struct glow *glow, const struct medium *medium, struct vec3 point, double time) {
+/* NULL: it has none. */
+static const struct glow_part *find_part(const struct glow *glow, const struct medium *medium) {
     size_t number = medium >= glow->first ? (size_t)(medium - glow->first) : glow->medium_count;
     uint32_t part = number < glow->medium_count ? glow->part_of[number] : 0;
-    if (part == 0)
+    return part > 0 ? &glow->parts[part - 1] : NULL;
+}
+
+double glow_pdf(const struct glow *glow, const struct medium *medium, struct vec3 point, double time) {
+    const struct glow_part *part = find_part(glow, medium);
+    if (!part)
         return 0;
     struct affine placement = placement_at(medium->placement, time);
     uint64_t cell = density_cell(cells_of(medium), affine_point(&placement, point));
-    return cell_pdf(glow, &glow->parts[part - 1], cell) * fabs(affine_determinant(&placement));
+    return cell_pdf(glow, part, cell) * fabs(affine_determinant(&placement));
 }
 
 /* A ray takes one point of each cell, so its density per length is about one over the edge. */
@@ -215,12 +227,7 @@ double glow_met_weight(const struct glow_met *met, const struct medium *medium, 
     double found = glow_pdf(met->glow, medium, point, time);
     if (!(found > 0))
         return 1;
-    struct affine placement = placement_at(medium->placement, time);
-    struct fog_cells cells;
-    (void)density_cells(cells_of(medium), &cells);
-    double volume = cells.size.x * cells.size.y * cells.size.z / (double)fog_cell_count(&cells);
     struct vec3 off = vec3_sub(point, met->from);
-    double by_ray = met->pdf * el_cbrt(fabs(affine_determinant(&placement)) / volume);
-    double by_cell = found * vec3_dot(off, off);
+    double by_ray = met->pdf * find_part(met->glow, medium)->per_length, by_cell = found * vec3_dot(off, off);
     return by_ray * by_ray / (by_ray * by_ray + by_cell * by_cell);
 }
