@@ -18,7 +18,7 @@ enum change_kind {
     CHANGE_OWN,       /* a shape gets its own material */
     CHANGE_MATERIAL,  /* a part of a material's base */
     CHANGE_TEXTURE,   /* a texture is the kd of a material's base */
-    CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
+    CHANGE_ADD_LIGHT, /* a light, or a copy of one, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
     CHANGE_DARK,      /* a light is removed */
     CHANGE_HIDDEN,    /* a node is not drawn in the window; not written as Lua */

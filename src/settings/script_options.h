@@ -32,7 +32,7 @@ struct script_options {
     const char *dialect;    /* --dialect: a name or a file, or NULL */
     const char *sky;        /* --sky: a picture file, or NULL */
     const char *edits;      /* --edits: a Lua file, or NULL */
-    const char *edits_text; /* Lua to run in its place, of a window, or NULL */
+    const char *edits_text; /* Lua to run after it, before the script: the edits of a window, or NULL */
     const char *camera;     /* --camera: its name or number in the model, or NULL */
     enum model_up up;       /* --up, of models */
     uint64_t seed;          /* math.random starts from it */

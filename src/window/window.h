@@ -52,7 +52,7 @@ enum window_field_kind {
     FIELD_TEXT,   /* only shown */
     FIELD_NUMBER, /* one number */
     FIELD_VECTOR, /* three numbers */
-    FIELD_COLOUR, /* three numbers, linear, that may be above 1 */
+    FIELD_COLOUR, /* three numbers that may be above 1 */
     FIELD_CHOICE, /* one of the words in `text`, divided by '|' */
     FIELD_FLAG,
     FIELD_ENTRY, /* the text, which can be edited */
