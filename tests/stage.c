@@ -131,6 +131,15 @@ struct material *stage_phong(struct stage *s, struct colour kd, struct colour ks
     return material;
 }
 
+struct material *stage_filling(struct stage *s, const struct medium *medium) {
+    static struct texture hole;
+    hole = texture_number(0);
+    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
+    material->medium = medium;
+    material->inputs[INPUT_OPACITY] = &hole;
+    return material;
+}
+
 struct material *stage_glass(struct stage *s, double reflect, double refract, double ior) {
     struct material *material = stage_phong(s, colour_all(0), colour_all(1), 1);
     material->phong.reflect = reflect;

@@ -54,6 +54,8 @@ struct colour stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
 
 struct material *stage_phong(struct stage *s, struct colour kd, struct colour ks, double shininess);
 struct material *stage_glass(struct stage *s, double reflect, double refract, double ior);
+/* Invisible, with the medium inside. */
+struct material *stage_filling(struct stage *s, const struct medium *medium);
 struct node *stage_group(struct stage *s, struct node *parent);
 struct node *stage_sphere(struct stage *s, struct node *parent, const struct material *material);
 struct node *stage_cube(struct stage *s, struct node *parent, const struct material *material);

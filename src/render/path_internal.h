@@ -16,6 +16,12 @@
 #include "render/style_internal.h"
 #include "world/world_lights.h"
 
+/* A light with a middle, by number. */
+struct aimed_light {
+    uint32_t light;
+    struct light_bounds bounds;
+};
+
 /* State of a run. Owns the arena, and the contours of each worker. */
 struct path_tracer {
     uint32_t samples;   /* of a pixel, at most */
@@ -23,18 +29,15 @@ struct path_tracer {
     int roulette_depth; /* scattering events after which roulette may end a path */
     enum path_strategy strategy;
     struct filter filter;
-    double noise;      /* a tile with this noise is finished; 0: every tile takes all samples */
-    double clamp;      /* the limit on components of a sample; 0: no limit */
-    double bright;     /* of struct path_pixel */
-    bool built;        /* the lights are prepared */
-    bool has_matter;   /* media that affect rays, dispersion, or light that goes under surfaces */
-    bool has_fillings; /* media inside invisible surfaces */
-    bool in_medium;    /* the medium around all solids affects rays */
-    bool disperses;    /* indices of refraction depend on the wavelength */
-    const struct aimed_light {
-        uint32_t light;
-        struct light_bounds bounds;
-    } * aimed_lights; /* lights with a middle, for path_equiangular_internal.h */
+    double noise;                           /* a tile with this noise is finished; 0: every tile takes all samples */
+    double clamp;                           /* the limit on components of a sample; 0: no limit */
+    double bright;                          /* of struct path_pixel */
+    bool built;                             /* the lights are prepared */
+    bool has_matter;                        /* media that affect rays, dispersion, or light that goes under surfaces */
+    bool has_fillings;                      /* media inside invisible surfaces */
+    bool in_medium;                         /* the medium around all solids affects rays */
+    bool disperses;                         /* indices of refraction depend on the wavelength */
+    const struct aimed_light *aimed_lights; /* path_equiangular_internal.h */
     uint32_t aimed_light_count;
     const struct glow *glow; /* or NULL */
     const bool *sealed; /* by number of solid: light scatters inside, and no lamp reaches a point there; NULL: none */

@@ -94,15 +94,14 @@ void gui_add_calls(GMenu *menu) {
 /* As a string of Lua. NULL: the name has control characters. Owner: the caller. */
 static char *lua_name(const char *path) {
     GString *text = g_string_new("'");
+    bool ok = true;
     for (const char *c = path; *c; c++) {
+        ok = ok && (unsigned char)*c >= ' ' && *c != 127;
         if (strchr("'\\", *c))
             g_string_append_c(text, '\\');
         g_string_append_c(text, *c);
     }
     g_string_append_c(text, '\'');
-    bool ok = true;
-    for (const char *c = path; *c; c++)
-        ok = ok && (unsigned char)*c >= ' ' && *c != 127;
     return g_string_free(text, !ok);
 }
 

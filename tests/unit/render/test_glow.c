@@ -10,15 +10,6 @@
 
 #include <math.h>
 
-static struct material *filled(struct stage *s, const struct medium *medium) {
-    static struct texture hole;
-    hole = texture_number(0);
-    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
-    material->medium = medium;
-    material->inputs[INPUT_OPACITY] = &hole;
-    return material;
-}
-
 static const struct density *grid_of(struct arena *arena, struct box box, const float values[8]) {
     struct error error = {0};
     return density_of_grid(arena, &(struct density_grid){box, {2, 2, 2}, values, 1, false}, &error);
@@ -39,7 +30,7 @@ TEST(a_small_glowing_grid_lights_as_a_lamp_of_its_power) {
         s.light_count = 0;
         s.medium = i == 0 ? &outside : NULL;
         for (int k = 0; k < i; k++) {
-            struct node *cube = stage_cube(&s, s.root, filled(&s, &inside));
+            struct node *cube = stage_cube(&s, s.root, stage_filling(&s, &inside));
             stage_move(&s, cube, -0.5, -0.5, -0.5);
             stage_scale(&s, cube, 0.2, 0.2, 0.2);
             stage_rotate(&s, cube, 0, 20);
@@ -74,7 +65,7 @@ static struct estimate flame(enum path_strategy strategy, int samples, int depth
     struct stage s;
     stage_floor(&s);
     s.light_count = 0;
-    struct node *ball = stage_sphere(&s, s.root, filled(&s, &inside)),
+    struct node *ball = stage_sphere(&s, s.root, stage_filling(&s, &inside)),
                 *other = stage_sphere(&s, s.root, stage_phong(&s, colour_all(0.5), colour_all(0), 1));
     stage_scale(&s, ball, 0.25, 0.25, 0.25);
     stage_move(&s, ball, 0, 0.5, 0);

@@ -153,15 +153,6 @@ static struct medium filling_of(double absorption, double scattering, double g) 
                                                  .phase = {PHASE_HENYEY_GREENSTEIN, g}});
 }
 
-static struct material *filled(struct stage *s, const struct medium *medium) {
-    static struct texture hole;
-    hole = texture_number(0);
-    struct material *material = stage_phong(s, colour_all(0), colour_all(0), 1);
-    material->medium = medium;
-    material->inputs[INPUT_OPACITY] = &hole;
-    return material;
-}
-
 /* A slab from z0 to z1, which is wide. */
 static void add_slab(struct stage *s, const struct material *material, double z0, double z1) {
     struct node *slab = stage_cube(s, s->root, material);
@@ -176,7 +167,8 @@ TEST(white_media_in_solids_are_invisible_in_uniform_light) {
         for (int inside = 0; inside < 2; inside++) {
             struct stage s;
             stage_begin(&s, 2);
-            (void)(cube ? stage_cube(&s, s.root, filled(&s, &medium)) : stage_sphere(&s, s.root, filled(&s, &medium)));
+            (void)(cube ? stage_cube(&s, s.root, stage_filling(&s, &medium))
+                        : stage_sphere(&s, s.root, stage_filling(&s, &medium)));
             s.sky.colour = colour_all(1);
             s.camera.eye = inside ? vec3_make(0.4, 0.3, 0.5) : vec3_make(0, 0, 3);
             s.settings.integrator = INTEGRATOR_PATH;
@@ -195,10 +187,10 @@ TEST(solids_filled_with_media_dim_what_is_behind_them_and_cost_no_depth) {
     struct material *glow = stage_phong(&s, colour_all(0), colour_all(0), 1);
     glow->phong.emission = colour_all(1);
     add_slab(&s, glow, -6, -5);
-    add_slab(&s, filled(&s, &thin), -1, 1);
-    add_slab(&s, filled(&s, &dense), -0.25, 0.25);
-    add_slab(&s, filled(&s, &thin), 2, 3);
-    add_slab(&s, filled(&s, &dense), 3, 3.5);
+    add_slab(&s, stage_filling(&s, &thin), -1, 1);
+    add_slab(&s, stage_filling(&s, &dense), -0.25, 0.25);
+    add_slab(&s, stage_filling(&s, &thin), 2, 3);
+    add_slab(&s, stage_filling(&s, &dense), 3, 3.5);
     s.camera.fov = 0.01;
     for (int inside = 0; inside < 2; inside++) {
         s.camera.eye = vec3_make(0, 0, inside ? 0 : 10);
@@ -219,7 +211,7 @@ TEST(shadow_rays_are_dimmed_by_the_media_that_they_pass) {
         struct stage s;
         stage_floor(&s);
         s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 8, 0}, .colour = {1, 1, 1}};
-        struct node *slab = stage_cube(&s, s.root, filled(&s, &medium));
+        struct node *slab = stage_cube(&s, s.root, stage_filling(&s, &medium));
         stage_move(&s, slab, -0.5, 0, -0.5);
         stage_scale(&s, slab, 4, 2, 4);
         stage_move(&s, slab, 0, filling ? 3 : 20, 0);
@@ -239,7 +231,7 @@ TEST(an_open_shape_holds_no_medium) {
     const struct medium medium = filling_of(0.4, 0.3, 0);
     struct stage s;
     stage_begin(&s, 1);
-    struct node *pane = stage_sphere(&s, s.root, filled(&s, &medium));
+    struct node *pane = stage_sphere(&s, s.root, stage_filling(&s, &medium));
     pane->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 0, 1), 1, 0)};
     CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
     CHECK(strstr(s.error.text, "is open, so it holds no medium") != NULL);
@@ -281,7 +273,7 @@ TEST_TIMES(slabs_reflect_and_transmit_as_transport_theory_says, 40) {
             struct node *wall = stage_sphere(&s, s.root, glow);
             wall->shape =
                 (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), behind ? -5 : 20)};
-            struct node *slab = stage_cube(&s, s.root, filled(&s, &medium));
+            struct node *slab = stage_cube(&s, s.root, stage_filling(&s, &medium));
             stage_move(&s, slab, -0.5, -0.5, 0);
             stage_scale(&s, slab, 400, 400, 1);
             s.camera.fov = 0.01;
@@ -330,7 +322,7 @@ TEST_TIMES(media_of_whitted_are_those_of_paths_that_scatter_once, 16) {
             s.light_count = !glows;
             s.medium = i < 3 ? &outside : NULL;
             if (i == 3)
-                stage_move(&s, stage_sphere(&s, s.root, filled(&s, &inside)), 0, 1, 0);
+                stage_move(&s, stage_sphere(&s, s.root, stage_filling(&s, &inside)), 0, 1, 0);
             s.settings.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
             s.settings.medium_samples = 16 * times;
             s.settings.full = true;
@@ -398,9 +390,9 @@ TEST_TIMES(white_media_of_any_density_are_invisible_in_uniform_light, 8) {
     for (int inside = 0; inside < 2; inside++) {
         struct stage s;
         stage_begin(&s, 2);
-        (void)stage_sphere(&s, s.root, filled(&s, &inner));
+        (void)stage_sphere(&s, s.root, stage_filling(&s, &inner));
         struct material *other = stage_phong(&s, colour_all(0), colour_all(0), 1);
-        *other = *filled(&s, &outer);
+        *other = *stage_filling(&s, &outer);
         struct node *cube = stage_cube(&s, s.root, other);
         stage_move(&s, cube, -0.5, -0.5, -0.5);
         stage_scale(&s, cube, 3, 3, 3);
@@ -436,7 +428,7 @@ TEST(a_density_moves_with_its_solid) {
         struct stage s;
         stage_begin(&s, 2);
         if (i > 0) {
-            struct node *cube = stage_cube(&s, s.root, filled(&s, &inside));
+            struct node *cube = stage_cube(&s, s.root, stage_filling(&s, &inside));
             stage_scale(&s, cube, 4, 4, 4);
             stage_rotate(&s, cube, 2, 90);
             stage_move(&s, cube, 3, -2, -8);
@@ -471,7 +463,7 @@ TEST(a_medium_behind_a_surface_of_index_1_is_the_one_that_fills_the_solid) {
         struct material *glass = stage_glass(&s, 0, 1, 1);
         glass->phong.ks = colour_all(1);
         glass->medium = &behind;
-        (void)stage_sphere(&s, s.root, i ? glass : filled(&s, &fills));
+        (void)stage_sphere(&s, s.root, i ? glass : stage_filling(&s, &fills));
         s.sky.colour = colour_make(0.5, 1, 2);
         s.camera.eye = vec3_make(0, 0, 3);
         s.settings.integrator = INTEGRATOR_PATH;
@@ -494,7 +486,7 @@ static struct estimate shown(const struct medium *medium, double cosine, bool be
     glow->phong.two_sided = true;
     struct node *wall = stage_sphere(&s, s.root, glow);
     wall->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 0, 1), behind ? -5 : 20)};
-    struct node *slab = stage_cube(&s, s.root, filled(&s, medium));
+    struct node *slab = stage_cube(&s, s.root, stage_filling(&s, medium));
     stage_move(&s, slab, -0.5, -0.5, 0);
     stage_scale(&s, slab, 4000, 4000, 1);
     s.camera.fov = 0.001;
@@ -546,7 +538,7 @@ TEST(channels_with_other_coefficients_have_at_most_twice_the_variance_of_a_gray_
             .scattering = gray ? colour_all(1) : colour_make(0.1, 1, 10), .phase = {PHASE_HENYEY_GREENSTEIN, 0}});
         struct stage s;
         stage_begin(&s, 2);
-        (void)stage_sphere(&s, s.root, filled(&s, &medium));
+        (void)stage_sphere(&s, s.root, stage_filling(&s, &medium));
         s.sky.colour = colour_all(1);
         s.camera.eye = vec3_make(0, 0, 3);
         s.camera.fov = 20;
