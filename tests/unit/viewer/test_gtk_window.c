@@ -37,6 +37,14 @@ static void drive(const char *options, const char *commands, int status) {
     free(script);
 }
 
+/* On standard error. */
+static void has_said(const char *text) {
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    if (!said || !strstr(said, text))
+        test_fail(__FILE__, __LINE__, "\"%s\" was not said, but \"%.600s\"", text, said ? said : "");
+    free(said);
+}
+
 static void need_display(void) {
     char path[4096];
     test_need_window();
@@ -127,17 +135,13 @@ TEST(gtk_window_opens_without_a_scene_and_quits) {
     need_display();
     drive("", "titled gray; sleep 0.3; xdotool key ctrl+q", 0);
     test_run_shell("$gray", ">out.txt 2>err.txt");
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    CHECK(said && strstr(said, "no scene script was given"));
-    free(said);
+    has_said("no scene script was given");
 }
 
 TEST(gtk_window_without_a_display_says_so) {
     need_display();
     gives("env -u DISPLAY -u WAYLAND_DISPLAY $gray -gui scene.lua", 3);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    CHECK(said && strstr(said, "-gui: no window can be opened: there is no display"));
-    free(said);
+    has_said("-gui: no window can be opened: there is no display");
 }
 
 TEST(gtk_window_without_any_font_says_so) {
@@ -145,9 +149,7 @@ TEST(gtk_window_without_any_font_says_so) {
     gives(
         "echo '<fontconfig></fontconfig>' >none.conf; FONTCONFIG_FILE=$PWD/none.conf xvfb-run -a $gray -gui scene.lua",
         3);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    CHECK(said && strstr(said, "-gui: no window can be opened: fontconfig finds no font"));
-    free(said);
+    has_said("-gui: no window can be opened: fontconfig finds no font");
 }
 
 /* A resize while the mouse holds the selection loses neither. */
@@ -186,9 +188,7 @@ TEST(gtk_window_survives_a_killed_render_process) {
           "for i in 1 2 3 4 5; do titled 'out.png - ready'; rm -f out.png; kill -9 $(pgrep -n -P $pid)\n"
           "titled 'waiting for a change'; xdotool key F5; until_file out.png; done; xdotool key ctrl+q",
           0);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    CHECK(said && strstr(said, "scene.lua: the render process was killed"));
-    free(said);
+    has_said("scene.lua: the render process was killed");
 }
 
 /* Escape keeps the window; Discard leaves no file. */
@@ -234,9 +234,7 @@ TEST(gtk_window_draws_at_scale_2) {
     need_display();
     CHECK(setenv("GDK_SCALE", "2", 1) == 0);
     drive("--verbose scene.lua", "titled 'out.png - ready'; xdotool key ctrl+q", 0);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    CHECK(said && strstr(said, "pixels, density 2"));
-    free(said);
+    has_said("pixels, density 2");
 }
 
 static const char animation[] =
