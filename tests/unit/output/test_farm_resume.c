@@ -185,7 +185,7 @@ static struct film end_farm(bool interrupted) {
     for (int number = 0; number < RANKS; number++) {
         /* The others read that all tiles are there. */
         farm_step(ranks[number].farm);
-        CHECK(pthread_join(ranks[number].thread, NULL) == 0 && ranks[number].ok == !interrupted);
+        CHECK(pthread_join(ranks[number].thread, NULL) == 0 && (interrupted || ranks[number].ok));
     }
     for (int number = RANKS - 1; number >= 0; number--) {
         farm_step(ranks[number].farm);
@@ -213,24 +213,39 @@ static uint64_t camera_rays(void) {
     return ranks[0].statistics.camera_rays + ranks[1].statistics.camera_rays;
 }
 
-/* Runs a farm with this film until its tiles have so many samples, and puts its checkpoint into another
- * film. */
-static struct film interrupted_film(struct stage *s, struct film film, uint64_t samples) {
-    struct tile_picture picture = picture_of(film.record);
-    struct film restored = new_film(film.record);
+/* Runs a farm with this film until its tiles have so many samples. It may end by itself before it is interrupted: then
+ * it begins again. */
+static struct film interrupt_farm(struct stage *s, struct film from, uint64_t samples) {
+    for (;;) {
+        struct film film = new_film(from.record);
+        struct error error;
+        size_t bytes;
+        CHECK(film_size(WIDTH, HEIGHT, from.record, &bytes, &error));
+        memcpy(film.pixels, from.pixels, bytes); /* the tiles, too: all is in one block */
+        begin_farm(s, film);
+        while (samples_in(&film) < samples)
+            step_farm();
+        film = end_farm(true);
+        if (film_tiles_in(&film, FILM_TILE_DONE) < film_tile_count(&film))
+            return film;
+        free(film.pixels);
+    }
+}
+
+/* The same; and puts its checkpoint into another film. */
+static struct film interrupted_film(struct stage *s, struct film from, uint64_t samples) {
+    struct tile_picture picture = picture_of(from.record);
+    struct film film = interrupt_farm(s, from, samples), restored = new_film(from.record);
     struct tile_file file;
     struct error error;
     uint32_t done, twice;
     const char *path = test_path("checkpoint");
-    begin_farm(s, film);
-    while (samples_in(&film) < samples)
-        step_farm();
-    film = end_farm(true);
     CHECK(tile_file_write(FILE_AT(path), NULL, 0, &picture, &film, &error) && tile_file_read(path, &file, &error));
     tile_file_restore(&file, &restored, &done, &twice);
     tile_file_close(&file);
     CHECK_EQ_INT(samples_in(&restored), samples_in(&film));
     free(film.pixels);
+    free(from.pixels);
     return restored;
 }
 
