@@ -3,7 +3,7 @@
  * a part in XML and a picture. */
 #include "export/model_write.h"
 
-#include "export/key_map_internal.h"
+#include "base/key_map.h"
 #include "export/triangles_internal.h"
 #include "export/zip_internal.h"
 
