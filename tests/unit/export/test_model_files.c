@@ -220,6 +220,56 @@ TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
     free(bytes);
 }
 
+/* Vertices farther from the drill's axis than .1: their number, and how many of them are none of the others. */
+static uint32_t vertices_far_from_drill(const struct mesh *mesh, const struct mesh *other, uint32_t *different) {
+    uint32_t count, other_count, far = 0;
+    const double(*at)[3] = mesh_vertices(mesh, &count), (*others)[3] = mesh_vertices(other, &other_count);
+    *different = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double nearest = INFINITY, x = at[i][0] - 0.52, y = at[i][1] - 0.05;
+        if (x * x + y * y < 0.01)
+            continue;
+        for (uint32_t k = 0; k < other_count; k++)
+            nearest =
+                fmin(nearest,
+                     vec3_length(vec3_make(at[i][0] - others[k][0], at[i][1] - others[k][1], at[i][2] - others[k][2])));
+        far++;
+        *different += !(nearest < 1e-6);
+    }
+    return far;
+}
+
+TEST(letters_and_bevelled_meshes_that_are_cut_keep_their_corners_elsewhere_and_get_no_vertices_there) {
+    static const char *const names[] = {"prism.stl", "cut_prism.stl", "mesh.stl", "cut_mesh.stl"};
+    expect(
+        "local polygon = require 'polygon'\n"
+        "local e = {{.1, 0}, {.57, 0}, {.57, .08}, {.2, .08}, {.2, .35}, {.54, .35}, {.54, .43}, {.2, .43}, {.2, .65}, "
+        "{.56, .65}, {.56, .73}, {.1, .73}}\n"
+        "local drill = gr.cylinder{from = {.52, .05, -1}, to = {.52, .05, 1}, radius = .02}\n"
+        "local prism = gr.prism{outline = e, from = -.2, to = 0}:rotate('x', -90)\n"
+        "local mesh = gr.vn_mesh(gr.material({1, 1, 1}), polygon.extrude({e}, .2, {bevel = .02, back = true}))\n"
+        "prism:export('prism.stl')\ngr.difference(prism, drill):export('cut_prism.stl')\n"
+        "mesh:export('mesh.stl')\ngr.difference(mesh, drill):export('cut_mesh.stl')\n",
+        "scene.lua", 0, NULL);
+    struct model models[4] = {0};
+    for (int i = 0; i < 4; i++) {
+        struct model_options options = {0};
+        struct error error = {0};
+        if (!model_read(&models[i], test_path(names[i]), &options, &error))
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+    }
+    for (int i = 0; i < 4; i += 2) {
+        const struct mesh *whole = model_meshes(&models[i])[0].mesh, *cut = model_meshes(&models[i + 1])[0].mesh;
+        uint32_t lost, added;
+        CHECK_EQ_INT(vertices_far_from_drill(whole, cut, &lost), vertices_far_from_drill(cut, whole, &added));
+        CHECK(lost == 0 && added == 0 && mesh_is_closed(cut));
+        CHECK(mesh_triangle_count(cut) > mesh_triangle_count(whole));
+    }
+    CHECK_EQ_INT(mesh_triangle_count(model_meshes(&models[0])[0].mesh), 4 * 12 - 4);
+    for (int i = 0; i < 4; i++)
+        model_destroy(&models[i]);
+}
+
 TEST(a_mesh_whose_surfaces_meet_in_a_point_has_a_notice) {
     expect("gr.mesh{name = 'pair', verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, "
            "{0, 0, -1}}, faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, "
