@@ -166,10 +166,18 @@ TEST(textures_colour_the_corners_of_3mf_files_and_the_faces_of_ply_files) {
     free(ply);
 }
 
+static struct test_picture thumbnail_of(const char *path) {
+    size_t size = 0;
+    char *png = out_of_zip(path, "Metadata/thumbnail.png", &size);
+    if (png)
+        test_write_file(test_path("small.png"), png, size);
+    mem_free(png);
+    return test_read_picture(test_path("small.png"));
+}
+
 /* Two balls beside each other: which one is on the left of the thumbnail? */
 static void expect_on_the_left(const char *call, const char *options, int channel) {
     char text[1024];
-    size_t size = 0;
     (void)snprintf(
         text, sizeof text,
         "local function ball(x, colour)\n"
@@ -178,11 +186,7 @@ static void expect_on_the_left(const char *call, const char *options, int channe
         "local balls = gr.node{name = 'balls', children = {ball(-1.5, {1, 0, 0}), ball(1.5, {0, 0, 1})}}\n%s",
         call);
     expect(text, options, 0, NULL);
-    char *png = out_of_zip(test_path("balls.3mf"), "Metadata/thumbnail.png", &size);
-    if (png)
-        test_write_file(test_path("small.png"), png, size);
-    mem_free(png);
-    struct test_picture picture = test_read_picture(test_path("small.png"));
+    struct test_picture picture = thumbnail_of(test_path("balls.3mf"));
     CHECK(picture.width == 256 && picture.height == 256 && picture.rgb[0] == 229);
     const uint8_t *left = picture.rgb + (size_t)3 * (128 * 256 + 64);
     CHECK(left[channel] > 200 && left[1] == 0 && left[2 - channel] == 0);
@@ -195,6 +199,32 @@ TEST(a_3mf_file_has_a_picture_of_the_model_from_the_side_of_the_camera) {
                        "-o balls.3mf scene.lua", 0);
     expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, -9}, target = {0, 0, 0}}\n",
                        "-o balls.3mf scene.lua", 2);
+}
+
+TEST(a_3mf_file_that_is_written_with_its_picture_has_it_as_its_thumbnail) {
+    expect(part_and("gr.render(gr.studio{node = part, file = 'x.png', width = 64, height = 40})\n"),
+           "-o part.3mf -o small_picture.png scene.lua", 0, NULL);
+    struct test_picture picture = test_read_picture(test_path("small_picture.png"));
+    struct test_picture thumbnail = thumbnail_of(test_path("part.3mf"));
+    CHECK(thumbnail.width == 64 && thumbnail.height == 40);
+    CHECK(memcmp(picture.rgb, thumbnail.rgb, (size_t)3 * 64 * 40) == 0);
+    free(picture.rgb);
+    free(thumbnail.rgb);
+    /* A larger one is reduced: the mean of its pixels. */
+    expect(part_and("gr.render{node = part, file = 'x.png', width = 1024, height = 512, eye = {20, 15, 90}, "
+                    "target = {20, 15, 0}, background = {1, 1, 1}, ambient = {.4, .4, .4}}\n"),
+           "-o part.3mf -o picture.png scene.lua --picture 1", 0, NULL);
+    picture = test_read_picture(test_path("picture.png"));
+    thumbnail = thumbnail_of(test_path("part.3mf"));
+    CHECK(thumbnail.width == 256 && thumbnail.height == 128);
+    for (int i = 0; i < 256 * 128; i++) {
+        int sum = 0;
+        for (int k = 0; k < 16; k++)
+            sum += picture.rgb[3 * (1024 * (4 * (i / 256) + k / 4) + 4 * (i % 256) + k % 4)];
+        CHECK(abs(sum / 16 - thumbnail.rgb[3 * i]) <= 1);
+    }
+    free(picture.rgb);
+    free(thumbnail.rgb);
 }
 
 TEST(the_studio_is_no_part_of_a_model_and_a_node_that_is_called_model_is_all_of_it) {
