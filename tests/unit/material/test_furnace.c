@@ -142,6 +142,22 @@ TEST_TIMES(clear_balls_with_rough_coats_or_fuzz_are_invisible_in_uniform_light, 
     }
 }
 
+TEST_TIMES(clear_rough_balls_below_films_are_invisible_in_uniform_light, 20) {
+    for (int k = 0; k < (times > 1 ? 4 : 1); k++) {
+        static const char *const names[] = {"dense film", "thick film", "rare film", "stretched facets"};
+        static const double film_ior[] = {2.48, 1.8, 1.1, 2}, thickness[] = {1.4, 1.5, 0.5, 0.3};
+        struct ball ball;
+        ball_init(&ball);
+        ball.material.phong.roughness = 0.6;
+        ball.numbers.specular_ior = 2.1;
+        ball.numbers.specular_anisotropy = k == 3 ? 0.7 : 0;
+        ball.numbers.film_weight = 1;
+        ball.numbers.film_ior = film_ior[k];
+        ball.numbers.film_thickness = thickness[k];
+        check_ball(names[k], &ball, 50 * times, 1);
+    }
+}
+
 TEST_TIMES(balls_that_transmit_half_of_the_light_are_invisible_in_uniform_light, 30) {
     struct texture half = texture_number(0.5);
     for (int k = 0; k < 5; k++) {
