@@ -29,10 +29,14 @@ titled() { # waits until the title holds the words, and still does a moment late
     echo "the title never said $1" >&2
     exit 1
 }
-take() { # take NAME [SECONDS]: the screen where the window is
-    sleep "${2:-0.6}"
-    import -window root "$work/$1.png"
-    convert "$work/$1.png" -trim +repage -strip +dither -colors 200 "$out/$1.png"
+take() { # take NAME: the screen where the window is, once something is drawn; twice as many pixels become half of them
+    case $1 in *scale2) size=50% ;; *) size=100% ;; esac
+    for i in $(seq 100); do
+        sleep 0.6
+        import -window root "$work/$1.png"
+        [ "$(identify -format %k "$work/$1.png")" -gt 1 ] && break
+    done
+    convert "$work/$1.png" -trim +repage -resize $size -strip +dither -colors 200 "$out/$1.png"
 }
 open() { # open TITLE OPTIONS...: the window in the upper left corner
     title=$1
@@ -48,7 +52,7 @@ leave() {
 }
 
 open gray
-take start 3
+take start
 leave
 open 'png - ready' 12demo.lua
 take ready
@@ -66,29 +70,28 @@ sleep 2
 take error
 cp keep.lua 12demo.lua
 leave
-export GTK_THEME=Adwaita:dark
-open 'png - ready' 12demo.lua
-xdotool mousemove 560 420 click 1 sleep 1
-titled 'png - ready'
-take dark
-leave
-unset GTK_THEME
-export GDK_SCALE=2
-open 'png - ready' 12demo.lua
-xdotool mousemove 1120 840 click 1 sleep 1
-titled 'png - ready'
-take scale2
-leave
-unset GDK_SCALE
-if command -v xprop >/dev/null; then # letters of another size
-    xprop -root -format RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 144'
+selected() { # selected NAME [X Y]: a click selects a ball; the demo, in a theme and at a scale of the environment
     open 'png - ready' 12demo.lua
-    xdotool mousemove 560 420 click 1 sleep 1
-    titled 'png - ready'
-    take letters
+    xdotool mousemove "${2:-560}" "${3:-420}" click 1 sleep 1
+    titled 'png - ready$'
+    take "$1"
     leave
-    xprop -root -remove RESOURCE_MANAGER
-fi
+}
+scales() { # scales PREFIX: twice as many pixels, and letters of one and a half times the size
+    export GDK_SCALE=2
+    selected "${1}scale2" 1120 840
+    unset GDK_SCALE
+    if command -v xprop >/dev/null; then
+        xprop -root -format RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 144'
+        selected "${1}letters"
+        xprop -root -remove RESOURCE_MANAGER
+    fi
+}
+scales ""
+export GTK_THEME=Adwaita:dark
+selected dark
+scales dark-
+unset GTK_THEME
 open ' - playing' --size 640x480 "$demos/animation/waves.lua"
 xdotool key space sleep 1
 titled 'png - ready'

@@ -5,23 +5,16 @@
 #include "export/contour_grid_internal.h"
 
 uint32_t contour_add_vertex(struct contour *contour, const struct solid_vertex *vertex) {
-    struct solid_vertex *room = list_room(&contour->vertices, 1, sizeof *room);
-    if (!room || contour->vertices.count == NO_INDEX - 1) {
-        contour->failed = true;
-        return 0;
-    }
-    *room = *vertex;
-    return (uint32_t)contour->vertices.count++;
+    uint32_t index = (uint32_t)contour->vertices.count;
+    if (index < NO_INDEX - 1 && list_add(&contour->vertices, vertex, 1, sizeof *vertex))
+        return index;
+    contour->failed = true;
+    return 0;
 }
 
 void contour_add_triangle(struct contour *contour, uint32_t a, uint32_t b, uint32_t c, uint32_t surface) {
-    struct solid_triangle *room = list_room(&contour->triangles, 1, sizeof *room);
-    if (!room) {
-        contour->failed = true;
-        return;
-    }
-    *room = (struct solid_triangle){{a, b, c}, surface};
-    contour->triangles.count++;
+    const struct solid_triangle triangle = {{a, b, c}, surface};
+    contour->failed = !list_add(&contour->triangles, &triangle, 1, sizeof triangle) || contour->failed;
 }
 
 /* The triangles of a base cell are contiguous; when they are made again, the old ones are forgotten at the end. */
@@ -108,26 +101,22 @@ static bool gather(const struct octree *tree, struct list *out) {
     struct contour *contour = tree->contour;
     const struct line_grid *grid = &contour->grid;
     size_t bases = (size_t)grid->base_count[0] * (size_t)grid->base_count[1] * (size_t)grid->base_count[2];
-    for (size_t i = 0; i < bases; i++) {
-        struct solid_triangle *room = list_room(out, tree->bases[i].count, sizeof *room);
-        if (!room)
-            return false;
-        for (uint32_t t = 0; t < tree->bases[i].count; t++)
-            room[t] = ((struct solid_triangle *)contour->triangles.items)[tree->bases[i].first + t];
-        out->count += tree->bases[i].count;
-    }
-    return true;
+    bool ok = true;
+    for (size_t i = 0; ok && i < bases; i++)
+        ok = list_add(out, (struct solid_triangle *)contour->triangles.items + tree->bases[i].first,
+                      tree->bases[i].count, sizeof(struct solid_triangle));
+    return ok;
 }
 
-static bool build(struct contour *contour, const struct contour_input *input, struct solid_mesh *out,
+static bool build(struct contour *contour, uint32_t cells, struct pool *pool, struct solid_mesh *out,
                   struct error *error) {
     struct octree tree = {.contour = contour};
-    if (!line_grid_build(contour, input->cells, input->pool, error))
+    if (!line_grid_build(contour, cells, pool, error))
         return false;
     const int *bases = contour->grid.base_count;
     tree.bases = mem_alloc_zero((size_t)bases[0] * (size_t)bases[1] * (size_t)bases[2], sizeof *tree.bases);
     bool ok = tree.bases || error_no_memory(error, "the mesh of a solid");
-    ok = ok && mesh_all(&tree, input->pool, error);
+    ok = ok && mesh_all(&tree, pool, error);
     if (ok && (contour->failed || contour->probe.failed || !gather(&tree, &out->triangles)))
         ok = error_no_memory(error, "the mesh of a solid");
     mem_free(tree.bases);
@@ -136,14 +125,15 @@ static bool build(struct contour *contour, const struct contour_input *input, st
     return ok;
 }
 
-bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct list *known, struct error *error) {
+bool contour_build(const struct solid_input *input, uint32_t cells, struct solid_mesh *out, struct list *known,
+                   struct error *error) {
     struct contour contour = {.tolerance = input->tolerance};
     struct vec3 extent = vec3_sub(input->csg->bounds.max, input->csg->bounds.min);
     *out = (struct solid_mesh){0};
     contour.size = vec3_max_abs(extent);
     if (!solid_probe_init(&contour.probe, input->csg))
         return error_no_memory(error, "the mesh of a solid");
-    bool ok = build(&contour, input, out, error);
+    bool ok = build(&contour, cells, input->pool, out, error);
     *known = contour.grid.known;
     contour.grid.known = (struct list){0};
     solid_probe_destroy(&contour.probe);

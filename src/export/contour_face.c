@@ -364,15 +364,8 @@ static struct face make_face(struct contour *contour, int axis, const int at[3],
                                  .size = contour->grid.step * size};
     count = join_points(&search, points, count, arcs);
     face.bad = straighten_crossing(&search, arcs, count) || search.lost;
-    struct arc *room = list_room(&contour->arcs, (size_t)count, sizeof *room);
-    if (!room) {
-        contour->failed = true;
-        return face;
-    }
-    for (int i = 0; i < count; i++)
-        room[i] = arcs[i];
-    contour->arcs.count += (size_t)count;
-    face.count = (uint32_t)count;
+    contour->failed = !list_add(&contour->arcs, arcs, (size_t)count, sizeof *arcs) || contour->failed;
+    face.count = contour->failed ? 0 : (uint32_t)count;
     return face;
 }
 
@@ -382,12 +375,8 @@ struct face face_arcs(struct contour *contour, int axis, const int at[3], int si
     if (number)
         return ((struct face *)contour->faces.items)[*number];
     struct face face = make_face(contour, axis, at, size);
-    struct face *room = list_room(&contour->faces, 1, sizeof *room);
-    if (!room || !key_map_add(&contour->face_numbers, key, (uint32_t)contour->faces.count)) {
+    if (!list_add(&contour->faces, &face, 1, sizeof face) ||
+        !key_map_add(&contour->face_numbers, key, (uint32_t)contour->faces.count - 1))
         contour->failed = true;
-        return face;
-    }
-    *room = face;
-    contour->faces.count++;
     return face;
 }

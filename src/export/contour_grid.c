@@ -49,13 +49,11 @@ static void note_crossing(struct contour *contour, int axis, int u, int v, struc
         size_t index = grid_base_index(grid, base);
         grid->wanted[index] = 1;
         grid->has_wanted = true;
-        struct known_point *room = known ? list_room(&grid->known, 1, sizeof *room) : NULL;
-        if (!room) {
+        const struct known_point here = {point, grid->first_known[index]};
+        if (known && list_add(&grid->known, &here, 1, sizeof here))
+            grid->first_known[index] = (uint32_t)grid->known.count - 1;
+        else
             contour->failed = contour->failed || known;
-            continue;
-        }
-        *room = (struct known_point){point, grid->first_known[index]};
-        grid->first_known[index] = (uint32_t)grid->known.count++;
     }
 }
 
@@ -63,14 +61,13 @@ static void note_crossing(struct contour *contour, int axis, int u, int v, struc
 static struct grid_line add_line(struct contour *contour, int axis, int u, int v, const struct solid_crossing *found,
                                  uint32_t count) {
     struct line_grid *grid = &contour->grid;
-    struct grid_line *line = list_room(&grid->lines, 1, sizeof *line);
     struct grid_crossing *crossings = list_room(&grid->crossings, count, sizeof *crossings);
-    if (!line || !crossings || !key_map_add(&grid->line_numbers, line_key(axis, u, v), (uint32_t)grid->lines.count)) {
+    const struct grid_line line = {(uint32_t)grid->crossings.count, count};
+    if (!crossings || !list_add(&grid->lines, &line, 1, sizeof line) ||
+        !key_map_add(&grid->line_numbers, line_key(axis, u, v), (uint32_t)grid->lines.count - 1)) {
         contour->failed = true;
         return (struct grid_line){0, 0};
     }
-    *line = (struct grid_line){(uint32_t)grid->crossings.count, count};
-    grid->lines.count++;
     grid->crossings.count += count;
     for (uint32_t i = 0; i < count; i++) {
         double along = vec3_get(grid->origin, axis) + found[i].t;
@@ -80,7 +77,7 @@ static struct grid_line add_line(struct contour *contour, int axis, int u, int v
                                               unit_of(contour, axis, u, v, &found[i]), found[i].enter};
         note_crossing(contour, axis, u, v, vertex.point);
     }
-    return *line;
+    return line;
 }
 
 struct grid_line grid_line(struct contour *contour, int axis, int u, int v) {
@@ -107,13 +104,7 @@ static void cast_row(void *context, uint32_t item, int worker) {
     struct solid_probe *probe = &work->probes[worker];
     for (int v = 0; v < work->columns; v++) {
         cast_line(&work->contour->grid, probe, work->axis, (int)item * work->step, v * work->step);
-        struct solid_crossing *room = list_room(&work->rows[item], probe->count, sizeof *room);
-        probe->failed = probe->failed || !room;
-        if (!room)
-            return;
-        if (probe->count > 0)
-            memcpy(room, probe->found, probe->count * sizeof *room);
-        work->rows[item].count += probe->count;
+        probe->failed = !list_add(&work->rows[item], probe->found, probe->count, sizeof *probe->found) || probe->failed;
         work->counts[item * (uint32_t)work->columns + (uint32_t)v] = probe->count;
     }
 }

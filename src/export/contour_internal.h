@@ -9,13 +9,11 @@
 #ifndef GRAY_EXPORT_CONTOUR_INTERNAL_H
 #define GRAY_EXPORT_CONTOUR_INTERNAL_H
 
+#include "base/key_map.h"
 #include "base/pool.h"
-#include "export/key_map_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
 #include "formats/list.h"
-
-#define NO_INDEX UINT32_MAX
 
 /* On a line of the grid. */
 struct grid_crossing {
@@ -102,15 +100,9 @@ static inline size_t grid_base_index(const struct line_grid *grid, const int bas
 uint32_t contour_add_vertex(struct contour *contour, const struct solid_vertex *vertex);
 void contour_add_triangle(struct contour *contour, uint32_t a, uint32_t b, uint32_t c, uint32_t surface);
 
-struct contour_input {
-    const struct csg *csg; /* closed and finite */
-    double tolerance;
-    uint32_t cells; /* base cells along the longest side */
-    struct pool *pool;
-};
-
-/* Everything is within about a quarter of the tolerance of the surface. `known`: points of the surface, struct
- * known_point; the caller destroys it. Errors: no memory, cancelled. */
-bool contour_build(const struct contour_input *input, struct solid_mesh *out, struct list *known, struct error *error);
+/* Everything is within about a quarter of the tolerance of the surface. `cells`: base cells along the longest side.
+ * `known`: points of the surface, struct known_point; the caller destroys it. Errors: no memory, cancelled. */
+bool contour_build(const struct solid_input *input, uint32_t cells, struct solid_mesh *out, struct list *known,
+                   struct error *error);
 
 #endif

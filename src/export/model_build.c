@@ -1,6 +1,6 @@
 #include "export/model_build.h"
 
-#include "base/mem.h"
+#include "base/arena.h"
 #include "csg/csg_build.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
@@ -330,10 +330,11 @@ static bool make_room(struct model_builder *b, struct error *error) {
         leaves += csg ? csg->leaf_count : 1;
         tokens += csg ? csg->program_length + 1 : 2;
     }
-    b->cluster = mem_alloc(world->primitive_count * sizeof *b->cluster);
-    b->material_of = mem_alloc_zero(world->material_count, sizeof *b->material_of);
-    b->leaves = mem_alloc_zero(leaves, sizeof *b->leaves);
-    b->program = mem_alloc_zero(tokens, sizeof *b->program);
+    struct arena *arena = b->input->arena;
+    b->cluster = arena_alloc_array(arena, world->primitive_count, sizeof *b->cluster);
+    b->material_of = arena_alloc_array(arena, world->material_count, sizeof *b->material_of);
+    b->leaves = arena_alloc_array(arena, leaves, sizeof *b->leaves);
+    b->program = arena_alloc_array(arena, tokens, sizeof *b->program);
     return (b->cluster && b->material_of && b->leaves && b->program) || error_no_memory(error, "a model");
 }
 
@@ -347,10 +348,6 @@ bool model_build(const struct model_build_input *input, struct export_model *out
             return false;
     bool ok = choose_tolerance(&b, error) && make_room(&b, error) && add_clusters(&b, error) &&
               (!input->corners || colour_corners(&b, error));
-    mem_free(b.cluster);
-    mem_free(b.material_of);
-    mem_free(b.leaves);
-    mem_free(b.program);
     if (!ok)
         export_model_destroy(out);
     return ok;

@@ -3,7 +3,7 @@
  * a part in XML and a picture. */
 #include "export/model_write.h"
 
-#include "export/key_map_internal.h"
+#include "base/key_map.h"
 #include "export/triangles_internal.h"
 #include "export/zip_internal.h"
 
@@ -24,7 +24,8 @@ void export_model_destroy(struct export_model *model) {
 struct writer {
     const struct export_model *model;
     const struct model_write_options *options;
-    struct list *out;
+    struct model_files *files;
+    struct list *out; /* one of them */
     bool failed;
     struct key_map colours; /* of the corners of textured triangles: their numbers in the group */
 };
@@ -279,24 +280,32 @@ static bool write_3mf(struct writer *w) {
         "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
         "<Relationship Target=\"/Metadata/thumbnail.png\" Id=\"rel1\" "
         "Type=\"http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail\"/></Relationships>";
-    const struct list *thumbnail = &w->options->thumbnail;
-    struct list model = {0}, *out = w->out;
+    struct list model = {0}, *out = w->out, *directory = &w->files->directory;
     w->out = &model;
     write_3mf_model(w);
-    w->out = out;
-    struct zip_entry entries[] = {{"3D/3dmodel.model", model.items, model.count, 0, 0, 0},
-                                  {"[Content_Types].xml", types, sizeof types - 1, 0, 0, 0},
-                                  {"_rels/.rels", relations, sizeof relations - 1, 0, 0, 0},
-                                  {"Metadata/thumbnail.png", thumbnail->items, thumbnail->count, 0, 0, 0}};
-    bool ok = !w->failed && zip_write(entries, 4, out);
+    bool ok = !w->failed && zip_add(out, directory, "3D/3dmodel.model", model.items, model.count) &&
+              zip_add(out, directory, "[Content_Types].xml", types, sizeof types - 1) &&
+              zip_add(out, directory, "_rels/.rels", relations, sizeof relations - 1);
     list_destroy(&model);
     key_map_destroy(&w->colours);
     return ok;
 }
 
-bool model_write(const struct export_model *model, const struct model_write_options *options, struct list *bytes,
-                 struct list *mtl, struct error *error) {
-    struct writer w = {.model = model, .options = options, .out = bytes};
+bool model_add_thumbnail(struct model_files *files, const struct list *png, struct error *error) {
+    return (zip_add(&files->model, &files->directory, "Metadata/thumbnail.png", png->items, png->count) &&
+            zip_end(&files->model, &files->directory, 4)) ||
+           error_no_memory(error, "a model");
+}
+
+void model_files_destroy(struct model_files *files) {
+    list_destroy(&files->model);
+    list_destroy(&files->mtl);
+    list_destroy(&files->directory);
+}
+
+bool model_write(const struct export_model *model, const struct model_write_options *options, struct model_files *files,
+                 struct error *error) {
+    struct writer w = {.model = model, .options = options, .files = files, .out = &files->model};
     if (count_of(model, false) > INT32_MAX || count_of(model, true) > INT32_MAX)
         return error_set(error, ERROR_SCENE, "the model has more triangles than its file can count");
     switch (options->format) {
@@ -305,7 +314,7 @@ bool model_write(const struct export_model *model, const struct model_write_opti
         break;
     case FORMAT_OBJ:
         write_obj(&w);
-        w.out = mtl;
+        w.out = &files->mtl;
         write_mtl(&w);
         break;
     case FORMAT_PLY:

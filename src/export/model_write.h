@@ -51,13 +51,20 @@ static inline void export_corners(const struct export_part *part, size_t triangl
 struct model_write_options {
     enum model_format format;
     enum model_unit unit;
-    bool text;             /* STL: not binary */
-    const char *mtl_name;  /* OBJ: the name of the file of the materials */
-    struct list thumbnail; /* 3MF: the bytes of a PNG file, not owned */
+    bool text;            /* STL: not binary */
+    const char *mtl_name; /* OBJ: the name of the file of the materials */
 };
 
-/* `bytes`, and of OBJ `mtl` too: lists of bytes that the caller destroys. Errors: no memory, too many triangles. */
-bool model_write(const struct export_model *model, const struct model_write_options *options, struct list *bytes,
-                 struct list *mtl, struct error *error);
+/* Bytes. Zero value: empty. Owner: the caller, model_files_destroy. */
+struct model_files {
+    struct list model, mtl; /* mtl: of OBJ */
+    struct list directory;  /* 3MF: of its zip; the file lacks its end, and the thumbnail */
+};
+/* Errors: no memory, too many triangles. */
+bool model_write(const struct export_model *model, const struct model_write_options *options, struct model_files *files,
+                 struct error *error);
+/* Ends a 3MF file, with the bytes of a PNG file. */
+bool model_add_thumbnail(struct model_files *files, const struct list *png, struct error *error);
+void model_files_destroy(struct model_files *files);
 
 #endif

@@ -17,10 +17,10 @@ struct separation {
     const struct solid_input *input;
     struct box_tree tree;
     double size;
-    uint32_t *first, *triangles; /* by vertex, its triangles */
-    uint8_t *marked;             /* by vertex: it is to be moved */
-    struct vec3 *before;         /* where it was */
-    uint32_t hits;               /* triangles that intersect */
+    uint32_t *first, *next; /* by vertex and corner: the next corner at the vertex, or NO_INDEX */
+    uint8_t *marked;        /* by vertex: it is to be moved */
+    struct vec3 *before;    /* where it was */
+    uint32_t hits;          /* triangles that intersect */
 };
 
 static void mark_hit(void *context, uint32_t one, uint32_t other) {
@@ -38,8 +38,8 @@ static struct vec3 outward_at(const struct separation *s, uint32_t vertex) {
     if (at->sharp == VERTEX_EDGE)
         return vec3_normalize(vec3_add(at->normal[0], at->normal[1]));
     struct vec3 sum = vec3_all(0);
-    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
-        struct corners corners = corners_of(s->mesh, s->triangles[i]);
+    for (uint32_t i = s->first[vertex]; i != NO_INDEX; i = s->next[i]) {
+        struct corners corners = corners_of(s->mesh, i / 3);
         sum = vec3_add(sum, triangle_normal(corners.point));
     }
     return vec3_normalize(sum);
@@ -48,8 +48,8 @@ static struct vec3 outward_at(const struct separation *s, uint32_t vertex) {
 static bool is_neighbour(const struct separation *s, uint32_t vertex, const struct corners *corners) {
     if (corners->vertex[0] == vertex || corners->vertex[1] == vertex || corners->vertex[2] == vertex)
         return true;
-    for (uint32_t i = s->first[vertex]; i < s->first[vertex + 1]; i++) {
-        const uint32_t *own = solid_triangle_at(s->mesh, s->triangles[i])->vertex;
+    for (uint32_t i = s->first[vertex]; i != NO_INDEX; i = s->next[i]) {
+        const uint32_t *own = solid_triangle_at(s->mesh, i / 3)->vertex;
         for (int k = 0; k < 9; k++)
             if (own[k / 3] == corners->vertex[k % 3])
                 return true;
@@ -59,12 +59,12 @@ static bool is_neighbour(const struct separation *s, uint32_t vertex, const stru
 
 /* Another part of the surface is within the distance; `opposite`: one that faces this one. */
 static bool is_touched(const struct separation *s, uint32_t vertex, double distance, bool opposite) {
-    struct vec3 point = solid_vertex_at(s->mesh, vertex)->point, margin = vec3_all(distance);
-    struct vec3 outward = outward_at(s, vertex);
-    struct region_search search;
+    struct vec3 point = solid_vertex_at(s->mesh, vertex)->point, outward = outward_at(s, vertex);
+    struct box region = box_grow((struct box){point, point}, distance);
+    struct box_tree_meeting meeting;
     uint32_t other;
-    region_search_begin(&search, &s->tree, (struct box){vec3_sub(point, margin), vec3_add(point, margin)});
-    while (region_search_next(&search, &other)) {
+    box_tree_meeting_begin(&meeting, &s->tree, &region);
+    while (box_tree_meeting_next(&meeting, &other)) {
         struct corners corners = corners_of(s->mesh, other);
         if (triangle_distance_squared(point, corners.point) < distance * distance &&
             !is_neighbour(s, vertex, &corners) &&
@@ -76,16 +76,16 @@ static bool is_touched(const struct separation *s, uint32_t vertex, double dista
 
 static bool list_triangles(struct separation *s) {
     size_t vertices = s->mesh->vertices.count, corners = 3 * s->mesh->triangles.count;
-    s->first = mem_alloc_zero(vertices + 2, sizeof *s->first);
-    s->triangles = mem_alloc(corners * sizeof *s->triangles);
-    if (!s->first || !s->triangles)
+    s->first = mem_alloc(vertices * sizeof *s->first);
+    s->next = mem_alloc(corners * sizeof *s->next);
+    if (!s->first || !s->next)
         return false;
-    for (size_t i = 0; i < corners; i++)
-        s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 2]++;
-    for (size_t i = 0; i < vertices; i++)
-        s->first[i + 2] += s->first[i + 1];
-    for (size_t i = 0; i < corners; i++)
-        s->triangles[s->first[solid_triangle_at(s->mesh, (uint32_t)(i / 3))->vertex[i % 3] + 1]++] = (uint32_t)(i / 3);
+    memset(s->first, 0xff, vertices * sizeof *s->first);
+    for (uint32_t i = (uint32_t)corners; i-- > 0;) {
+        uint32_t *first = &s->first[solid_triangle_at(s->mesh, i / 3)->vertex[i % 3]];
+        s->next[i] = *first;
+        *first = i;
+    }
     return true;
 }
 
@@ -179,7 +179,7 @@ bool separate_parts(struct solid_mesh *mesh, const struct solid_input *input, st
     ok = ok && separate(&s, findings, error);
     box_tree_destroy(&s.tree);
     mem_free(s.first);
-    mem_free(s.triangles);
+    mem_free(s.next);
     mem_free(s.marked);
     mem_free(s.before);
     return ok;

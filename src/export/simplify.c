@@ -6,12 +6,11 @@
  * Passes over all vertices, in a random order, with a growing limit of the length: first short edges everywhere. */
 #include "export/simplify_internal.h"
 
-#include "base/mem.h"
+#include "base/arena.h"
+#include "base/key_map.h"
 #include "base/random.h"
-#include "export/key_map_internal.h"
 #include "export/triangles_internal.h"
 
-#define NOTHING UINT32_MAX
 enum { RING_LIMIT = 64, PASS_LIMIT = 60 };
 
 static const double growth = 1.7;       /* of the limit of the length, in a pass */
@@ -33,6 +32,7 @@ struct piece {
 struct simplifier {
     struct solid_mesh *mesh;
     const struct simplify_input *input;
+    struct arena arena;    /* of the arrays */
     double tolerance;      /* of this pass */
     uint32_t *head, *next; /* by vertex and corner: the corners at a vertex */
     uint16_t *degree;
@@ -82,6 +82,9 @@ static struct vec3 point_of(const struct simplifier *s, uint32_t vertex) {
 static uint32_t corner_after(uint32_t corner, uint32_t steps) {
     return corner / 3 * 3 + (corner + steps) % 3;
 }
+static bool is_removed(const struct simplifier *s, uint32_t triangle) {
+    return vertices_of(s, triangle)[0] == vertices_of(s, triangle)[1];
+}
 static bool is_crease(const struct simplifier *s, uint32_t corner) {
     return s->crease[corner / 3] >> corner % 3 & 1;
 }
@@ -116,12 +119,9 @@ static bool note_piece(struct simplifier *s, uint32_t surface, struct vec3 point
                         fabs(vec3_dot(piece->normal, vec3_sub(point, piece->point))) > plane_slack(s);
         return true;
     }
-    struct piece *room = list_room(&s->pieces, 1, sizeof *room);
-    if (!room || !key_map_add(&s->piece_numbers, (uint64_t)surface + 1, (uint32_t)s->pieces.count))
-        return false;
-    *room = (struct piece){point, normal, false};
-    s->pieces.count++;
-    return true;
+    const struct piece piece = {point, normal, false};
+    return list_add(&s->pieces, &piece, 1, sizeof piece) &&
+           key_map_add(&s->piece_numbers, (uint64_t)surface + 1, (uint32_t)s->pieces.count - 1);
 }
 
 /* The plane of a triangle's piece, or NULL. */
@@ -162,7 +162,7 @@ static bool is_edge_of_solid(const struct simplifier *s, uint32_t corner) {
     uint32_t from = vertex_at(s, corner), to = vertex_after(s, corner, 1);
     if (solid_vertex_at(s->mesh, from)->sharp == VERTEX_SMOOTH || solid_vertex_at(s->mesh, to)->sharp == VERTEX_SMOOTH)
         return false;
-    for (uint32_t c = s->head[from]; c != NOTHING; c = s->next[c]) {
+    for (uint32_t c = s->head[from]; c != NO_INDEX; c = s->next[c]) {
         if (vertex_after(s, c, 2) != to)
             continue;
         return solid_triangle_at(s->mesh, c / 3)->surface != solid_triangle_at(s->mesh, corner / 3)->surface ||
@@ -173,11 +173,11 @@ static bool is_edge_of_solid(const struct simplifier *s, uint32_t corner) {
 
 static void find_creases(struct simplifier *s) {
     for (uint32_t corner = 0; corner < 3 * s->mesh->triangles.count; corner++)
-        if (vertices_of(s, corner / 3)[0] != NOTHING && is_edge_of_solid(s, corner))
+        if (!is_removed(s, corner / 3) && is_edge_of_solid(s, corner))
             s->crease[corner / 3] |= (uint8_t)(1 << corner % 3);
     for (uint32_t i = 0; i < s->mesh->vertices.count; i++) {
         int creases = 0;
-        for (uint32_t c = s->head[i]; c != NOTHING; c = s->next[c])
+        for (uint32_t c = s->head[i]; c != NO_INDEX; c = s->next[c])
             creases += is_crease(s, c);
         bool corner = solid_vertex_at(s->mesh, i)->sharp == VERTEX_CORNER || s->input->keep[i] == KEEP_VERTEX ||
                       (creases != 0 && creases != 2);
@@ -190,7 +190,7 @@ static void find_creases(struct simplifier *s) {
 /* The triangles around the vertex that moves: two are removed, the others change. False: it cannot be moved. */
 static bool gather_ring(const struct simplifier *s, struct collapse *collapse) {
     collapse->removed_count = collapse->count = 0;
-    for (uint32_t c = s->head[collapse->from]; c != NOTHING; c = s->next[c]) {
+    for (uint32_t c = s->head[collapse->from]; c != NO_INDEX; c = s->next[c]) {
         bool removed = vertex_after(s, c, 1) == collapse->to || vertex_after(s, c, 2) == collapse->to;
         if (removed ? collapse->removed_count == 2 : collapse->count == RING_LIMIT)
             return false;
@@ -219,9 +219,9 @@ static uint32_t third_vertex(const struct simplifier *s, uint32_t corner, uint32
 static bool keeps_topology(struct simplifier *s, const struct collapse *collapse) {
     uint32_t from = collapse->from, to = collapse->to, common = 0;
     s->stamp++;
-    for (uint32_t c = s->head[from]; c != NOTHING; c = s->next[c])
+    for (uint32_t c = s->head[from]; c != NO_INDEX; c = s->next[c])
         s->mark[vertex_after(s, c, 1)] = s->stamp;
-    for (uint32_t c = s->head[to]; c != NOTHING; c = s->next[c])
+    for (uint32_t c = s->head[to]; c != NO_INDEX; c = s->next[c])
         common += s->mark[vertex_after(s, c, 1)] == s->stamp;
     for (int i = 0; i < 2; i++)
         if (s->degree[third_vertex(s, collapse->removed[i], to)] <= 3)
@@ -340,41 +340,24 @@ static int nearest_target(const struct simplifier *s, const struct collapse *col
 }
 
 static bool move_sample(struct simplifier *s, const struct collapse *collapse, uint32_t sample) {
-    int target = nearest_target(s, collapse, (struct sample *)s->samples.items + sample);
-    struct moved_sample *room = target >= 0 ? list_room(&s->moved, 1, sizeof *room) : NULL;
-    if (!room)
-        return false;
-    *room = (struct moved_sample){sample, target};
-    s->moved.count++;
-    return true;
+    const struct moved_sample moved = {sample, nearest_target(s, collapse, (struct sample *)s->samples.items + sample)};
+    return moved.target >= 0 && list_add(&s->moved, &moved, 1, sizeof moved);
 }
 
 /* All samples around, and the vertex that moves, unless it is inside of a plane, are near enough to new triangles. */
 static bool keeps_samples(struct simplifier *s, const struct collapse *collapse) {
-    bool edge = s->kind[collapse->from] == VERTEX_EDGE;
-    s->moved.count = 0;
-    if (edge || !collapse->is_planar) {
-        struct sample *room = list_room(&s->samples, 1, sizeof *room);
-        if (!room)
-            return false;
-        *room =
-            (struct sample){point_of(s, collapse->from), NOTHING, edge, s->input->keep[collapse->from] == KEEP_CLOSE};
-        s->samples.count++;
-        if (!move_sample(s, collapse, (uint32_t)s->samples.count - 1)) {
-            s->samples.count--;
-            return false;
-        }
-    }
+    bool edge = s->kind[collapse->from] == VERTEX_EDGE, ok = true;
+    const struct sample own = {point_of(s, collapse->from), NO_INDEX, edge,
+                               s->input->keep[collapse->from] == KEEP_CLOSE};
     size_t count = s->samples.count;
-    for (uint32_t c = s->head[collapse->from]; c != NOTHING; c = s->next[c]) {
-        for (uint32_t i = s->first_sample[c / 3]; i != NOTHING; i = ((struct sample *)s->samples.items)[i].next) {
-            if (move_sample(s, collapse, i))
-                continue;
-            s->samples.count = count - (edge || !collapse->is_planar);
-            return false;
-        }
-    }
-    return true;
+    s->moved.count = 0;
+    if (edge || !collapse->is_planar)
+        ok = list_add(&s->samples, &own, 1, sizeof own) && move_sample(s, collapse, (uint32_t)count);
+    for (uint32_t c = s->head[collapse->from]; c != NO_INDEX; c = s->next[c])
+        for (uint32_t i = s->first_sample[c / 3]; i != NO_INDEX && ok; i = ((struct sample *)s->samples.items)[i].next)
+            ok = move_sample(s, collapse, i);
+    s->samples.count = ok ? s->samples.count : count;
+    return ok;
 }
 
 /* --- the collapse --- */
@@ -383,8 +366,8 @@ static void apply(struct simplifier *s, const struct collapse *collapse) {
     uint32_t from = collapse->from, to = collapse->to;
     const struct moved_sample *moved = s->moved.items;
     struct sample *samples = s->samples.items;
-    for (uint32_t c = s->head[from]; c != NOTHING; c = s->next[c])
-        s->first_sample[c / 3] = NOTHING;
+    for (uint32_t c = s->head[from]; c != NO_INDEX; c = s->next[c])
+        s->first_sample[c / 3] = NO_INDEX;
     for (size_t i = 0; i < s->moved.count; i++) {
         uint32_t *first = &s->first_sample[collapse->ring[moved[i].target].triangle / 3];
         samples[moved[i].sample].next = *first;
@@ -393,7 +376,7 @@ static void apply(struct simplifier *s, const struct collapse *collapse) {
     for (int i = 0; i < 2; i++) {
         detach(s, corner_after(collapse->removed[i], 1));
         detach(s, corner_after(collapse->removed[i], 2));
-        vertices_of(s, collapse->removed[i] / 3)[0] = NOTHING;
+        vertices_of(s, collapse->removed[i] / 3)[0] = vertices_of(s, collapse->removed[i] / 3)[1];
     }
     for (int i = 0; i < collapse->count; i++) {
         uint32_t corner = collapse->ring[i].triangle;
@@ -405,7 +388,7 @@ static void apply(struct simplifier *s, const struct collapse *collapse) {
         s->waiting[vertex_after(s, corner, 1)] = s->waiting[vertex_after(s, corner, 2)] = 1;
     }
     s->waiting[to] = 1;
-    s->head[from] = NOTHING;
+    s->head[from] = NO_INDEX;
     s->degree[from] = 0;
 }
 
@@ -435,7 +418,7 @@ static int sort_neighbours(const struct simplifier *s, uint32_t vertex, double l
     const struct solid_vertex *at = solid_vertex_at(s->mesh, vertex);
     int count = 0;
     *all = true;
-    for (uint32_t c = s->head[vertex]; c != NOTHING; c = s->next[c]) {
+    for (uint32_t c = s->head[vertex]; c != NO_INDEX; c = s->next[c]) {
         const struct solid_vertex *other = solid_vertex_at(s->mesh, vertex_after(s, c, 1));
         struct vec3 along = vec3_sub(other->point, at->point);
         double length = vec3_length(along);
@@ -472,8 +455,7 @@ static bool remove_vertex(struct simplifier *s, uint32_t vertex, double limit, b
 static void remove_slivers(struct simplifier *s) {
     s->tolerance = sliver_share * s->input->tolerance;
     for (uint32_t i = 0; i < s->mesh->triangles.count; i++) {
-        const uint32_t *vertex = vertices_of(s, i);
-        if (vertex[0] == NOTHING)
+        if (is_removed(s, i))
             continue;
         struct corners c = corners_of(s->mesh, i);
         double length = longest_edge(c.point), twice_area = vec3_length(triangle_normal(c.point));
@@ -490,8 +472,8 @@ static void remove_slivers(struct simplifier *s) {
     }
 }
 
-static uint32_t *shuffled(uint32_t count) {
-    uint32_t *order = mem_alloc((size_t)count * sizeof *order);
+static uint32_t *shuffled(struct arena *arena, uint32_t count) {
+    uint32_t *order = arena_alloc_array(arena, count, sizeof *order);
     for (uint32_t i = 0; order && i < count; i++)
         order[i] = i;
     for (uint32_t i = count; order && i-- > 1;) {
@@ -503,7 +485,7 @@ static uint32_t *shuffled(uint32_t count) {
 }
 
 static bool run_passes(struct simplifier *s) {
-    uint32_t remaining = (uint32_t)s->mesh->vertices.count, *order = shuffled(remaining);
+    uint32_t remaining = (uint32_t)s->mesh->vertices.count, *order = shuffled(&s->arena, remaining);
     double maximum = 4 * s->input->size, limit = s->input->size / 256, share = 0.8 * s->input->tolerance;
     if (!order)
         return false;
@@ -525,21 +507,20 @@ static bool run_passes(struct simplifier *s) {
             break;
         limit = fmin(maximum, limit * growth);
     }
-    mem_free(order);
     return true;
 }
 
 static bool begin(struct simplifier *s) {
     size_t vertices = s->mesh->vertices.count, triangles = s->mesh->triangles.count;
-    s->head = mem_alloc(vertices * sizeof *s->head);
-    s->next = mem_alloc(3 * triangles * sizeof *s->next);
-    s->degree = mem_alloc_zero(vertices, sizeof *s->degree);
-    s->kind = mem_alloc_zero(vertices, 1);
-    s->waiting = mem_alloc(vertices);
-    s->crease = mem_alloc_zero(triangles, 1);
-    s->piece = mem_alloc(triangles * sizeof *s->piece);
-    s->first_sample = mem_alloc(triangles * sizeof *s->first_sample);
-    s->mark = mem_alloc_zero(vertices, sizeof *s->mark);
+    s->head = arena_alloc_array(&s->arena, vertices, sizeof *s->head);
+    s->next = arena_alloc_array(&s->arena, 3 * triangles, sizeof *s->next);
+    s->degree = arena_alloc_array(&s->arena, vertices, sizeof *s->degree);
+    s->kind = arena_alloc_array(&s->arena, vertices, 1);
+    s->waiting = arena_alloc_array(&s->arena, vertices, 1);
+    s->crease = arena_alloc_array(&s->arena, triangles, 1);
+    s->piece = arena_alloc_array(&s->arena, triangles, sizeof *s->piece);
+    s->first_sample = arena_alloc_array(&s->arena, triangles, sizeof *s->first_sample);
+    s->mark = arena_alloc_array(&s->arena, vertices, sizeof *s->mark);
     if (!s->head || !s->next || !s->degree || !s->kind || !s->waiting || !s->crease || !s->piece || !s->first_sample ||
         !s->mark)
         return false;
@@ -555,31 +536,13 @@ static bool begin(struct simplifier *s) {
     return true;
 }
 
-static void forget_removed(struct solid_mesh *mesh) {
-    struct solid_triangle *triangles = mesh->triangles.items;
-    size_t kept = 0;
-    for (size_t i = 0; i < mesh->triangles.count; i++)
-        if (triangles[i].vertex[0] != NOTHING)
-            triangles[kept++] = triangles[i];
-    mesh->triangles.count = kept;
-}
-
 bool simplify_mesh(struct solid_mesh *mesh, const struct simplify_input *input) {
     struct simplifier s = {.mesh = mesh, .input = input};
     bool ok = begin(&s) && run_passes(&s);
-    mem_free(s.head);
-    mem_free(s.next);
-    mem_free(s.degree);
-    mem_free(s.kind);
-    mem_free(s.waiting);
-    mem_free(s.crease);
-    mem_free(s.piece);
-    mem_free(s.first_sample);
-    mem_free(s.mark);
+    arena_destroy(&s.arena);
     list_destroy(&s.samples);
     list_destroy(&s.pieces);
     list_destroy(&s.moved);
     key_map_destroy(&s.piece_numbers);
-    forget_removed(mesh);
-    return ok;
+    return ok && solid_mesh_compact(mesh);
 }

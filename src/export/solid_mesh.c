@@ -3,16 +3,16 @@
  * something is wrong the vertices around it are kept, and it is done again. The last resort is another grid. */
 #include "export/solid_mesh_internal.h"
 
-#include "base/hash.h"
+#include "base/key_map.h"
 #include "base/mem.h"
 #include "export/contour_internal.h"
-#include "export/key_map_internal.h"
 #include "export/separate_internal.h"
 #include "export/simplify_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/triangles_internal.h"
 #include "math/exact.h"
 #include "mesh/mesh.h"
+#include "mesh/mesh_topology.h"
 
 enum { ROUNDS = 6, GRIDS = 4, MIN_CELLS = 24, MAX_CELLS = 64 };
 
@@ -24,10 +24,19 @@ void solid_mesh_destroy(struct solid_mesh *mesh) {
 bool solid_mesh_compact(struct solid_mesh *mesh) {
     uint32_t *numbers = mem_alloc_zero(mesh->vertices.count, sizeof *numbers), count = 0;
     struct solid_vertex *vertices = mesh->vertices.items;
+    size_t kept = 0;
     if (!numbers)
         return false;
-    for (size_t i = 0; i < 3 * mesh->triangles.count; i++)
-        numbers[solid_triangle_at(mesh, (uint32_t)(i / 3))->vertex[i % 3]] = 1;
+    for (uint32_t i = 0; i < mesh->triangles.count; i++) {
+        const struct solid_triangle triangle = *solid_triangle_at(mesh, i);
+        const uint32_t *vertex = triangle.vertex;
+        if (vertex[0] == vertex[1] || vertex[1] == vertex[2] || vertex[2] == vertex[0])
+            continue;
+        for (int k = 0; k < 3; k++)
+            numbers[vertex[k]] = 1;
+        *solid_triangle_at(mesh, (uint32_t)kept++) = triangle;
+    }
+    mesh->triangles.count = kept;
     for (size_t i = 0; i < mesh->vertices.count; i++) {
         if (!numbers[i])
             continue;
@@ -52,103 +61,68 @@ struct vec3 solid_round(const struct csg *csg, struct vec3 point) {
     return vec3_scale(vec3_make(rint(point.x / step), rint(point.y / step), rint(point.z / step)), step);
 }
 
-/* Positions are those of the file, in single precision: equal ones are one vertex. */
-static bool add_position(struct solid_mesh *out, struct key_map *positions, struct vec3 point, uint32_t *vertex) {
-    /* volatile: else GCC 12 stores x and y of the vertex as they were before they were rounded. */
-    const volatile float single[3] = {(float)point.x, (float)point.y, (float)point.z};
-    const float rounded[3] = {single[0], single[1], single[2]};
-    uint64_t key = hash_bytes(rounded, sizeof rounded, 0) | 1;
-    for (uint32_t *found; (found = key_map_find(positions, key)) != NULL; key += 2) {
-        struct vec3 other = solid_vertex_at(out, *found)->point;
-        *vertex = *found;
-        if (other.x == rounded[0] && other.y == rounded[1] && other.z == rounded[2])
-            return true;
-    }
-    struct solid_vertex *room = list_room(&out->vertices, 1, sizeof *room);
-    *vertex = (uint32_t)out->vertices.count;
-    if (!room || !key_map_add(positions, key, *vertex))
-        return false;
-    *room = (struct solid_vertex){.point = {rounded[0], rounded[1], rounded[2]}};
-    out->vertices.count++;
-    return true;
-}
-
 bool solid_mesh_of_triangles(const struct mesh *mesh, const struct affine *map, struct solid_mesh *out) {
-    uint32_t count = mesh_triangle_count(mesh);
-    struct key_map positions = {0};
-    struct solid_triangle *room = list_room(&out->triangles, count, sizeof *room);
-    bool ok = room != NULL;
-    bool inward = !mesh_is_outward(mesh), mirrored = affine_determinant(map) < 0;
-    for (uint32_t i = 0; ok && i < count; i++) {
-        struct solid_triangle triangle;
-        struct vec3 corners[3];
-        mesh_triangle(mesh, i, corners, &triangle.surface);
-        for (int k = 0; ok && k < 3; k++)
-            ok = add_position(out, &positions, affine_point(map, corners[inward != mirrored ? 2 - k : k]),
-                              &triangle.vertex[k]);
-        bool thin = triangle.vertex[0] == triangle.vertex[1] || triangle.vertex[1] == triangle.vertex[2] ||
-                    triangle.vertex[2] == triangle.vertex[0];
-        if (ok && !thin)
-            room[out->triangles.count++] = triangle;
+    size_t corners = 3 * (size_t)mesh_triangle_count(mesh);
+    double(*positions)[3] = mem_alloc(corners * sizeof *positions);
+    uint32_t *same = mem_alloc(corners * sizeof *same);
+    bool ok = positions && same, turned = mesh_is_outward(mesh) == (affine_determinant(map) < 0);
+    for (size_t i = 0; ok && i < corners; i += 3) {
+        struct solid_triangle triangle = {{(uint32_t)i, (uint32_t)i + 1, (uint32_t)i + 2}, 0};
+        struct vec3 points[3];
+        mesh_triangle(mesh, (uint32_t)(i / 3), points, &triangle.surface);
+        for (int k = 0; k < 9; k++)
+            positions[i + (size_t)k / 3][k % 3] =
+                (float)vec3_get(affine_point(map, points[turned ? 2 - k / 3 : k / 3]), k % 3);
+        ok = list_add(&out->triangles, &triangle, 1, sizeof triangle);
     }
-    key_map_destroy(&positions);
-    return ok;
+    ok = ok && mesh_weld((const double(*)[3])positions, (uint32_t)corners, same);
+    /* Equal positions are one vertex. */
+    for (size_t i = 0; ok && i < corners; i++) {
+        const double *at = positions[i];
+        const struct solid_vertex vertex = {.point = {at[0], at[1], at[2]}};
+        uint32_t first = same[i];
+        same[i] = first == i ? (uint32_t)out->vertices.count : same[first];
+        solid_triangle_at(out, (uint32_t)(i / 3))->vertex[i % 3] = same[i];
+        ok = first < i || list_add(&out->vertices, &vertex, 1, sizeof vertex);
+    }
+    mem_free(positions);
+    mem_free(same);
+    return ok && solid_mesh_compact(out);
 }
 
 static bool solid_mesh_copy(const struct solid_mesh *from, struct solid_mesh *out) {
-    struct solid_vertex *vertices = list_room(&out->vertices, from->vertices.count, sizeof *vertices);
-    struct solid_triangle *triangles = list_room(&out->triangles, from->triangles.count, sizeof *triangles);
-    if (!vertices || !triangles)
-        return false;
-    memcpy(vertices, from->vertices.items, from->vertices.count * sizeof *vertices);
-    memcpy(triangles, from->triangles.items, from->triangles.count * sizeof *triangles);
-    out->vertices.count = from->vertices.count;
-    out->triangles.count = from->triangles.count;
-    return true;
+    return list_add(&out->vertices, from->vertices.items, from->vertices.count, sizeof(struct solid_vertex)) &&
+           list_add(&out->triangles, from->triangles.items, from->triangles.count, sizeof(struct solid_triangle));
 }
 
-static uint64_t edge_key(uint32_t from, uint32_t to) {
-    return ((uint64_t)from << 32 | to) + 1;
+static uint64_t edge_key(const struct solid_mesh *mesh, uint32_t corner, uint32_t end) {
+    const uint32_t *vertex = solid_triangle_at(mesh, corner / 3)->vertex;
+    return ((uint64_t)vertex[corner % 3] << 32 | vertex[(corner + end) % 3]) + 1;
 }
 
-/* The triangles around each vertex: from one to the next over their common edge, and back after all of them. */
-static bool fans_are_whole(const struct solid_mesh *mesh, const struct key_map *edges, const uint32_t *degree,
-                           uint8_t *seen) {
-    for (uint32_t i = 0; i < 3 * mesh->triangles.count; i++) {
-        uint32_t vertex = solid_triangle_at(mesh, i / 3)->vertex[i % 3], at = i, count = 0;
-        if (seen[vertex])
-            continue;
-        seen[vertex] = 1;
-        do {
-            uint32_t last = solid_triangle_at(mesh, at / 3)->vertex[(at + 2) % 3];
-            const uint32_t *next = key_map_find(edges, edge_key(vertex, last));
-            if (!next)
-                return false;
-            at = *next;
-            count++;
-        } while (at != i && count <= degree[vertex]);
-        if (count != degree[vertex])
-            return false;
-    }
-    return true;
-}
-
+/* From one triangle at a vertex to the next over their common edge, until the first one is reached again: such a ring
+ * has all triangles of its vertex if there are as many rings as vertices. */
 bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct error *error) {
     uint32_t corners = 3 * (uint32_t)mesh->triangles.count;
-    uint32_t *degree = mem_alloc_zero(mesh->vertices.count, sizeof *degree);
-    uint8_t *seen = mem_alloc_zero(mesh->vertices.count, 1);
+    uint8_t *seen = mem_alloc_zero(corners, 1);
     struct key_map edges = {0};
-    bool ok = true, memory = degree && seen;
+    size_t rings = 0;
+    bool ok = true, memory = seen != NULL;
     for (uint32_t i = 0; ok && memory && i < corners; i++) {
-        const uint32_t *vertex = solid_triangle_at(mesh, i / 3)->vertex;
-        uint64_t key = edge_key(vertex[i % 3], vertex[(i + 1) % 3]);
-        ok = !key_map_find(&edges, key) && vertex[i % 3] != vertex[(i + 1) % 3];
-        memory = memory && (!ok || key_map_add(&edges, key, i));
-        degree[vertex[i % 3]]++;
+        ok = !key_map_find(&edges, edge_key(mesh, i, 1));
+        memory = !ok || key_map_add(&edges, edge_key(mesh, i, 1), i);
     }
-    *closed = ok && memory && fans_are_whole(mesh, &edges, degree, seen);
+    for (uint32_t i = 0; ok && memory && i < corners; i++) {
+        rings += !seen[i];
+        for (uint32_t at = i; ok && !seen[at];) {
+            const uint32_t *next = key_map_find(&edges, edge_key(mesh, at, 2));
+            seen[at] = 1;
+            ok = next != NULL;
+            at = ok ? *next : at;
+        }
+    }
+    *closed = ok && memory && rings == mesh->vertices.count;
     key_map_destroy(&edges);
-    mem_free(degree);
     mem_free(seen);
     return memory || error_no_memory(error, "the edges of a mesh");
 }
@@ -172,12 +146,8 @@ struct verification {
 };
 
 static void add_fault(struct verification *v, struct box box, double margin) {
-    struct box *room = list_room(&v->boxes, 1, sizeof *room);
-    v->failed = v->failed || !room;
-    if (!room)
-        return;
-    *room = (struct box){vec3_sub(box.min, vec3_all(margin)), vec3_add(box.max, vec3_all(margin))};
-    v->boxes.count++;
+    box = box_grow(box, margin);
+    v->failed = !list_add(&v->boxes, &box, 1, sizeof box) || v->failed;
 }
 
 static void add_far_point(struct verification *v, struct vec3 point) {
@@ -295,16 +265,13 @@ static bool simplify_and_test(struct verification *v, const struct solid_mesh *f
             return error_set(error, ERROR_CANCELLED, "stopped while a solid was meshed");
         solid_mesh_destroy(out);
         mark_kept(v, fine, keep);
-        bool memory = solid_mesh_copy(fine, out) && simplify_mesh(out, &input);
-        if (!memory)
+        if (!solid_mesh_copy(fine, out) || !simplify_mesh(out, &input))
             return error_no_memory(error, "the mesh of a solid");
         v->mesh = out;
         if (!verify(v, error))
             return false;
         *good = v->boxes.count == 0;
     }
-    if (!solid_mesh_compact(out))
-        return error_no_memory(error, "the mesh of a solid");
     bool closed = false, memory = solid_mesh_is_closed(out, &closed, error);
     *good = *good && closed;
     return memory;
@@ -317,12 +284,11 @@ static bool is_empty(const struct solid_input *input, struct error *error) {
 static bool try_grid(const struct solid_input *input, uint32_t cells, struct solid_mesh *out,
                      struct solid_findings *findings, bool *good, struct error *error) {
     double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
-    const struct contour_input contour = {input->csg, input->tolerance, cells, input->pool};
     int workers = pool_workers(input->pool);
     struct verification v = {.input = input, .size = size};
     struct solid_mesh fine;
     *good = false;
-    bool ok = contour_build(&contour, &fine, &v.known, error);
+    bool ok = contour_build(input, cells, &fine, &v.known, error);
     if (ok && fine.triangles.count == 0)
         ok = is_empty(input, error);
     round_coordinates(input->csg, &fine);

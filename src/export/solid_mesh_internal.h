@@ -7,6 +7,8 @@
 #include "csg/csg.h"
 #include "formats/list.h"
 
+#define NO_INDEX UINT32_MAX
+
 /* A vertex inside of a smooth piece, on an edge between two, or at a corner. */
 enum { VERTEX_SMOOTH, VERTEX_EDGE, VERTEX_CORNER };
 struct solid_vertex {
@@ -24,7 +26,7 @@ struct solid_mesh {
 };
 
 void solid_mesh_destroy(struct solid_mesh *mesh);
-/* Forgets vertices that no triangle has. False: no memory. */
+/* Forgets triangles that have a vertex twice, and vertices that no triangle has. False: no memory. */
 bool solid_mesh_compact(struct solid_mesh *mesh);
 
 static inline struct solid_vertex *solid_vertex_at(const struct solid_mesh *mesh, uint32_t index) {
@@ -59,7 +61,8 @@ bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, s
 /* The triangles of a mesh under a map, with one vertex for each position; `surface` is the material slot. False: no
  * memory. */
 bool solid_mesh_of_triangles(const struct mesh *mesh, const struct affine *map, struct solid_mesh *out);
-/* Whether every edge has two triangles in opposite directions, and every vertex one fan. False: no memory. */
+/* Whether every edge has two triangles in opposite directions, and the triangles of every vertex are one ring; the mesh
+ * is compact. False: no memory. */
 bool solid_mesh_is_closed(const struct solid_mesh *mesh, bool *closed, struct error *error);
 
 #endif

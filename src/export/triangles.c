@@ -106,40 +106,12 @@ bool triangle_tree_build(struct box_tree *tree, const struct solid_mesh *mesh, s
     return ok;
 }
 
-void region_search_begin(struct region_search *search, const struct box_tree *tree, struct box region) {
-    search->tree = tree;
-    search->region = region;
-    search->top = tree->node_count > 0 ? 1 : 0;
-    search->stack[0] = 0;
-}
-
-bool region_search_next(struct region_search *search, uint32_t *item) {
-    const double low[3] = {search->region.min.x, search->region.min.y, search->region.min.z};
-    const double high[3] = {search->region.max.x, search->region.max.y, search->region.max.z};
-    while (search->top > 0) {
-        uint32_t child = search->stack[--search->top];
-        if (child & BOX_TREE_ITEM) {
-            *item = child & ~BOX_TREE_ITEM;
-            return true;
-        }
-        const struct box_tree_node *node = &search->tree->nodes[child];
-        for (int i = BOX_TREE_WIDTH - 1; i >= 0; i--) {
-            bool meets = node->child[i] != BOX_TREE_NONE;
-            for (int axis = 0; axis < 3; axis++)
-                meets = meets && node->planes[axis][0][i] <= high[axis] && node->planes[axis][1][i] >= low[axis];
-            if (meets)
-                search->stack[search->top++] = node->child[i];
-        }
-    }
-    return false;
-}
-
 bool mesh_is_near(const struct solid_mesh *mesh, const struct box_tree *tree, struct vec3 point, double distance) {
-    struct vec3 margin = vec3_all(distance);
-    struct region_search search;
+    struct box region = box_grow((struct box){point, point}, distance);
+    struct box_tree_meeting meeting;
     uint32_t triangle;
-    region_search_begin(&search, tree, (struct box){vec3_sub(point, margin), vec3_add(point, margin)});
-    while (region_search_next(&search, &triangle)) {
+    box_tree_meeting_begin(&meeting, tree, &region);
+    while (box_tree_meeting_next(&meeting, &triangle)) {
         struct corners corners = corners_of(mesh, triangle);
         if (triangle_distance_squared(point, corners.point) < distance * distance)
             return true;
@@ -151,10 +123,11 @@ void find_intersections(const struct solid_mesh *mesh, const struct box_tree *tr
                         intersection_found *found, void *context) {
     for (uint32_t i = 0; i < mesh->triangles.count; i++) {
         struct corners corners = corners_of(mesh, i);
-        struct region_search search;
+        struct box box = corners_box(&corners);
+        struct box_tree_meeting meeting;
         uint32_t other;
-        region_search_begin(&search, tree, corners_box(&corners));
-        while (region_search_next(&search, &other)) {
+        box_tree_meeting_begin(&meeting, tree, &box);
+        while (box_tree_meeting_next(&meeting, &other)) {
             struct corners others = corners_of(mesh, other);
             if (other > i && triangles_intersect(&corners, &others, slack))
                 found(context, i, other);

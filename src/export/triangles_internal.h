@@ -23,15 +23,6 @@ struct box corners_box(const struct corners *corners);
 /* A tree over the boxes of the triangles; box_tree_destroy. */
 bool triangle_tree_build(struct box_tree *tree, const struct solid_mesh *mesh, struct pool *pool, struct error *error);
 
-/* Items whose box meets a region, in the order of the tree: begin, then next until it returns false. */
-struct region_search {
-    const struct box_tree *tree;
-    struct box region;
-    int top;
-    uint32_t stack[BOX_TREE_STACK];
-};
-void region_search_begin(struct region_search *search, const struct box_tree *tree, struct box region);
-bool region_search_next(struct region_search *search, uint32_t *item);
 /* Whether a triangle is nearer to the point. */
 bool mesh_is_near(const struct solid_mesh *mesh, const struct box_tree *tree, struct vec3 point, double distance);
 

@@ -4,14 +4,9 @@
 
 #include "formats/list.h"
 
-struct zip_entry {
-    const char *name;
-    const void *data;
-    size_t size;
-    uint32_t crc, packed, offset; /* set by zip_write */
-};
-
-/* Adds the bytes of the file. False: no memory, or larger than 4 GB. */
-bool zip_write(struct zip_entry *entries, int count, struct list *out);
+/* Adds an entry to the bytes of a file, and its record to the directory. False: no memory, or larger than 4 GB. */
+bool zip_add(struct list *out, struct list *directory, const char *name, const void *data, size_t size);
+/* Adds the directory, which ends the file. False: no memory. */
+bool zip_end(struct list *out, const struct list *directory, uint32_t count);
 
 #endif

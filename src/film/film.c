@@ -249,6 +249,24 @@ void film_row_linear(const struct film *film, enum film_view view, uint32_t y, f
     }
 }
 
+void film_shrink(const struct film *film, const struct tone *tone, uint32_t width, uint32_t height, uint8_t *rgb) {
+    for (uint32_t y = 0; y < height; y++) {
+        uint32_t y0 = (uint32_t)((uint64_t)y * film->height / height);
+        uint32_t y1 = (uint32_t)((uint64_t)(y + 1) * film->height / height);
+        for (uint32_t x = 0; x < width; x++) {
+            uint32_t x0 = (uint32_t)((uint64_t)x * film->width / width);
+            uint32_t x1 = (uint32_t)((uint64_t)(x + 1) * film->width / width);
+            double sum[3] = {0}, count = (double)(x1 - x0) * (y1 - y0);
+            for (uint32_t j = y0; j < y1; j++)
+                for (uint32_t i = x0; i < x1; i++)
+                    for (int c = 0; c < 3; c++)
+                        sum[c] += (double)film->pixels[(size_t)j * film->width + i].rgb[c];
+            for (int c = 0; c < 3; c++)
+                rgb[((size_t)y * width + x) * 3 + (size_t)c] = png_write_byte(tone_apply(tone, sum[c] / count));
+        }
+    }
+}
+
 /* Distributes tiles in alternating forward and backward rounds ("snake draft"): the shard with the most expensive tile
  * of one round gets the cheapest of the next. Equal costs are ordered by the tiles' scrambled number, so that
  * neighbours, which have similar costs, go to different shards. */

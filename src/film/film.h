@@ -132,6 +132,8 @@ enum film_view {
 void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line);
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
 void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);
+/* The film as width x height RGB bytes, at most as large: tone-mapped means of the light of its pixels. */
+void film_shrink(const struct film *film, const struct tone *tone, uint32_t width, uint32_t height, uint8_t *rgb);
 
 /* The assignment of tiles to machines: each machine computes it alone, with the same result. */
 

@@ -33,23 +33,23 @@ static inline void *list_room(struct list *list, size_t more, size_t size) {
     return (char *)list->items + list->count * size;
 }
 
-static inline bool list_add_index(struct list *list, uint32_t index) {
-    uint32_t *room = list_room(list, 1, sizeof *room);
+/* Copies so many items to the end. False: no memory. */
+static inline bool list_add(struct list *list, const void *items, size_t count, size_t size) {
+    char *room = list_room(list, count, size);
     if (!room)
         return false;
-    *room = index;
-    list->count++;
+    if (count > 0)
+        memcpy(room, items, count * size);
+    list->count += count;
     return true;
 }
 
-/* Of a list of bytes. False: no memory. */
+static inline bool list_add_index(struct list *list, uint32_t index) {
+    return list_add(list, &index, 1, sizeof index);
+}
+
 static inline bool list_add_bytes(struct list *list, const void *bytes, size_t size) {
-    char *room = list_room(list, size, 1);
-    if (!room)
-        return false;
-    memcpy(room, bytes, size);
-    list->count += size;
-    return true;
+    return list_add(list, bytes, size, 1);
 }
 
 /* Little-endian. */

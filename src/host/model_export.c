@@ -21,6 +21,7 @@ struct model_work {
     const char *file, *where;
     double tolerance, time; /* seconds since the first frame */
     struct model_write_options write;
+    struct kept_model made;
     struct vec3 view, up; /* of the thumbnail */
     bool by_user, linear;
 };
@@ -81,60 +82,60 @@ static struct camera thumbnail_camera(const struct model_work *work, const struc
     return (struct camera){vec3_add_scaled(middle, view, -distance), view, work->up, fov};
 }
 
-/* The mean of each 2 x 2 pixels. */
-static void halve(struct film *film) {
-    for (uint32_t y = 0; y < THUMBNAIL; y++)
-        for (uint32_t x = 0; x < THUMBNAIL; x++) {
-            const struct film_pixel *four = &film->pixels[(size_t)2 * y * film->width + 2 * x];
-            const struct film_pixel *below = four + film->width;
-            struct film_pixel mean;
-            for (int c = 0; c < 3; c++)
-                mean.rgb[c] = 0.25F * (four[0].rgb[c] + four[1].rgb[c] + below[0].rgb[c] + below[1].rgb[c]);
-            film->pixels[y * THUMBNAIL + x] = mean;
-        }
-    film->width = film->height = THUMBNAIL;
-}
-
 struct thumbnail {
-    struct film film;
-    struct tone tone;
+    uint32_t width;
+    uint8_t *rgb;
 };
 
 static void thumbnail_row(void *context, uint32_t y, uint8_t *line) {
     const struct thumbnail *thumbnail = context;
-    film_row_toned(&thumbnail->film, FILM_FINAL, &thumbnail->tone, y, line);
+    memcpy(line, thumbnail->rgb + (size_t)3 * thumbnail->width * y, (size_t)3 * thumbnail->width);
 }
 
 static bool put_into_list(void *list, const void *bytes, size_t size, struct error *error) {
     return list_add_bytes(list, bytes, size) || error_no_memory(error, "a thumbnail");
 }
 
-/* The bytes of a PNG file. */
+/* A film as the bytes of a PNG file, reduced to at most THUMBNAIL pixels. */
+static bool encode_thumbnail(const struct film *film, const struct tone *tone, struct list *out, struct error *error) {
+    uint32_t longer = film->width > film->height ? film->width : film->height;
+    double scale = longer > THUMBNAIL ? (double)THUMBNAIL / longer : 1;
+    uint32_t width = (uint32_t)fmax(1, scale * film->width), height = (uint32_t)fmax(1, scale * film->height);
+    struct thumbnail thumbnail = {width, mem_alloc((size_t)3 * width * height)};
+    const struct png_source source = {
+        .width = width, .height = height, .bytes = thumbnail_row, .context = &thumbnail, .srgb = tone->srgb};
+    if (!thumbnail.rgb)
+        return error_no_memory(error, "a thumbnail");
+    film_shrink(film, tone, width, height, thumbnail.rgb);
+    out->count = 0;
+    bool ok = png_encode(&source, NULL, put_into_list, out, error);
+    mem_free(thumbnail.rgb);
+    return ok;
+}
+
+/* A picture of the model, without that of the script. */
 static bool make_thumbnail(struct model_work *work, const struct world *world, const struct export_model *model,
                            struct error *error) {
     const struct film_record record = {0};
+    const struct tone tone = {.srgb = work->linear};
     struct render_statistics statistics = {0};
-    struct thumbnail thumbnail = {.tone = {.srgb = work->linear}};
+    struct film film = {0};
     size_t size = 0;
     if (!film_size(2 * THUMBNAIL, 2 * THUMBNAIL, record, &size, error))
         return false;
     void *block = mem_alloc_zero(size, 1);
     if (!block)
         return error_no_memory(error, "a thumbnail");
-    film_layout(&thumbnail.film, block, 2 * THUMBNAIL, 2 * THUMBNAIL, record);
-    thumbnail.film.full_width = thumbnail.film.full_height = 2 * THUMBNAIL;
+    film_layout(&film, block, 2 * THUMBNAIL, 2 * THUMBNAIL, record);
+    film.full_width = film.full_height = 2 * THUMBNAIL;
     const struct render_job job = {.world = world,
                                    .camera = thumbnail_camera(work, world, model),
                                    .settings = settings_default(),
                                    .width = 2 * THUMBNAIL,
                                    .height = 2 * THUMBNAIL,
-                                   .film = &thumbnail.film};
-    const struct png_source source = {
-        .width = THUMBNAIL, .height = THUMBNAIL, .bytes = thumbnail_row, .context = &thumbnail, .srgb = true};
-    bool ok = render_headlight(&job, HEADLIGHT_SURFACES, work->process->pool, &statistics, error);
-    if (ok)
-        halve(&thumbnail.film);
-    ok = ok && png_encode(&source, NULL, put_into_list, &work->write.thumbnail, error);
+                                   .film = &film};
+    bool ok = render_headlight(&job, HEADLIGHT_SURFACES, work->process->pool, &statistics, error) &&
+              encode_thumbnail(&film, &tone, &work->made.thumbnail, error);
     mem_free(block);
     return ok;
 }
@@ -174,16 +175,15 @@ static bool build_model(struct model_work *work, struct export_model *model, str
     return ok;
 }
 
-static bool make_bytes(struct model_work *work, struct list *bytes, struct list *mtl, struct error *error) {
+static bool make_files(struct model_work *work, struct error *error) {
     struct render_process *process = work->process;
     struct export_model model = {0};
     bool ok = build_model(work, &model, error);
     if (ok && !process->options->check) {
         detail(work, &model);
-        ok = process->options->check_print || model_write(&model, &work->write, bytes, mtl, error);
+        ok = process->options->check_print || model_write(&model, &work->write, &work->made.files, error);
     }
     export_model_destroy(&model);
-    list_destroy(&work->write.thumbnail);
     arena_reset(&process->job);
     return ok;
 }
@@ -195,26 +195,34 @@ static struct model_request request_of(const struct model_work *work) {
 }
 
 /* The materials of an OBJ file first: a reader of the new model finds them. */
-static bool send(const struct model_work *work, const struct list *bytes, const struct list *mtl, struct error *error) {
+static bool send(struct model_work *work, struct error *error) {
     const struct host_services *services = work->process->services;
     struct model_request request = request_of(work);
-    if (mtl->count > 0) {
+    struct model_files *files = &work->made.files;
+    if (files->directory.count > 0 && !model_add_thumbnail(files, &work->made.thumbnail, error))
+        return false;
+    if (files->mtl.count > 0) {
         request.beside = 1;
-        request.size = mtl->count;
-        if (!services->model(services->context, &request, mtl->items, error))
+        request.size = files->mtl.count;
+        if (!services->model(services->context, &request, files->mtl.items, error))
             return false;
     }
     request.beside = 0;
-    request.size = bytes->count;
-    return services->model(services->context, &request, bytes->items, error);
+    request.size = files->model.count;
+    return services->model(services->context, &request, files->model.items, error);
 }
 
-/* The account of memory is that of pictures. keep: where the bytes stay, or NULL: they are written. */
+static void forget(struct kept_model *kept) {
+    model_files_destroy(&kept->files);
+    list_destroy(&kept->thumbnail);
+    *kept = (struct kept_model){0};
+}
+
+/* The account of memory is that of pictures. keep: where the model stays, or NULL: it is written. */
 static bool run(struct model_work *work, struct kept_model *keep, struct error *error) {
     struct render_process *process = work->process;
     const struct host_services *services = process->services;
     struct model_request request = request_of(work);
-    struct list bytes = {0}, mtl = {0};
     char mtl_name[256];
     const char *last = strrchr(work->file, '/');
     last = last ? last + 1 : work->file;
@@ -228,16 +236,15 @@ static bool run(struct model_work *work, struct kept_model *keep, struct error *
     bool asks = !process->options->check_print;
     bool ok = !asks || services->model(services->context, &request, NULL, error);
     struct mem_account *script = render_process_charge_picture(process);
-    ok = ok && make_bytes(work, &bytes, &mtl, error);
+    ok = ok && make_files(work, error);
     (void)mem_charge(script);
+    work->made.ready = work->made.shows_next = ok;
     if (ok && keep)
-        *keep = (struct kept_model){true, bytes, mtl};
+        *keep = work->made;
     else if (ok && asks && !process->options->check)
-        ok = send(work, &bytes, &mtl, error);
-    if (!ok || !keep) {
-        list_destroy(&bytes);
-        list_destroy(&mtl);
-    }
+        ok = send(work, error);
+    if (!ok || !keep)
+        forget(&work->made);
     if (asks)
         services->model_end(services->context);
     return ok;
@@ -296,6 +303,7 @@ bool model_export_picture(struct render_process *process, const struct render_re
                               .by_user = true,
                               .linear = settings_linear(&request->settings)};
     uint32_t number = ++process->model_pictures;
+    process->kept_model.shows_next = false;
     size_t length = strlen(process->picture_names);
     (void)snprintf(process->picture_names + length, sizeof process->picture_names - length, "%s%u %.80s",
                    number > 1 ? ", " : "", number, request->file);
@@ -305,16 +313,25 @@ bool model_export_picture(struct render_process *process, const struct render_re
         return error_set(error, ERROR_SCENE, "a model shows one frame: --frames N-N chooses it");
     if (options->node && !(work.node = find_node(request->root, options->node, error)))
         return false;
-    return run(&work, options->picture > 0 ? NULL : &process->kept_model, error);
+    return run(&work, options->picture > 0 && !options->output ? NULL : &process->kept_model, error);
+}
+
+bool model_export_show(struct render_process *process, const struct film *film, const struct tone *tone,
+                       struct error *error) {
+    struct kept_model *kept = &process->kept_model;
+    bool shows = kept->shows_next && kept->thumbnail.count > 0;
+    kept->shows_next = false;
+    return !shows || film_tiles_in(film, FILM_TILE_DONE) < film_tile_count(film) ||
+           encode_thumbnail(film, tone, &kept->thumbnail, error);
 }
 
 bool model_export_finish(struct render_process *process, struct error *error) {
     const struct options *options = process->options;
     const struct host_services *services = process->services;
-    struct kept_model *kept = &process->kept_model;
-    struct model_work work = {.process = process, .file = options->model, .by_user = true};
+    struct model_work work = {.process = process, .file = options->model, .by_user = true, .made = process->kept_model};
     const char *option = options->model ? options->model : "--check-print";
     bool ok = true;
+    process->kept_model = (struct kept_model){0};
     if (options->picture == 0 && process->model_pictures > 1)
         ok = error_set(error, ERROR_USAGE,
                        "%.200s: the script renders several pictures, %.600s; --picture N chooses one", option,
@@ -325,16 +342,14 @@ bool model_export_finish(struct render_process *process, struct error *error) {
     else if (process->model_pictures == 0)
         ok = error_set(error, ERROR_USAGE, "%.200s: the script renders no picture whose scene could be the model",
                        option);
-    else if (kept->ready && options->model && !options->check) {
-        ok = send(&work, &kept->bytes, &kept->mtl, error);
+    else if (work.made.ready && options->model && !options->check) {
+        ok = send(&work, error);
         services->model_end(services->context);
     }
-    model_export_forget(process);
+    forget(&work.made);
     return ok;
 }
 
 void model_export_forget(struct render_process *process) {
-    list_destroy(&process->kept_model.bytes);
-    list_destroy(&process->kept_model.mtl);
-    process->kept_model = (struct kept_model){0};
+    forget(&process->kept_model);
 }

@@ -474,7 +474,9 @@ static bool render_job_run(struct render_process *process, const struct render_r
     effects_note(&work);
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     process->rendered = (struct digest){0};
-    bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
+    bool ok = make_picture(&work, error);
+    ok = ok && (work.picture_request.check || model_export_show(process, &work.film, &work.job.settings.tone, error));
+    bool early = ok && is_written_early(&work);
     if (ok && is_frame(&work))
         effects_count_frame(&work);
     if (!early)

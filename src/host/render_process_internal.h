@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/pool.h"
-#include "formats/list.h"
+#include "export/model_write.h"
 #include "host/render_process.h"
 #include "output/picture_files.h"
 #include "render/render.h"
@@ -23,8 +23,9 @@ struct replaced_fields {
 
 /* A model that is written when the script has ended. */
 struct kept_model {
-    bool ready;
-    struct list bytes, mtl;
+    bool ready, shows_next; /* the next picture is its thumbnail */
+    struct model_files files;
+    struct list thumbnail; /* 3MF: the bytes of a PNG file */
 };
 
 struct render_process {

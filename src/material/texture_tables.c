@@ -5,7 +5,6 @@
 #include "material/texture_tables.h"
 
 #include "base/mem.h"
-#include "base/random.h"
 #include "material/texture_function_internal.h"
 #include "material/texture_mapping_internal.h"
 #include "math/noise.h"
@@ -52,34 +51,13 @@ static void *grow(void *array, uint32_t count, size_t more, uint32_t *capacity, 
 #define GROW(builder, name, names, more)                                                                               \
     grow((builder)->names, (builder)->name##count, more, &(builder)->name##capacity, sizeof *(builder)->names)
 
-static uint32_t *find_slot(const struct texture_builder *builder, const struct texture *texture) {
-    for (uint32_t at = (uint32_t)random_combine((uint64_t)(uintptr_t)texture, 0);; at++) {
-        uint32_t *slot = &builder->slots[at & (builder->slot_capacity - 1)];
-        if (*slot == 0 || builder->textures[*slot - 1].authored == texture)
-            return slot;
-    }
-}
-
-static bool grow_slots(struct texture_builder *builder) {
-    uint32_t capacity = builder->slot_capacity ? builder->slot_capacity * 2 : 64;
-    uint32_t *slots = mem_alloc_zero(capacity, sizeof *slots);
-    if (!slots)
-        return false;
-    mem_free(builder->slots);
-    builder->slots = slots;
-    builder->slot_capacity = capacity;
-    for (uint32_t i = 0; i < builder->count; i++)
-        *find_slot(builder, builder->textures[i].authored) = i + 1;
-    return true;
-}
-
 uint32_t texture_builder_index(const struct texture_builder *builder, const struct texture *texture) {
-    return *find_slot(builder, texture) - 1;
+    return *key_map_find(&builder->indices, (uintptr_t)texture);
 }
 
 /* The texture gets an index, after all below it. */
 static bool number(struct texture_builder *builder, const struct texture *texture) {
-    if (builder->slot_capacity > 0 && *find_slot(builder, texture) != 0)
+    if (key_map_find(&builder->indices, (uintptr_t)texture))
         return true;
     for (int k = 0; k < TEXTURE_PARTS; k++)
         if (texture->parts[k] && !number(builder, texture->parts[k]))
@@ -88,10 +66,9 @@ static bool number(struct texture_builder *builder, const struct texture *textur
     if (!textures)
         return false;
     builder->textures = textures;
-    if (builder->count * 2 >= builder->slot_capacity && !grow_slots(builder))
+    if (!key_map_add(&builder->indices, (uintptr_t)texture, builder->count))
         return false;
     textures[builder->count++] = (struct built_texture){.authored = texture};
-    *find_slot(builder, texture) = builder->count;
     return true;
 }
 
@@ -218,7 +195,7 @@ bool texture_builder_finish(const struct texture_builder *builder, struct arena 
 
 void texture_builder_destroy(struct texture_builder *builder) {
     mem_free(builder->textures);
-    mem_free(builder->slots);
+    key_map_destroy(&builder->indices);
     mem_free(builder->instructions);
     mem_free(builder->programs);
 }

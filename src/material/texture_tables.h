@@ -12,6 +12,7 @@
 #ifndef GRAY_MATERIAL_TEXTURE_TABLES_H
 #define GRAY_MATERIAL_TEXTURE_TABLES_H
 
+#include "base/key_map.h"
 #include "material/texture.h"
 
 enum { TEXTURE_DEPTH = 17 };
@@ -80,10 +81,10 @@ struct texture_builder {
         uint32_t programs[2];                   /* + 1 */
         bool is_colour;
     } * textures;
-    uint32_t *slots; /* indices + 1 by address, which decides the position of an entry and never its index */
+    struct key_map indices; /* by address, which decides the position of an entry and never its index */
     struct texture_instruction *instructions;
     struct texture_program *programs;
-    uint32_t count, capacity, slot_capacity, instruction_count, instruction_capacity, program_count, program_capacity;
+    uint32_t count, capacity, instruction_count, instruction_capacity, program_count, program_capacity;
     uint32_t start; /* of the program that is being made */
 };
 /* The program that reads the texture as a number or as a colour. False: no memory. */

@@ -39,7 +39,7 @@ struct box box_pad(struct box b) {
         }
     }
     double pad = largest * 0x1p-46;
-    return (struct box){vec3_sub(b.min, vec3_all(pad)), vec3_add(b.max, vec3_all(pad))};
+    return box_grow(b, pad);
 }
 
 bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, double *t_exit) {

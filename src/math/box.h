@@ -31,6 +31,10 @@ static inline struct box box_meet(struct box a, struct box b) {
 static inline struct box box_add_point(struct box a, struct vec3 p) {
     return (struct box){vec3_min(a.min, p), vec3_max(a.max, p)};
 }
+/* Further out by so much on every side. */
+static inline struct box box_grow(struct box b, double by) {
+    return (struct box){vec3_sub(b.min, vec3_all(by)), vec3_add(b.max, vec3_all(by))};
+}
 /* Corner i of 0 to 7: where bit 1, 2 or 4 is set the maximum of x, y or z. */
 static inline struct vec3 box_corner(const struct box *b, unsigned i) {
     return vec3_make(i & 1 ? b->max.x : b->min.x, i & 2 ? b->max.y : b->min.y, i & 4 ? b->max.z : b->min.z);

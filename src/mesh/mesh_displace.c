@@ -5,8 +5,8 @@
  * of their own, so seams of coordinates stay seams without opening the surface. */
 #include "mesh/mesh_displace.h"
 
+#include "base/key_map.h"
 #include "base/mem.h"
-#include "base/random.h"
 #include "expr/expr_field.h"
 #include "math/elementary.h"
 #include "mesh/mesh_internal.h"
@@ -48,24 +48,13 @@ static void division_destroy(struct division *d) {
 
 /* --- the middles of edges --- */
 
-/* Maps two indices to the index of the midpoint: open addressing, less than half full. */
-struct middles {
-    struct middle {
-        uint32_t a, b, middle;
-    } * entries;
-    uint32_t mask;
+struct pass {
+    struct division *d;
+    struct key_map vertices, uvs, normals; /* from two indices to that of the midpoint */
+    struct face *faces;                    /* the new ones */
+    uint32_t count;
+    bool failed; /* no memory */
 };
-
-static bool middles_init(struct middles *middles, uint64_t count) {
-    uint64_t capacity = 64;
-    while (capacity < 2 * count)
-        capacity *= 2;
-    middles->mask = (uint32_t)(capacity - 1);
-    middles->entries = mem_alloc((size_t)capacity * sizeof *middles->entries);
-    if (middles->entries)
-        memset(middles->entries, 0xff, (size_t)capacity * sizeof *middles->entries); /* MESH_NONE */
-    return middles->entries != NULL;
-}
 
 static bool rows_grow(struct rows *rows, size_t more) {
     size_t capacity = (size_t)rows->count + more;
@@ -87,22 +76,20 @@ static void add_mean(struct rows *rows, uint32_t a, uint32_t b) {
 }
 
 /* The index of the midpoint of two rows; `also`: rows with the same indices, or NULL. */
-static uint32_t middle_of(struct middles *middles, struct rows *rows, struct rows *also, uint32_t a, uint32_t b) {
+static uint32_t middle_of(struct pass *pass, struct key_map *middles, struct rows *rows, struct rows *also, uint32_t a,
+                          uint32_t b) {
     if (a == MESH_NONE || b == MESH_NONE)
         return MESH_NONE;
     uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    for (uint32_t at = (uint32_t)random_combine(low, high);; at++) {
-        struct middle *entry = &middles->entries[at & middles->mask];
-        if (entry->a == low && entry->b == high)
-            return entry->middle;
-        if (entry->a != MESH_NONE)
-            continue;
-        *entry = (struct middle){low, high, rows->count};
-        add_mean(rows, low, high);
-        if (also)
-            add_mean(also, low, high);
-        return entry->middle;
-    }
+    uint64_t key = ((uint64_t)low << 32 | high) + 1;
+    const uint32_t *known = key_map_find(middles, key);
+    if (known)
+        return *known;
+    pass->failed = !key_map_add(middles, key, rows->count) || pass->failed;
+    add_mean(rows, low, high);
+    if (also)
+        add_mean(also, low, high);
+    return rows->count - 1;
 }
 
 /* --- one pass --- */
@@ -131,19 +118,12 @@ static int bit_count(unsigned bits) {
     return (int)((bits & 1) + (bits >> 1 & 1) + (bits >> 2 & 1));
 }
 
-struct pass {
-    struct division *d;
-    struct middles vertices, uvs, normals;
-    struct face *faces; /* the new ones */
-    uint32_t count;
-};
-
 static struct corner middle_corner(struct pass *pass, struct corner a, struct corner b) {
     struct division *d = pass->d;
     return (struct corner){
-        middle_of(&pass->vertices, &d->vertices, d->colours.width ? &d->colours : NULL, a.vertex, b.vertex),
-        d->uvs.width ? middle_of(&pass->uvs, &d->uvs, NULL, a.uv, b.uv) : MESH_NONE,
-        d->normals.width ? middle_of(&pass->normals, &d->normals, NULL, a.normal, b.normal) : MESH_NONE};
+        middle_of(pass, &pass->vertices, &d->vertices, d->colours.width ? &d->colours : NULL, a.vertex, b.vertex),
+        d->uvs.width ? middle_of(pass, &pass->uvs, &d->uvs, NULL, a.uv, b.uv) : MESH_NONE,
+        d->normals.width ? middle_of(pass, &pass->normals, &d->normals, NULL, a.normal, b.normal) : MESH_NONE};
 }
 
 static void add_face(struct pass *pass, uint32_t origin, struct corner a, struct corner b, struct corner c) {
@@ -188,17 +168,15 @@ static void divide_face(struct pass *pass, const struct face *face, unsigned mar
 static bool run_pass(struct division *d, uint64_t halved, uint64_t faces) {
     struct pass pass = {.d = d, .faces = mem_alloc((size_t)faces * sizeof *pass.faces)};
     struct rows *const all[] = {&d->vertices, &d->uvs, &d->normals, &d->colours};
-    bool ok = pass.faces && middles_init(&pass.vertices, halved) &&
-              (!d->uvs.width || middles_init(&pass.uvs, halved)) &&
-              (!d->normals.width || middles_init(&pass.normals, halved));
+    bool ok = pass.faces != NULL;
     for (size_t k = 0; ok && k < sizeof all / sizeof *all; k++)
         ok = !all[k]->width || rows_grow(all[k], (size_t)halved);
     for (uint32_t f = 0; ok && f < d->face_count; f++)
         divide_face(&pass, &d->faces[f], long_edges(d, &d->faces[f]));
-    mem_free(pass.vertices.entries);
-    mem_free(pass.uvs.entries);
-    mem_free(pass.normals.entries);
-    if (!ok) {
+    key_map_destroy(&pass.vertices);
+    key_map_destroy(&pass.uvs);
+    key_map_destroy(&pass.normals);
+    if (!ok || pass.failed) {
         mem_free(pass.faces);
         return false;
     }

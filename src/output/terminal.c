@@ -71,24 +71,6 @@ void terminal_begin(struct terminal *terminal) {
     terminal->rows = 0;
 }
 
-void terminal_shrink(const struct film *film, const struct tone *tone, uint32_t width, uint32_t height, uint8_t *rgb) {
-    for (uint32_t y = 0; y < height; y++) {
-        uint32_t y0 = (uint32_t)((uint64_t)y * film->height / height);
-        uint32_t y1 = (uint32_t)((uint64_t)(y + 1) * film->height / height);
-        for (uint32_t x = 0; x < width; x++) {
-            uint32_t x0 = (uint32_t)((uint64_t)x * film->width / width);
-            uint32_t x1 = (uint32_t)((uint64_t)(x + 1) * film->width / width);
-            double sum[3] = {0}, count = (double)(x1 - x0) * (y1 - y0);
-            for (uint32_t j = y0; j < y1; j++)
-                for (uint32_t i = x0; i < x1; i++)
-                    for (int c = 0; c < 3; c++)
-                        sum[c] += (double)film->pixels[(size_t)j * film->width + i].rgb[c];
-            for (int c = 0; c < 3; c++)
-                rgb[((size_t)y * width + x) * 3 + (size_t)c] = png_write_byte(tone_apply(tone, sum[c] / count));
-        }
-    }
-}
-
 void terminal_blocks(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t height) {
     for (uint32_t y = 0; y < height; y += 2) {
         for (uint32_t x = 0; x < width; x++) {
@@ -208,7 +190,7 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     uint8_t *rgb = mem_alloc_zero((size_t)width * height, 3);
     if (!rgb)
         return;
-    terminal_shrink(film, tone, width, height, rgb);
+    film_shrink(film, tone, width, height, rgb);
     /* A later pass goes over the earlier one. */
     int per_row = blocks ? 2 : terminal->cell_height, rows = ((int)height + per_row - 1) / per_row;
     if (terminal->moves && terminal->rows > 0)

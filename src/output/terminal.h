@@ -28,7 +28,5 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
 void terminal_blocks(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t height);
 void terminal_kitty(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t height, int columns, int rows);
 void terminal_sixel(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t height);
-/* The film as width x height RGB bytes: tone-mapped means of the light of its pixels. */
-void terminal_shrink(const struct film *film, const struct tone *tone, uint32_t width, uint32_t height, uint8_t *rgb);
 
 #endif

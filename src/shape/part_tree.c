@@ -44,7 +44,7 @@ static void build(struct builder *b, uint32_t first, uint32_t count) {
         box = box_join(box, b->boxes[b->order[first + i].part]);
     struct part_node *node = &b->nodes[b->node_count++];
     struct vec3 size = vec3_sub(box.max, box.min);
-    *node = (struct part_node){.box = {vec3_sub(box.min, vec3_all(b->pad)), vec3_add(box.max, vec3_all(b->pad))},
+    *node = (struct part_node){.box = box_grow(box, b->pad),
                                .first = first};
     if (count <= b->leaf_size) {
         node->count = count;

@@ -338,7 +338,7 @@ void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *rep
         return;
     case REPLY_PICKED:
         viewer_receive_picked(viewer, &reply->picked);
-        if (viewer->edit.probes)
+        if (viewer->command.probes)
             return;
         viewer->command.overlay = viewer_overlay_request(viewer, false);
         viewer->command.overlay.lines.kind = OVERLAY_NONE;

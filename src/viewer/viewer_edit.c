@@ -568,7 +568,7 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     struct selection *selection = &viewer->edit.selection;
     if (picked->hit && picked->path.path[0] == SECTION_NODES)
         viewer->fly_camera.centre = picked->position;
-    if (viewer->edit.probes) {
+    if (viewer->command.probes) {
         fly_camera_near(&viewer->fly_camera, picked->hit ? picked->distance : HUGE_VAL);
         return;
     }
@@ -578,8 +578,8 @@ void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
                                                          : SELECTED_NODE,
                                     .picked = *picked,
                                     .applied = transform_identity(),
-                                    .x = viewer->edit.click.x,
-                                    .y = viewer->edit.click.y,
+                                    .x = viewer->command.x,
+                                    .y = viewer->command.y,
                                     .node = viewer->command.by_node ? viewer->command.node : (struct node_query){0},
                                     .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
                                           : picked->up > OPERANDS_BELOW ? OPERANDS_BELOW

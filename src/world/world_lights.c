@@ -404,7 +404,7 @@ static struct box box_of_part(const struct light *light, uint32_t part) {
 static struct box box_met(const struct light *light, uint32_t part) {
     struct box box = box_of_part(light, part);
     double gap = 0x1p-38 * fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
-    return (struct box){vec3_sub(box.min, vec3_all(gap)), vec3_add(box.max, vec3_all(gap))};
+    return box_grow(box, gap);
 }
 
 /* And before the surface in which they end. */

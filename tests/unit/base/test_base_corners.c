@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/fault.h"
 #include "base/file_output.h"
+#include "base/key_map.h"
 #include "base/mem.h"
 #include "base/pool.h"
 #include "base/share.h"
@@ -51,6 +52,20 @@ TEST(sizes_beyond_all_memory_are_refused_and_sizes_of_zero_are_fine) {
     share_destroy(&share);
     CHECK(!share_attach(&share, -1, 10, &error));
     arena_destroy(&arena);
+}
+
+TEST(a_key_map_finds_every_key_that_was_added_and_no_other) {
+    struct key_map map = {0};
+    CHECK(!key_map_find(&map, 1));
+    for (uint32_t i = 0; i < 5000; i++)
+        CHECK(key_map_add(&map, UINT64_MAX - (uint64_t)i * i, i));
+    for (uint32_t i = 0; i < 5000; i++) {
+        const uint32_t *value = key_map_find(&map, UINT64_MAX - (uint64_t)i * i);
+        CHECK(value && *value == i);
+        CHECK(!key_map_find(&map, UINT64_MAX - (uint64_t)i * i - 2)); /* no square is 2 more than a square */
+    }
+    key_map_destroy(&map);
+    CHECK(!key_map_find(&map, UINT64_MAX));
 }
 
 TEST(an_arena_that_is_reset_keeps_its_largest_block_at_any_position) {

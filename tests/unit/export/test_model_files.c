@@ -166,10 +166,18 @@ TEST(textures_colour_the_corners_of_3mf_files_and_the_faces_of_ply_files) {
     free(ply);
 }
 
+static struct test_picture thumbnail_of(const char *path) {
+    size_t size = 0;
+    char *png = out_of_zip(path, "Metadata/thumbnail.png", &size);
+    if (png)
+        test_write_file(test_path("small.png"), png, size);
+    mem_free(png);
+    return test_read_picture(test_path("small.png"));
+}
+
 /* Two balls beside each other: which one is on the left of the thumbnail? */
 static void expect_on_the_left(const char *call, const char *options, int channel) {
     char text[1024];
-    size_t size = 0;
     (void)snprintf(
         text, sizeof text,
         "local function ball(x, colour)\n"
@@ -178,11 +186,7 @@ static void expect_on_the_left(const char *call, const char *options, int channe
         "local balls = gr.node{name = 'balls', children = {ball(-1.5, {1, 0, 0}), ball(1.5, {0, 0, 1})}}\n%s",
         call);
     expect(text, options, 0, NULL);
-    char *png = out_of_zip(test_path("balls.3mf"), "Metadata/thumbnail.png", &size);
-    if (png)
-        test_write_file(test_path("small.png"), png, size);
-    mem_free(png);
-    struct test_picture picture = test_read_picture(test_path("small.png"));
+    struct test_picture picture = thumbnail_of(test_path("balls.3mf"));
     CHECK(picture.width == 256 && picture.height == 256 && picture.rgb[0] == 229);
     const uint8_t *left = picture.rgb + (size_t)3 * (128 * 256 + 64);
     CHECK(left[channel] > 200 && left[1] == 0 && left[2 - channel] == 0);
@@ -195,6 +199,32 @@ TEST(a_3mf_file_has_a_picture_of_the_model_from_the_side_of_the_camera) {
                        "-o balls.3mf scene.lua", 0);
     expect_on_the_left("gr.render{node = balls, file = 'x.png', width = 8, eye = {0, 0, -9}, target = {0, 0, 0}}\n",
                        "-o balls.3mf scene.lua", 2);
+}
+
+TEST(a_3mf_file_that_is_written_with_its_picture_has_it_as_its_thumbnail) {
+    expect(part_and("gr.render(gr.studio{node = part, file = 'x.png', width = 64, height = 40})\n"),
+           "-o part.3mf -o small_picture.png scene.lua", 0, NULL);
+    struct test_picture picture = test_read_picture(test_path("small_picture.png"));
+    struct test_picture thumbnail = thumbnail_of(test_path("part.3mf"));
+    CHECK(thumbnail.width == 64 && thumbnail.height == 40);
+    CHECK(memcmp(picture.rgb, thumbnail.rgb, (size_t)3 * 64 * 40) == 0);
+    free(picture.rgb);
+    free(thumbnail.rgb);
+    /* A larger one is reduced: the mean of its pixels. */
+    expect(part_and("gr.render{node = part, file = 'x.png', width = 1024, height = 512, eye = {20, 15, 90}, "
+                    "target = {20, 15, 0}, background = {1, 1, 1}, ambient = {.4, .4, .4}}\n"),
+           "-o part.3mf -o picture.png scene.lua --picture 1", 0, NULL);
+    picture = test_read_picture(test_path("picture.png"));
+    thumbnail = thumbnail_of(test_path("part.3mf"));
+    CHECK(thumbnail.width == 256 && thumbnail.height == 128);
+    for (int i = 0; i < 256 * 128; i++) {
+        int sum = 0;
+        for (int k = 0; k < 16; k++)
+            sum += picture.rgb[3 * (1024 * (4 * (i / 256) + k / 4) + 4 * (i % 256) + k % 4)];
+        CHECK(abs(sum / 16 - thumbnail.rgb[3 * i]) <= 1);
+    }
+    free(picture.rgb);
+    free(thumbnail.rgb);
 }
 
 TEST(the_studio_is_no_part_of_a_model_and_a_node_that_is_called_model_is_all_of_it) {
@@ -218,6 +248,56 @@ TEST(a_mesh_that_touches_nothing_keeps_its_triangles) {
     char *bytes = test_read_file(test_path("four.stl"), &size);
     CHECK_EQ_INT(size, 84 + 4 * 50);
     free(bytes);
+}
+
+/* Vertices farther from the drill's axis than .1: their number, and how many of them are none of the others. */
+static uint32_t vertices_far_from_drill(const struct mesh *mesh, const struct mesh *other, uint32_t *different) {
+    uint32_t count, other_count, far = 0;
+    const double(*at)[3] = mesh_vertices(mesh, &count), (*others)[3] = mesh_vertices(other, &other_count);
+    *different = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double nearest = INFINITY, x = at[i][0] - 0.52, y = at[i][1] - 0.05;
+        if (x * x + y * y < 0.01)
+            continue;
+        for (uint32_t k = 0; k < other_count; k++)
+            nearest =
+                fmin(nearest,
+                     vec3_length(vec3_make(at[i][0] - others[k][0], at[i][1] - others[k][1], at[i][2] - others[k][2])));
+        far++;
+        *different += !(nearest < 1e-6);
+    }
+    return far;
+}
+
+TEST(letters_and_bevelled_meshes_that_are_cut_keep_their_corners_elsewhere_and_get_no_vertices_there) {
+    static const char *const names[] = {"prism.stl", "cut_prism.stl", "mesh.stl", "cut_mesh.stl"};
+    expect(
+        "local polygon = require 'polygon'\n"
+        "local e = {{.1, 0}, {.57, 0}, {.57, .08}, {.2, .08}, {.2, .35}, {.54, .35}, {.54, .43}, {.2, .43}, {.2, .65}, "
+        "{.56, .65}, {.56, .73}, {.1, .73}}\n"
+        "local drill = gr.cylinder{from = {.52, .05, -1}, to = {.52, .05, 1}, radius = .02}\n"
+        "local prism = gr.prism{outline = e, from = -.2, to = 0}:rotate('x', -90)\n"
+        "local mesh = gr.vn_mesh(gr.material({1, 1, 1}), polygon.extrude({e}, .2, {bevel = .02, back = true}))\n"
+        "prism:export('prism.stl')\ngr.difference(prism, drill):export('cut_prism.stl')\n"
+        "mesh:export('mesh.stl')\ngr.difference(mesh, drill):export('cut_mesh.stl')\n",
+        "scene.lua", 0, NULL);
+    struct model models[4] = {0};
+    for (int i = 0; i < 4; i++) {
+        struct model_options options = {0};
+        struct error error = {0};
+        if (!model_read(&models[i], test_path(names[i]), &options, &error))
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+    }
+    for (int i = 0; i < 4; i += 2) {
+        const struct mesh *whole = model_meshes(&models[i])[0].mesh, *cut = model_meshes(&models[i + 1])[0].mesh;
+        uint32_t lost, added;
+        CHECK_EQ_INT(vertices_far_from_drill(whole, cut, &lost), vertices_far_from_drill(cut, whole, &added));
+        CHECK(lost == 0 && added == 0 && mesh_is_closed(cut));
+        CHECK(mesh_triangle_count(cut) > mesh_triangle_count(whole));
+    }
+    CHECK_EQ_INT(mesh_triangle_count(model_meshes(&models[0])[0].mesh), 4 * 12 - 4);
+    for (int i = 0; i < 4; i++)
+        model_destroy(&models[i]);
 }
 
 TEST(a_mesh_whose_surfaces_meet_in_a_point_has_a_notice) {

@@ -464,15 +464,15 @@ static void check_outline(struct check *check, const struct csg *read, double to
 /* Writes the model, reads it again, and compares outlines. */
 static void check_file(struct check *check, const struct export_model *model, int lines) {
     const struct model_write_options options = {.format = model_format_written("a.stl")};
-    struct list bytes = {0}, mtl = {0};
+    struct model_files files = {0};
     struct error error = {0};
     struct arena arena = {0};
     struct model read = {0};
     struct model_options standard = {0};
-    CHECK(model_write(model, &options, &bytes, &mtl, &error));
+    CHECK(model_write(model, &options, &files, &error));
     FILE *file = fopen(test_path("a.stl"), "wb");
-    CHECK(file && fwrite(bytes.items, 1, bytes.count, file) == bytes.count && fclose(file) == 0);
-    list_destroy(&bytes);
+    CHECK(file && fwrite(files.model.items, 1, files.model.count, file) == files.model.count && fclose(file) == 0);
+    model_files_destroy(&files);
     if (!model_read(&read, test_path("a.stl"), &standard, &error) ||
         !mesh_build_accel(model_meshes(&read)[0].mesh, ACCEL_GRID, check->pool, &error)) {
         test_fail(__FILE__, __LINE__, "%s: %s", check->what, error.text);

@@ -340,7 +340,7 @@ TEST(a_small_view_of_a_film_is_the_mean_of_its_light) {
     uint8_t rgb[3 * 2 * 3];
     for (int i = 0; i < 24; i++)
         pixels[i].rgb[0] = (float)(i % 2), pixels[i].rgb[2] = i / 12 ? 1.0f : 0.0f;
-    terminal_shrink(&film, &(struct tone){0}, 3, 2, rgb);
+    film_shrink(&film, &(struct tone){0}, 3, 2, rgb);
     for (int i = 0; i < 6; i++)
         CHECK(rgb[3 * i] == 128 && rgb[3 * i + 1] == 0 && rgb[3 * i + 2] == (i / 3 ? 255 : 0));
 }

@@ -732,6 +732,28 @@ TEST(window_clicks_select_and_orbits_turn_about_the_selection) {
     end(&t);
 }
 
+/* A step of the wheel asks what is under the mouse before the answer to the click is there. */
+TEST(window_selects_what_was_clicked_although_the_wheel_turns) {
+    struct table t;
+    begin(&t);
+    enlarge(&t);
+    go_to_the_end(&t);
+    click(&t, 400, 280);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && !t.viewer.command.probes);
+    double x = t.viewer.command.x;
+    t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 300, 250);
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 1};
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    CHECK(t.viewer.edit.selection.kind == SELECTED_NODE && t.viewer.edit.selection.x == x);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.probes);
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PICKED});
+    CHECK_EQ_INT(t.viewer.edit.selection.kind, SELECTED_NODE);
+    end(&t);
+}
+
 TEST(window_that_gets_a_request_during_a_fine_pass_goes_on_with_it) {
     struct table t;
     begin(&t);

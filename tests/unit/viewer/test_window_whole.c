@@ -54,7 +54,8 @@ static void person_show(void *context, const uint8_t *picture, uint32_t width, u
         CHECK(state->form.fields[i].group[0] != '\0' && state->form.fields[i].name[0] != '\0');
     if (person->large && width == WIDE && height == HIGH)
         memcpy(person->large, picture, (size_t)3 * WIDE * HIGH);
-    if (person->since >= DELAY)
+    /* The picture may be shown with the words from before the last deed. */
+    if (person->since >= DELAY && state->state[0] != '\0')
         (void)snprintf(person->status, sizeof person->status, "%s  %.*s  %s  %s  %s  %s", state->file,
                        (int)strcspn(state->figures, ","), state->figures, state->state, state->frame, state->notice,
                        state->message);
@@ -90,7 +91,7 @@ static bool person_poll(void *context, struct window_event *event) {
     }
     person->at++;
     person->waited = person->since = 0;
-    person->status[0] = '\0';
+    person->status[0] = person->state.state[0] = '\0';
     *event = deed->event;
     event->field = field ? field->number : 0;
     return true;

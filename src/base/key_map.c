@@ -1,4 +1,4 @@
-#include "export/key_map_internal.h"
+#include "base/key_map.h"
 
 #include "base/mem.h"
 #include "base/random.h"
@@ -15,7 +15,6 @@ uint32_t *key_map_find(const struct key_map *map, uint64_t key) {
     return entry && entry->key ? &entry->value : NULL;
 }
 
-/* At most half of the entries are in use. */
 static bool grow(struct key_map *map) {
     struct key_map larger = {.capacity = map->capacity ? map->capacity * 2 : 1024, .count = map->count};
     larger.entries = mem_alloc_zero(larger.capacity, sizeof *larger.entries);

@@ -1,6 +1,6 @@
-/* A table from 64-bit keys to numbers. */
-#ifndef GRAY_EXPORT_KEY_MAP_INTERNAL_H
-#define GRAY_EXPORT_KEY_MAP_INTERNAL_H
+/* A table from 64-bit keys to numbers: open addressing, at most half full. */
+#ifndef GRAY_BASE_KEY_MAP_H
+#define GRAY_BASE_KEY_MAP_H
 
 #include <stdbool.h>
 #include <stddef.h>
