@@ -1,13 +1,13 @@
 -- Three wax candles: the light of their flames goes under the surface and comes out of their sides.
 -- TITLE: Wax candles
--- OPTIONS: --spp 32
+-- OPTIONS: --spp 48
 
 local function wax(colour, radius)
     return gr.openpbr_material{
         subsurface_weight = 1,
         subsurface_color = colour,
         subsurface_radius = radius,
-        subsurface_radius_scale = {1, 0.55, 0.3},
+        subsurface_radius_scale = {1, 0.65, 0.45},
         specular_roughness = 0.35,
         specular_ior = 1.45,
     }

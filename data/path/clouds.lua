@@ -9,14 +9,25 @@ local function density(p)
         q, size = q * 2.03, size * .5
     end
     local low = gr.smoothstep(2.0, 2.5, p.y + .35 * gr.noise(p * .9)) -- uneven below, open above
-    return 4 * gr.clamp(1.6 * heap + .12 - .28 * (p.y - 2.4), 0, 1) * low
+    return 3 * gr.clamp(1.6 * heap + .12 - .28 * (p.y - 2.4), 0, 1) * low
 end
 
-local scene = gr.node('land')
-scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = { .07, .085, .04 } } })
-gr.render { node = scene, file = 'clouds.png', width = 480, height = 300, max_depth = 10, integrator = 'path', eye = { 0, 1.1, 16 },
-    target = { 0, 3.4, 0 }, fov = 50, exposure = -1.1, tone = 'filmic',
-    lights = { gr.sun_light { sun = { .7, .55, .35 }, colour = { 5, 4.7, 4.2 } } },
-    background = gr.clear_sky { sun = { .7, .55, .35 }, turbidity = 2.2 },
+-- Meadows and woods, and hills at the horizon.
+local function green(p)
+    local wood = gr.smoothstep(-.4, .5, gr.noise(p * .35) + .5 * gr.noise(p * 1.1))
+    return gr.mix(gr.vec(.13, .145, .065), gr.vec(.08, .105, .045), wood)
+end
+local scene, land = gr.node('land'), gr.material { kd = green }
+scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = land })
+for _, h in ipairs { { -22, -30, 15, 1.6 }, { -6, -38, 18, 2.2 }, { 12, -34, 14, 1.5 }, { 27, -28, 14, 1.9 } } do
+    local hill = gr.sphere(land)
+    hill:scale(h[3], h[4], 9)
+    hill:translate(h[1], 0, h[2])
+    scene:add_child(hill)
+end
+gr.render { node = scene, file = 'clouds.png', width = 480, height = 300, max_depth = 10, integrator = 'path', eye = { 0, 1.5, 16 },
+    target = { 0, 3.7, 0 }, fov = 50, exposure = -0.85, tone = 'filmic',
+    lights = { gr.sun_light { sun = { .6, .8, .5 }, colour = { 3, 2.85, 2.55 } } },
+    background = gr.clear_sky { sun = { .6, .8, .5 }, turbidity = 2.2 },
     medium = gr.medium { albedo = { .998, .998, .998 }, distance = .5, g = .5, density = density, corner = { -12, 1.9, -16 },
         size = { 24, 3.6, 22 } } }

@@ -9,9 +9,9 @@ local juice = gr.openpbr_material{
     transmission_weight = 1,
     specular_roughness = 0,
     specular_ior = 1.34,
-    transmission_color = {0.88, 0.5, 0.08},
-    transmission_depth = 0.5,
-    transmission_scatter = {0.3, 0.35, 0.3},
+    transmission_color = {0.95, 0.66, 0.25},
+    transmission_depth = 0.7,
+    transmission_scatter = {0.14, 0.13, 0.1},
     transmission_scatter_anisotropy = 0.6,
 }
 local milk = gr.openpbr_material{
@@ -23,15 +23,13 @@ local milk = gr.openpbr_material{
     specular_ior = 1.35,
 }
 local oak = gr.openpbr_material{
-    base_color = gr.mix_texture({0.34, 0.2, 0.1}, {0.24, 0.13, 0.06}, gr.wood_texture(0.6, 9)),
+    base_color = gr.mix_texture({0.42, 0.27, 0.15}, {0.33, 0.2, 0.1}, gr.wood_texture(0.6, 9)),
     base_diffuse_roughness = 0.4,
     specular_roughness = 0.5,
 }
-local wall = gr.openpbr_material{base_color = {0.25, 0.3, 0.33}, specular_weight = 0}
 
 local scene = gr.node('breakfast')
 scene:add_child(gr.cube{name = 'table', material = oak, corner = {-12, -0.5, -5}, size = {24, 0.5, 14}})
-scene:add_child(gr.cube{name = 'wall', material = wall, corner = {-20, -5, -7}, size = {40, 25, 0.5}})
 
 local function tumbler(name, liquid, x, z)
     local wall = gr.lathe(glass, {
@@ -48,7 +46,12 @@ tumbler('water', water, -2.1, 0)
 tumbler('milk', milk, 0, 0.4)
 tumbler('juice', juice, 2.1, 0)
 
-local window = gr.area_light{colour = {1, 1, 1}, emission = {7, 7.3, 8}, corner = {-9, 0.5, 6}, v1 = {0, 7, 0}, v2 = {2, 0, -10}, visible = true}
+-- As photographers light glass: a bright field behind, and a darker room before it, with a window.
+local function room(d)
+    local behind, above = gr.smoothstep(-0.6, 0.9, 0.5 * d.y - 0.9 * d.z), gr.smoothstep(0.4, 0.9, d.y)
+    return gr.vec(0.9, 0.95, 1) * (0.25 + 0.35 * behind + 0.7 * above)
+end
+local window = gr.area_light{colour = {1, 1, 1}, emission = {6, 5.7, 5.2}, corner = {-8, 0.5, 4}, v1 = {0, 7, 0}, v2 = {1.2, 0, 2.4}, visible = true}
 gr.render{
     node = scene,
     file = 'milk.png',
@@ -60,10 +63,10 @@ gr.render{
     eye = {0, 3.2, 10},
     target = {0, 1.15, 0},
     fov = 22,
-    background = {0.3, 0.32, 0.35},
-    lights = {window, gr.sky_light{sky = {0.3, 0.32, 0.35}}},
+    background = room,
+    lights = {window, gr.sky_light{sky = room}},
     tone = 'filmic',
-    exposure = 0.2,
+    exposure = 0.3,
     filter = 'gaussian',
     clamp = 6,
 }

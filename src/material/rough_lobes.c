@@ -330,6 +330,26 @@ struct facet_shares {
     struct colour reflected, lack;
 };
 
+/* What facets below a film reflect, at equal steps of the cosine on the thinner side of the boundary. */
+enum { FILM_STEPS = 16 };
+
+static void film_shares(const struct thin_film *film, double eta, struct colour shares[FILM_STEPS + 1]) {
+    for (int i = 0; i <= FILM_STEPS; i++) {
+        double cosine = (double)i / FILM_STEPS;
+        cosine = eta > 1 ? sqrt(1 - (1 - cosine * cosine) / (eta * eta)) : cosine;
+        shares[i] = thin_film_boundary(film, cosine, eta);
+    }
+}
+
+static struct colour film_share(const struct colour shares[FILM_STEPS + 1], double cosine, double eta) {
+    double across = eta * eta * (1 - cosine * cosine);
+    if (across >= 1)
+        return colour_all(1);
+    double at = FILM_STEPS * fmin(eta > 1 ? sqrt(1 - across) : cosine, 1);
+    int i = at < FILM_STEPS ? (int)at : FILM_STEPS - 1;
+    return colour_add_scaled(shares[i], colour_sub(shares[i + 1], shares[i]), at - i);
+}
+
 /* Boundaries of two widths, or below a film (else NULL): sums over facets that the direction sees, at the points of a
  * lattice of Fibonacci's. Steep facets, beside the edges of the square of random numbers, lose most: the points are
  * denser there. */
@@ -340,7 +360,10 @@ sums_of_boundary(const struct facet_distribution *d, struct vec3 direction, doub
     view = vec3_add_scaled(view, d->along, fabs(vec3_dot(direction, d->along)));
     view = vec3_add_scaled(view, d->across, fabs(vec3_dot(direction, d->across)));
     const bool dense = eta > 1; /* total reflection divides the facets */
-    const int points = film ? 34 : dense ? 233 : 34, step = points == 34 ? 21 : 144; /* films take long */
+    const int points = dense ? 233 : 34, step = dense ? 144 : 21;
+    struct colour shares[FILM_STEPS + 1];
+    if (film)
+        film_shares(film, eta, shares);
     struct colour reflected = {0, 0, 0}, passed = {0, 0, 0};
     double all = 0;
     for (int i = 0; i < points; i++) {
@@ -348,8 +371,7 @@ sums_of_boundary(const struct facet_distribution *d, struct vec3 direction, doub
         struct sample2 u = {s * s * (3 - 2 * s), t * t * (3 - 2 * t)};
         struct vec3 facet = facet_distribution_sample(d, view, u), out = dielectric_mirror(facet, view);
         double towards = vec3_dot(facet, view);
-        struct colour share =
-            film ? thin_film_boundary(film, towards, eta) : colour_all(dielectric_fresnel(towards, eta));
+        struct colour share = film ? film_share(shares, towards, eta) : colour_all(dielectric_fresnel(towards, eta));
         all += weight;
         if (vec3_dot(out, d->normal) > 0)
             reflected = colour_add(reflected,

@@ -32,7 +32,7 @@
 #include <string.h>
 
 enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
-static const double survival = 0.95; /* at most, on surfaces */
+static const double survival = 0.95; /* at most, on surfaces that spread light */
 
 /* --- layers and features --- */
 
@@ -304,10 +304,10 @@ static void leave_scene(const struct path_tracer *tracer, struct integrator_stat
 
 /* False: the path ends here. Paths with weights above 1 can end, too. The chance is the square root of the weight: if
  * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
- * noise than their rays cost. Media scatter so often that even .95 would leave few, heavy paths. */
-static bool survives(struct path *path, bool on_surface, double u) {
-    double chance = sqrt(colour_max_abs(path->weight) / path->radiance_scale);
-    double limit = on_surface ? survival : 1;
+ * noise than their rays cost. `spreads`: on a surface, to more than single directions. Media scatter so often that even
+ * .95 would leave few, heavy paths; and so does a tumbler of clear glass, with four surfaces. */
+static bool survives(struct path *path, bool spreads, double u) {
+    double chance = sqrt(colour_max_abs(path->weight) / path->radiance_scale), limit = spreads ? survival : 1;
     chance = chance < limit ? chance : limit;
     if (!(u < chance))
         return false;
@@ -428,7 +428,7 @@ static inline __attribute__((always_inline)) bool scatter(const struct path_trac
         path->radiance_scale *= bsdf->eta * bsdf->eta;
     /* Roulette, or a weight of 0, ends paths that bring nothing. */
     bool plays = path->depth > tracer->roulette_depth;
-    if (plays ? !survives(path, bsdf, u_roulette) : colour_max_abs(path->weight) == 0)
+    if (plays ? !survives(path, bsdf && !delta, u_roulette) : colour_max_abs(path->weight) == 0)
         return watch_end(watch, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;

@@ -142,6 +142,22 @@ TEST_TIMES(clear_balls_with_rough_coats_or_fuzz_are_invisible_in_uniform_light, 
     }
 }
 
+TEST_TIMES(clear_rough_balls_below_films_are_invisible_in_uniform_light, 20) {
+    for (int k = 0; k < (times > 1 ? 4 : 1); k++) {
+        static const char *const names[] = {"dense film", "thick film", "rare film", "stretched facets"};
+        static const double film_ior[] = {2.48, 1.8, 1.1, 2}, thickness[] = {1.4, 1.5, 0.5, 0.3};
+        struct ball ball;
+        ball_init(&ball);
+        ball.material.phong.roughness = 0.6;
+        ball.numbers.specular_ior = 2.1;
+        ball.numbers.specular_anisotropy = k == 3 ? 0.7 : 0;
+        ball.numbers.film_weight = 1;
+        ball.numbers.film_ior = film_ior[k];
+        ball.numbers.film_thickness = thickness[k];
+        check_ball(names[k], &ball, 50 * times, 1);
+    }
+}
+
 TEST_TIMES(balls_that_transmit_half_of_the_light_are_invisible_in_uniform_light, 30) {
     struct texture half = texture_number(0.5);
     for (int k = 0; k < 5; k++) {
@@ -220,6 +236,32 @@ TEST_TIMES(balls_of_random_white_materials_are_invisible_in_uniform_light, 20) {
 static struct colour random_colour(struct test_random *random) {
     double r = test_uniform(random, 0, 1), g = test_uniform(random, 0, 1);
     return colour_make(r, g, test_uniform(random, 0, 1));
+}
+
+/* With a depth, and a medium inside that scatters: paths of the renderer, under a white sky. */
+TEST_TIMES(balls_of_random_white_materials_with_white_insides_are_invisible_in_uniform_light, 20) {
+    const struct effort effort = {8, times > 1 ? 1024 : 128, 1};
+    struct test_random random = {23};
+    for (int k = 0; k < 5 * times; k++) {
+        struct ball ball;
+        random_material(&ball, &random);
+        struct openpbr *v = &ball.numbers;
+        v->deep = true;
+        v->transmission_scattering = colour_scale(random_colour(&random), 2);
+        v->transmission_anisotropy = test_uniform(&random, -0.5, 0.8);
+        struct stage s;
+        stage_begin(&s, 1);
+        s.light_count = 0;
+        s.sky = (struct sky){.kind = SKY_CONSTANT, .colour = colour_all(1)};
+        struct material *surface = stage_glass(&s, 0, 0, 1);
+        *surface = ball.material;
+        (void)stage_sphere(&s, s.root, surface);
+        s.camera.fov = 10;
+        struct estimate e = estimate_render(&s, &effort, 1000, k + 1);
+        if (!(fabs(e.mean - 1) < 0.01 + 4 * e.error && e.error < (times > 1 ? 0.01 : 0.05)))
+            test_fail(__FILE__, __LINE__, "material %d: %.4f +- %.4f", k, e.mean, e.error);
+        stage_end(&s);
+    }
 }
 
 /* Under a sky that grows brighter to the top, beside a large lamp. */
