@@ -448,7 +448,8 @@ static const struct solid_row rows[] = {
 enum { ROWS = sizeof rows / sizeof *rows };
 
 /* The exact solid at a place of the picture of it and of the mesh that a file has; the pictures only differ where the
- * outline of the solid is near. */
+ * outline of the solid is near. Each line is a pixel of another picture, from all sides: more than the pixels of one
+ * camera, and without the half pixel that those may be off. */
 static void check_outline(struct check *check, const struct csg *read, double tolerance, int lines) {
     struct solid_probe mesh;
     uint32_t wrong = 0;
