@@ -302,6 +302,8 @@ int test_run_shell(const char *line, const char *redirections) {
     char *command = NULL;
     if (asprintf(&command,
                  "await() { until eval \"$1\"; do sleep 0.01; done; }\n"
+                 "screen() { timeout 300 xvfb-run -a -n $((100 + $$ %% 30000)) -s '-screen 0 1400x900x24 -noreset' "
+                 "\"$@\"; }\n"
                  "cd '%s' && export gray='%s' && { %s\n} %s",
                  test_folder(), test_program(), line, redirections) < 0)
         exit(1);

@@ -135,7 +135,8 @@ struct test_result test_gray(const char *folder, const char *arguments);
 void test_free_result(struct test_result *result);
 /* Runs a line of the shell in test_folder(), where $gray is the program under test, with redirections of the whole line
  * ("2>err.txt"); its exit status, or 128 + signal. In the line, await CONDITION waits until a command succeeds, as long
- * as the test may take. */
+ * as the test may take; screen COMMAND runs it on a display of its own, whose number no other test tries at the same
+ * time, and which does not reset when its first client goes before the second one is there (-noreset). */
 int test_run_shell(const char *line, const char *redirections);
 /* A line of the shell ends with `status`; out.txt has what it prints, `says` among it. */
 void test_shell(const char *line, int status, const char *says);

@@ -9,7 +9,7 @@ if [ "$1" != inside ]; then
         command -v $tool >/dev/null || { echo "$tool is missing" >&2; exit 1; }
     done
     mkdir -p "$out"
-    exec xvfb-run -a -s "-screen 0 2600x1700x24" sh "$0" inside "$(cd "$out" && pwd)"
+    exec xvfb-run -a -s "-screen 0 2600x1700x24 -noreset" sh "$0" inside "$(cd "$out" && pwd)"
 fi
 
 work=$(mktemp -d) || exit 1

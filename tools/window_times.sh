@@ -11,7 +11,7 @@ if [ "$1" != inside ]; then
     done
     [ $# -gt 0 ] || set -- data/03demo.lua data/06demo.lua data/10demo.lua data/12demo.lua data/14demo.lua \
         data/functions/creature.lua data/functions/julia.lua data/path/cornell.lua data/path/dining.lua data/path/street.lua
-    exec xvfb-run -a -s "-screen 0 1700x1000x24" sh "$0" inside "$@"
+    exec xvfb-run -a -s "-screen 0 1700x1000x24 -noreset" sh "$0" inside "$@"
 fi
 shift
 gray=$PWD/build/release/gray

@@ -297,7 +297,7 @@ static void keep_estimates(struct denoise_scratch *s, int regression, int half) 
 static void regress_half(const struct denoise_run *d, struct denoise_scratch *s, int half,
                          struct film_rectangle bounds) {
     d->kernels->compare(s, 1 - half);
-    for (int b = 0; b < REGRESSIONS; b++) {
+    for (int b = 0; b < REGRESSIONS && !pool_cancelled(d->pool); b++) {
         d->kernels->regress(s, half, regressions[b], bounds);
         keep_estimates(s, b, half);
     }
@@ -365,8 +365,10 @@ static void regress_block(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     d->kernels->find_changes(s);
     /* Estimates of all candidates, then the best mixture for each pixel. */
-    for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
+    for (int half = 0; half < 2; half++)
         regress_half(d, s, half, bounds);
+    if (pool_cancelled(d->pool))
+        return;
     d->kernels->compare_candidates(s);
     for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->level->height; y++) {
         choose_candidates(d, s, y - by, shares);
@@ -829,6 +831,8 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
     d->scratch = mem_alloc_zero(workers, sizeof *d->scratch);
     if (!d->rows || !d->scratch)
         return no_memory(error);
+    for (size_t i = 0; i < workers; i++)
+        d->scratch[i].pool = d->pool;
     if (!load_source(d, error) || !denoise_colours(d, error) || !denoise_features(d, error) ||
         !make_estimates(d, error))
         return false;

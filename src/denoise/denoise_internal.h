@@ -54,8 +54,10 @@ typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
 /* How many pixels made an estimate: the sum of their weights. */
 enum denoise_support { DENOISE_FEW, DENOISE_SOME, DENOISE_MANY };
 
-/* Memory of a worker. */
+/* Memory of a worker. A block takes long: where the pool is cancelled, its kernels end, and what they leave is not
+ * used. */
 struct denoise_scratch {
+    const struct pool *pool;
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
     denoise_plane total_variance, unit; /* of pixels that are compared: sums over the channels */
     denoise_plane sums[4];              /* of weighted colours, and of weights */

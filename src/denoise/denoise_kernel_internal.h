@@ -131,7 +131,7 @@ static void add_features(struct denoise_scratch *s, int group, int dx, int dy, s
 static void filter_features(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds) {
     enum { WINDOW = DENOISE_FEATURE_WINDOW };
     memset(s->feature_sums, 0, sizeof s->feature_sums);
-    for (int dy = -WINDOW; dy <= WINDOW; dy++) {
+    for (int dy = -WINDOW; dy <= WINDOW && !pool_cancelled(s->pool); dy++) {
         for (int dx = -WINDOW; dx <= WINDOW; dx++) {
             compare_features(s, group, depth, dx, dy);
             add_features(s, group, dx, dy, bounds);
@@ -203,7 +203,7 @@ _Static_assert((int)DENOISE_PATCH == 3, "the sums of average_patches are of seve
 
 static void compare(struct denoise_scratch *s, int half) {
     sum_channels(s, half);
-    for (int row = 0; row < DENOISE_SIDE; row++) {
+    for (int row = 0; row < DENOISE_SIDE && !pool_cancelled(s->pool); row++) {
         for (int lane = 0; lane < DENOISE_SIDE; lane++) {
             compare_pixels(s, half, lane - DENOISE_WINDOW, row - DENOISE_WINDOW);
             average_patches(s, row, lane);
@@ -584,6 +584,8 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_regressi
     for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
         int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
         int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
+        if (i % DENOISE_CENTRES == 0 && pool_cancelled(s->pool))
+            return;
         if (!is_made_at(s, regression, i) || cx < (int)bounds.x0 || cy < (int)bounds.y0 || cx >= (int)bounds.x1 ||
             cy >= (int)bounds.y1)
             continue;

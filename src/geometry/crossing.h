@@ -17,7 +17,8 @@ struct crossing {
     union {
         struct {
             double t;
-            double u, v;   /* barycentric weights of vertices 1 and 2 on a mesh; free for other shapes */
+            double u, v;   /* barycentric weights of vertices 1 and 2 on a mesh; free for other shapes. Of an implicit
+                            * solid u is the tolerance. */
             uint32_t part; /* which face, triangle or nappe */
             bool enter;    /* the line goes from outside to inside here (geometric, after a CSG flip) */
             bool flip;     /* CSG difference or inverse turned the surface inside out */
@@ -36,6 +37,7 @@ struct geom_scratch {
     struct crossing *items;
     uint32_t capacity, used;
     bool overflow;
+    float tolerance; /* 0, or for previews the share of t by twice which crossings may be off */
     /* the cost of searches; sums, which searches never read */
     uint64_t shape_tests;
     uint64_t box_tests; /* of single boxes; a node of a hierarchy is one of cost.hierarchy_steps */

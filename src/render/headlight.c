@@ -15,6 +15,8 @@ enum { SIDE = 8, HOLES = 16 }; /* of a packet; that a ray may pass */
 enum { STRIPS = (FILM_TILE + SIDE - 1) / SIDE };
 /* The share of light from everywhere, and of reflected or transmitted light in the colour of a surface. */
 static const double ambient = 0.25, glossy = 0.6;
+/* How well a surface needs to be located, in pixels. */
+static const double tolerance = 0.25;
 
 _Static_assert((int)SIDE *SIDE == (int)PACKET_RAYS, "a patch is a packet");
 
@@ -190,6 +192,8 @@ bool render_headlight(const struct render_job *job, enum headlight_shows shows, 
     bool ok = headlight.scratch && headlight.rows_done;
     for (int i = 0; ok && i < workers; i++)
         ok = world_scratch_init(&headlight.scratch[i], job->world);
+    for (int i = 0; ok && i < workers; i++)
+        headlight.scratch[i].geom.tolerance = (float)(tolerance * headlight.camera.spread);
     bool complete = ok && pool_run(pool, STRIPS * film_tile_count(job->film), render_strip, &headlight);
     for (int i = 0; headlight.scratch && i < workers; i++) {
         ok = ok && !headlight.scratch[i].failed;

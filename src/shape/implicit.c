@@ -159,8 +159,8 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
         double off = implicit_gradient(&solid->programs[program], point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
         double error = solid->size * 2 * implicit_accuracy(solid);
-        if (square > 0 && fabs(off) < room * sqrt(square)) {
-            /* One step along the gradient removes the rounding error of the ray. */
+        if (square > 0 && (fabs(off) < room * sqrt(square) || crossing->u > 0)) {
+            /* One step along the gradient removes the rounding error of the ray, or what the tolerance allows. */
             point = vec3_add_scaled(point, gradient, -off / square);
         } else {
             error = room;

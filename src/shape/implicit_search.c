@@ -44,7 +44,14 @@ struct search {
     struct crossing *found;
     struct geom_scratch *scratch;
     bool is_list;
+    double tolerance; /* at t = 1, in units of length along the line */
 };
+
+/* The larger one of a share of the size, and of the tolerance at s. */
+static double room_at(const struct search *search, double share, double s) {
+    const double room = search->solid->size * share;
+    return search->tolerance > 0 ? fmax(room, search->tolerance * line_t(&search->line, s)) : room;
+}
 
 /* Slopes along the line. */
 struct slope {
@@ -119,7 +126,7 @@ static void cross(struct search *search, double s, uint32_t part) {
         return;
     }
     give_out(search);
-    search->waiting = (struct crossing){.t = t, .part = part, .enter = search->inside};
+    search->waiting = (struct crossing){.t = t, .u = room_at(search, 0, s), .part = part, .enter = search->inside};
     search->has_waiting = true;
 }
 
@@ -196,7 +203,7 @@ static struct slope slope_in(const struct search *search, const struct implicit_
 /* Where the sign changes between a and b, which have different signs. */
 static double find_change(struct search *search, const struct expr_program *program, double a, double fa, double b,
                           double fb) {
-    double tolerance = search->solid->size * implicit_accuracy(search->solid), c = a, fc = fa, t = fa / (fa - fb);
+    double tolerance = room_at(search, implicit_accuracy(search->solid), a), c = a, fc = fa, t = fa / (fa - fb);
     for (int step = 0; step < 200; step++) {
         double limit = tolerance / fabs(b - a);
         if (!(limit < 0.5))
@@ -223,6 +230,9 @@ static double find_change(struct search *search, const struct expr_program *prog
         t = is_smooth ? fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
                       : 0.5;
     }
+    /* Where only the tolerance ended the search, the outer end: the inside of an estimate of distances may be flat. */
+    if (search->tolerance > 0)
+        return fb < 0 ? a : b;
     return fabs(fb) < fabs(fa) ? b : a;
 }
 
@@ -308,7 +318,7 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
 static void search_part(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
     bool changes = (part->fa < 0) != (part->fb < 0);
     bool is_known = changes ? slope.low >= 0 || slope.high <= 0 : stays(search, part, slope);
-    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < search->limit)
+    if (!is_known && part->b - part->a > room_at(search, resolution, part->a) && search->work < search->limit)
         search_eighths(search, number, part, slope);
     else if (changes)
         pass_change(search, number, part);
@@ -361,7 +371,7 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
 static void march(struct search *search, uint32_t number, double s0, double s1) {
     const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
     const double lipschitz = search->solid->in.lipschitz;
-    double smallest = search->solid->size * march_resolution, trend = -1; /* of |f| / lipschitz along the line */
+    double smallest = room_at(search, march_resolution, s0), trend = -1; /* of |f| / lipschitz along the line */
     int smallest_steps = 0;
     const double first = search->is_any ? (search->ray->t_min - search->line.t0) * search->line.speed : s0;
     if (first > s0 && first < s1) { /* where the crossing is does not matter */
@@ -550,6 +560,7 @@ static bool search_begin(struct search *search, const struct implicit *solid, co
         search->is_any = search->is_list = false;
     search->work = 0;
     search->limit = WORK;
+    search->tolerance = (double)scratch->tolerance * search->line.speed;
     search->at = (double)NAN;
     search->ray = NULL;
     search->found = NULL;

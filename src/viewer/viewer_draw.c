@@ -141,7 +141,7 @@ void viewer_draw_tiles(struct viewer *viewer) {
     }
     const struct film *film = &viewer->pass.film;
     const struct pass_view *view = &viewer->pass.view;
-    bool smooth = (view->headlight || view->samples > 0) && view->divide > 1 && !viewer->overlay.has_lines;
+    bool smooth = (view->plain || view->samples > 0) && view->divide > 1 && !viewer->overlay.has_lines;
     bool denoised = !view->plain && viewer_shows_denoised(viewer);
     if (smooth && (viewer->pass.result != RESULT_COARSE || draw_smooth(viewer)))
         return;

@@ -696,7 +696,8 @@ static void show_state(struct gui *gui) {
         enable_actions(gui, state->action_on | 1u << NEEDS_NOTHING);
     if (was.full_screen != state->full_screen)
         (state->full_screen ? gtk_window_fullscreen : gtk_window_unfullscreen)(GTK_WINDOW(gui->window));
-    char *title = state->file[0] ? g_strdup_printf("%s - %s", state->file, state->state) : g_strdup("gray");
+    char *title = state->file[0] ? g_strdup_printf("%s%s - %s", state->file, state->unsaved ? "*" : "", state->state)
+                                 : g_strdup("gray");
     gtk_window_set_title(GTK_WINDOW(gui->window), title);
     g_free(title);
     gtk_progress_bar_set_fraction(GTK_PROGRESS_BAR(gui->progress), CLAMP(state->share, 0, 1));

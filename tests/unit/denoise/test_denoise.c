@@ -1,6 +1,7 @@
 /* The denoiser on synthetic films with known noise. */
 #include "base/isa.h"
-#include "denoise/denoise.h"
+#include "base/mem.h"
+#include "denoise/denoise_internal.h"
 #include "tests/harness.h"
 
 #include <math.h>
@@ -461,4 +462,31 @@ TEST(few_bright_paths_leave_no_smears_on_walls_in_corners_and_along_frames) {
     static const double usual[] = {[WALL] = 0.05, [NEAR_FRAME] = 0.077, [NEAR_CORNER] = 0.088, [FRAMED] = 0.095};
     for (int room = WALL; room <= FRAMED; room++)
         CHECK(largest[room] < limits[room] && sqrt(mean[room] / counts[room]) < usual[room]);
+}
+
+/* A block of a large picture takes long; what has been computed before the stop stays. */
+TEST(kernels_of_the_denoiser_end_when_the_pool_is_cancelled) {
+    static const struct denoise_regression regression = {DENOISE_WINDOW, 2, 1, 0, false, false};
+    const int middle = DENOISE_LOCAL / 2 * DENOISE_LOCAL + DENOISE_LOCAL / 2;
+    struct film_rectangle bounds = {0, 0, DENOISE_LOCAL, DENOISE_LOCAL};
+    char warning[256];
+    struct pool *pool = pool_create(1, warning);
+    struct denoise_scratch *s = mem_alloc_zero(1, sizeof *s);
+    CHECK(pool && s);
+    s->pool = pool;
+    for (int cancelled = 1; s && cancelled >= 0; cancelled--) {
+        if (cancelled)
+            pool_cancel(pool);
+        else
+            pool_reset_cancel(pool);
+        s->distances[0][0][0] = s->sums[3][middle] = -1;
+        denoise_kernels_base.compare(s, 0);
+        CHECK((s->distances[0][0][0] < 0) == (cancelled != 0));
+        denoise_kernels_base.regress(s, 0, regression, bounds);
+        CHECK((s->sums[3][middle] > 0) == (cancelled == 0));
+        denoise_kernels_base.filter_features(s, 1, false, bounds);
+        CHECK((s->feature_sums[3][0] > 0) == (cancelled == 0));
+    }
+    mem_free(s);
+    pool_destroy(pool);
 }

@@ -104,6 +104,54 @@ TEST(solids_with_declared_distances_are_crossed_where_bounds_find_them) {
     CHECK_TEXT(said, "");
 }
 
+/* --- a tolerance --- */
+
+/* The nearest crossings with a tolerance, where the exact line is inside for more than twice as long. */
+static void find_within_tolerance(struct listener *listener, const struct render_request *request) {
+    const double share = 0x1p-10;
+    struct geom_scratch scratch;
+    struct test_random random = {19};
+    (void)listener;
+    CHECK(geom_scratch_init(&scratch, 100000));
+    for (const struct node_child *link = request->root->first_child; link; link = link->next) {
+        const struct shape *shape = &link->node->shape;
+        int found = 0;
+        for (int i = 0; i < 400; i++) {
+            struct ray ray = random_line(&random, 1.5);
+            struct crossing crossing;
+            struct surface surface;
+            double exact[LIST], length = vec3_length(ray.direction);
+            scratch.tolerance = 0;
+            const uint32_t count = read_crossings(shape, &ray, &scratch, exact);
+            const double room = count == 0 ? 0 : 2 * share * exact[0];
+            if (count < 2 || exact[1] - exact[0] <= room)
+                continue;
+            scratch.tolerance = (float)share;
+            found++;
+            CHECK(shape_nearest(shape, &ray, &scratch, &crossing) && crossing.enter);
+            CHECK_NEAR(crossing.t * length, exact[0], room);
+            shape_describe(shape, &ray, &crossing, &surface);
+            /* A ball of radius 1: the step along the gradient leads to the surface. */
+            CHECK_NEAR(vec3_length(surface.point), 1, room * room);
+            CHECK(vec3_dot(surface.normal, vec3_normalize(surface.point)) > 1 - 1e-9);
+        }
+        CHECK(found > 100);
+    }
+    geom_scratch_destroy(&scratch);
+}
+
+TEST(crossings_with_a_tolerance_are_within_it_and_their_normals_are_those_of_the_surface) {
+    char said[512];
+    see_solids(BEGIN "for _, d in ipairs{false, true} do "
+                     "root:add_child(gr.implicit{f = function(p) return gr.length(p) - 1 end, distance = d, "
+                     "bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}}) end "
+                     /* an estimate that knows nothing of the inside */
+                     "root:add_child(gr.implicit{f = function(p) return max(0.5 * (gr.length(p) - 0.998), 0) - 0.001 "
+                     "end, distance = true, bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}})" END,
+               find_within_tolerance, said, sizeof said);
+    CHECK_TEXT(said, "");
+}
+
 /* --- fractals --- */
 
 static long samples, wrong_samples, crossings;

@@ -9,13 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Runs commands beside the program, whose process is $pid; `titled WORDS` waits for a title. They end it themselves. */
+/* Runs commands beside the program, whose process is $pid, and which they end. `titled WORDS` waits for a title of the
+ * window that has the keyboard, `edit KEYS` does what may come too early until the title has the star of unsaved edits,
+ * `asked` waits for a dialog. */
 static void drive(const char *options, const char *commands, int status) {
     static const char frame[] =
-        "openbox >/dev/null 2>&1 & manager=$!\n"
-        "titled() { for i in $(seq 600); do xdotool search --name \"$1\" >/dev/null 2>&1 && return 0; sleep 0.05; "
-        "done; "
-        "kill $pid; exit 99; }\n"
+        "openbox >/dev/null 2>&1 & manager=$!; until xdotool get_desktop >/dev/null 2>&1; do sleep 0.05; done\n"
+        "is() { xdotool getactivewindow getwindowname 2>/dev/null | grep -Eq \"$1\"; }\n"
+        "titled() { for i in $(seq 600); do is \"$1\" && return 0; sleep 0.05; done; kill $pid; exit 99; }\n"
+        "edit() { for try in 1 2 3 4 5; do eval \"$1\"; for i in $(seq 150); do is '[*] - ready' && return 0; sleep "
+        "0.05; done; done; kill $pid; exit 97; }\n"
+        "asked() { for i in $(seq 600); do is . || return 0; sleep 0.05; done; kill $pid; exit 96; }\n"
         "until_file() { for i in $(seq 600); do test -s \"$1\" && return 0; sleep 0.05; done; kill $pid; exit 98; }\n"
         "$gray -gui --progress=none %s & pid=$!\n"
         "%s\n"
@@ -26,7 +30,7 @@ static void drive(const char *options, const char *commands, int status) {
     (void)snprintf(script, size, frame, options, commands);
     (void)snprintf(path, sizeof path, "%s/drive.sh", test_folder());
     test_write_text(path, script);
-    int got = test_run_shell("timeout 300 xvfb-run -a -s '-screen 0 1400x900x24' sh drive.sh", ">out.txt 2>err.txt");
+    int got = test_run_shell("screen sh drive.sh", ">out.txt 2>err.txt");
     char *said = test_read_file(test_path("err.txt"), NULL);
     if (got != status)
         test_fail(__FILE__, __LINE__, "%.600s\nstatus %d, not %d:\n%s", commands, got, status,
@@ -112,10 +116,11 @@ static void edit_in_locale(const char *name) {
     (void)setenv("LC_ALL", locale, 1);
     drive("scene.lua --exposure 0.5",
           "titled 'out.png - ready'\n"
-          "xdotool mousemove 600 460 click 1 sleep 0.5 key g\n"
-          "xdotool mousemove 620 460 sleep 0.1 mousemove 700 460 sleep 0.3 click 1\n"
-          "sleep 0.3; titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua\n"
-          "xdotool key ctrl+z sleep 0.3 key ctrl+s; until_file out-changes2.lua; xdotool key ctrl+q",
+          "edit 'xdotool mousemove 600 460 click 1 sleep 0.5 key g mousemove 620 460 sleep 0.1 mousemove 700 460 sleep "
+          "0.3 click 1'\n"
+          "xdotool key ctrl+s; until_file out-changes1.lua; titled 'out.png - ready'\n"
+          "edit 'xdotool key ctrl+z'; xdotool key ctrl+s; until_file out-changes2.lua; titled 'out.png - ready'\n"
+          "xdotool key ctrl+q",
           0);
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
     gives("! grep -q change_node out-changes2.lua", 0);
@@ -146,9 +151,9 @@ TEST(gtk_window_without_a_display_says_so) {
 
 TEST(gtk_window_without_any_font_says_so) {
     need_display();
-    gives(
-        "echo '<fontconfig></fontconfig>' >none.conf; FONTCONFIG_FILE=$PWD/none.conf xvfb-run -a $gray -gui scene.lua",
-        3);
+    gives("echo '<fontconfig></fontconfig>' >none.conf; export FONTCONFIG_FILE=$PWD/none.conf; screen $gray -gui "
+          "scene.lua",
+          3);
     has_said("-gui: no window can be opened: fontconfig finds no font");
 }
 
@@ -156,9 +161,11 @@ TEST(gtk_window_without_any_font_says_so) {
 TEST(gtk_window_keeps_an_edit_during_a_resize) {
     need_display();
     drive("scene.lua",
-          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1 key g mousemove 650 460 sleep 0.3\n"
+          "titled 'out.png - ready'; edit 'xdotool mousemove 600 460 click 1 sleep 0.5 key g mousemove 650 460 sleep "
+          "0.3'\n"
           "xdotool search --onlyvisible --name out.png windowsize 900 650 sleep 0.5; xdotool click 1 sleep 0.5\n"
-          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          "titled 'out.png[*] - ready'; xdotool key ctrl+s; until_file out-changes1.lua; titled 'out.png - '\n"
+          "xdotool key ctrl+q",
           0);
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 0*[.0-9]*[1-9]\" out-changes1.lua", 0);
 }
@@ -195,14 +202,14 @@ TEST(gtk_window_survives_a_killed_render_process) {
 TEST(gtk_window_asks_before_edits_are_lost) {
     need_display();
     drive("scene.lua",
-          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 0.5 key x sleep 0.5\n"
-          "titled 'out.png - ready'; xdotool key ctrl+q sleep 1 key Escape sleep 0.5; kill -0 $pid || exit 97\n"
-          "xdotool key ctrl+q sleep 1 key alt+d",
+          "titled 'out.png - ready'; edit 'xdotool mousemove 600 460 click 1 sleep 0.5 key x'\n"
+          "xdotool key ctrl+q; asked; xdotool sleep 0.5 key Escape; titled 'out.png[*] - ready'\n"
+          "xdotool key ctrl+q; asked; xdotool sleep 0.5 key alt+d",
           0);
     gives("test ! -e out-changes1.lua", 0);
     drive("scene.lua",
-          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 0.5 key x sleep 0.5\n"
-          "titled 'out.png - ready'; xdotool key ctrl+q sleep 1 key alt+s",
+          "titled 'out.png - ready'; edit 'xdotool mousemove 600 460 click 1 sleep 0.5 key x'\n"
+          "xdotool key ctrl+q; asked; xdotool sleep 0.5 key alt+s",
           0);
     gives("grep -q \"gr.change_delete('ball'\" out-changes1.lua", 0);
 }
@@ -342,7 +349,7 @@ TEST(gtk_window_has_names_for_screen_readers_on_all_widgets) {
     gives("cat >names.sh <<'END'\n"
           "openbox >/dev/null 2>&1 & manager=$!\n$gray -gui --progress=none scene.lua & pid=$!\n"
           "/usr/bin/python3 reader.py; status=$?; kill $pid; wait $pid; kill $manager; exit $status\nEND\n"
-          "timeout 100 xvfb-run -a -s '-screen 0 1400x900x24' dbus-run-session -- sh names.sh",
+          "screen dbus-run-session -- sh names.sh",
           0);
 }
 
@@ -364,7 +371,7 @@ TEST_LONG(gtk_window_does_every_action_of_its_menus) {
     }
     (void)snprintf(line + used, SIZE - used,
                    "; status=$?; kill $pid; wait $pid; kill $manager; exit $status\nEND\n"
-                   "timeout 200 xvfb-run -a -s '-screen 0 1400x900x24' dbus-run-session -- sh menus.sh");
+                   "screen dbus-run-session -- sh menus.sh");
     gives(line, 0);
     char *said = test_read_file(test_path("said.txt"), NULL);
     for (int i = 0; i < WINDOW_ACTION_COUNT; i++) {
@@ -389,8 +396,8 @@ TEST_LONG(gtk_window_survives_a_hundred_killed_render_processes) {
 TEST(gtk_window_moves_by_typed_numbers) {
     need_display();
     drive("scene.lua",
-          "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1 key g key x key 1 key Return sleep 0.5\n"
-          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          "titled 'out.png - ready'; edit 'xdotool mousemove 600 460 click 1 sleep 1 key g key x key 1 key Return'\n"
+          "xdotool key ctrl+s; until_file out-changes1.lua; titled 'out.png - '; xdotool key ctrl+q",
           0);
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0})\" out-changes1.lua", 0);
 }
@@ -483,7 +490,8 @@ TEST_LONG(gtk_window_moves_turns_and_scales_by_the_handles_of_every_axis) {
         "awk -v ux=$1 -v uy=$2 $size -f handles.awk >places.txt\n"
         "while read x0 y0 x1 y1 n; do\n"
         "  xdotool mousemove $x0 $y0 sleep 0.2 mousedown 1 sleep 0.2 mousemove $x1 $y1 sleep 0.2 mouseup 1 sleep 0.5\n"
-        "  titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep 0.5\n"
+        "  titled 'out.png[*]? - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep "
+        "0.5\n"
         "done <places.txt; xdotool key ctrl+q sleep 0.5 key alt+d",
         0);
     for (int number = 1; number <= 9; number++)
@@ -497,7 +505,8 @@ TEST_LONG(gtk_window_moves_turns_and_scales_by_typed_numbers_along_every_axis) {
           "titled 'out.png - ready'; xdotool mousemove 600 460 click 1 sleep 1; n=0\n"
           "for key in 'g x 3' 'g y 3' 'g z 3' 'r x 9 0' 'r y 9 0' 'r z 9 0' 's x 2' 's y 2' 's z 2'; do\n"
           "  n=$((n + 1)); for k in $key; do xdotool key $k sleep 0.1; done; xdotool key Return sleep 0.5\n"
-          "  titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep 0.5\n"
+          "  titled 'out.png[*]? - ready'; xdotool key ctrl+s; until_file out-changes$n.lua; xdotool key ctrl+z sleep "
+          "0.5\n"
           "done; xdotool key ctrl+q sleep 0.5 key alt+d",
           0);
     for (int number = 1; number <= 9; number++)
@@ -534,7 +543,8 @@ TEST_LONG(gtk_window_finds_a_node_among_ten_thousand) {
     drive("scene.lua",
           "titled 'out.png - ready'; xdotool key ctrl+f sleep 0.5 type 'tree 7777'; xdotool key Return sleep 2 key x "
           "sleep 1\n"
-          "titled 'out.png - ready'; xdotool key ctrl+s; until_file out-changes1.lua; xdotool key ctrl+q",
+          "titled 'out.png[*] - ready'; xdotool key ctrl+s; until_file out-changes1.lua; titled 'out.png - '\n"
+          "xdotool key ctrl+q",
           0);
     gives("grep -q \"gr.change_delete('tree 7777'\" out-changes1.lua", 0);
 }
@@ -550,6 +560,6 @@ TEST_LONG(gtk_window_has_larger_letters_where_the_desktop_has) {
           "kill -INT $pid; wait $pid\nsed -n 's/.*picture of [0-9]*x\\([0-9]*\\) .*/\\1/p' $dpi.txt | tail -1 "
           ">$dpi.high\n"
           "done; kill $manager; test $(cat 144.high) -lt $(cat 96.high)\nEND\n"
-          "xvfb-run -a -s '-screen 0 1400x900x24' sh letters.sh",
+          "screen sh letters.sh",
           0);
 }
