@@ -398,8 +398,10 @@ static bool collapse_edge(struct simplifier *s, uint32_t from, uint32_t to) {
         return false;
     for (int i = 0; i < 2; i++)
         collapse.is_planar = collapse.is_planar && plane_of(s, collapse.removed[i] / 3);
+    /* At the same place nothing changes. */
+    bool moves = vec3_length(vec3_sub(point_of(s, from), point_of(s, to))) > 0;
     for (int i = 0; i < collapse.count; i++)
-        if (!fits_surface(s, &collapse, &collapse.ring[i]))
+        if (moves && !fits_surface(s, &collapse, &collapse.ring[i]))
             return false;
     if (!keeps_samples(s, &collapse))
         return false;

@@ -235,6 +235,22 @@ static bool verify(struct verification *v, struct error *error) {
 
 /* --- rounds --- */
 
+/* Readers of files take vertices at one place as one. False: no memory. */
+static bool some_coincide(const struct solid_mesh *mesh, bool *found) {
+    uint32_t count = (uint32_t)mesh->vertices.count;
+    double(*positions)[3] = mem_alloc(count * sizeof *positions);
+    uint32_t *same = mem_alloc(count * sizeof *same);
+    for (uint32_t i = 0; positions && i < 3 * count; i++)
+        positions[i / 3][i % 3] = vec3_get(solid_vertex_at(mesh, i / 3)->point, (int)(i % 3));
+    bool ok = positions && same && mesh_weld((const double(*)[3])positions, count, same);
+    *found = false;
+    for (uint32_t i = 0; ok && i < count; i++)
+        *found = *found || same[i] != i;
+    mem_free(positions);
+    mem_free(same);
+    return ok;
+}
+
 static void round_coordinates(const struct csg *csg, struct solid_mesh *mesh) {
     for (uint32_t i = 0; i < mesh->vertices.count; i++) {
         struct vec3 *point = &solid_vertex_at(mesh, i)->point;
@@ -272,8 +288,11 @@ static bool simplify_and_test(struct verification *v, const struct solid_mesh *f
             return false;
         *good = v->boxes.count == 0;
     }
-    bool closed = false, memory = solid_mesh_is_closed(out, &closed, error);
-    *good = *good && closed;
+    bool closed = false, coincide = false;
+    if (!solid_mesh_is_closed(out, &closed, error))
+        return false;
+    bool memory = some_coincide(out, &coincide) || error_no_memory(error, "the mesh of a solid");
+    *good = *good && closed && !coincide;
     return memory;
 }
 

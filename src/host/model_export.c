@@ -164,11 +164,8 @@ static bool build_model(struct model_work *work, struct export_model *model, str
                                             .notice = notice,
                                             .context = work};
     bool ok = model_build(&input, model, error);
-    struct print_report report;
     if (ok && process->options->check_print)
-        ok = print_check(model, process->pool, &report, error);
-    if (ok && process->options->check_print)
-        print_report(&report);
+        ok = print_check(model, process->pool, &work->made.report, error);
     if (ok && is_3mf && !process->options->check_print)
         ok = make_thumbnail(work, &world, model, error);
     world_destroy(&world);
@@ -212,6 +209,15 @@ static bool send(struct model_work *work, struct error *error) {
     return services->model(services->context, &request, files->model.items, error);
 }
 
+/* Writes the model, or prints its report. */
+static bool finish(struct model_work *work, struct error *error) {
+    const struct options *options = work->process->options;
+    if (!options->check_print)
+        return options->check || send(work, error);
+    print_report(&work->made.report);
+    return true;
+}
+
 static void forget(struct kept_model *kept) {
     model_files_destroy(&kept->files);
     list_destroy(&kept->thumbnail);
@@ -241,8 +247,8 @@ static bool run(struct model_work *work, struct kept_model *keep, struct error *
     work->made.ready = work->made.shows_next = ok;
     if (ok && keep)
         *keep = work->made;
-    else if (ok && asks && !process->options->check)
-        ok = send(work, error);
+    else if (ok)
+        ok = finish(work, error);
     if (!ok || !keep)
         forget(&work->made);
     if (asks)
@@ -342,9 +348,10 @@ bool model_export_finish(struct render_process *process, struct error *error) {
     else if (process->model_pictures == 0)
         ok = error_set(error, ERROR_USAGE, "%.200s: the script renders no picture whose scene could be the model",
                        option);
-    else if (work.made.ready && options->model && !options->check) {
-        ok = send(&work, error);
-        services->model_end(services->context);
+    else if (work.made.ready) {
+        ok = finish(&work, error);
+        if (options->model)
+            services->model_end(services->context);
     }
     forget(&work.made);
     return ok;

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "base/pool.h"
 #include "export/model_write.h"
+#include "export/print_check.h"
 #include "host/render_process.h"
 #include "output/picture_files.h"
 #include "render/render.h"
@@ -25,7 +26,8 @@ struct replaced_fields {
 struct kept_model {
     bool ready, shows_next; /* the next picture is its thumbnail */
     struct model_files files;
-    struct list thumbnail; /* 3MF: the bytes of a PNG file */
+    struct list thumbnail;      /* 3MF: the bytes of a PNG file */
+    struct print_report report; /* of --check-print */
 };
 
 struct render_process {

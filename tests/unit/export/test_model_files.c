@@ -418,6 +418,12 @@ TEST(check_print_reports_volume_overhang_and_contact) {
                              "--check-print scene.lua", NULL);
     CHECK(strstr(result.out, "stands on the plate: no"));
     test_free_result(&result);
+    result = test_gray_scene("for i = 1, 2 do gr.render{node = gr.sphere{}, file = i .. '.png', width = 8} end\n",
+                             "-q --check-print scene.lua", NULL);
+    CHECK(result.status == 2 && strcmp(result.out, "") == 0);
+    CHECK_TEXT(result.err, "gray: --check-print: the script renders several pictures, 1 1.png, 2 2.png; --picture N "
+                           "chooses one\n");
+    test_free_result(&result);
 }
 
 /* A sphere of this radius as x.KIND. */
