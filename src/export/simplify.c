@@ -452,6 +452,19 @@ static bool remove_vertex(struct simplifier *s, uint32_t vertex, double limit, b
     return false;
 }
 
+/* Of two corners at one place the one with fewer pieces of the surface goes, also if it is kept: nothing moves. */
+static bool join_corners(struct simplifier *s, const struct corners *c) {
+    for (int k = 0; k < 3; k++) {
+        for (int n = (k + 1) % 3; n != k; n = (n + 1) % 3) {
+            bool fewer = solid_vertex_at(s->mesh, c->vertex[k])->sharp <= solid_vertex_at(s->mesh, c->vertex[n])->sharp;
+            if (fewer && vec3_length(vec3_sub(c->point[k], c->point[n])) <= 0 &&
+                collapse_edge(s, c->vertex[k], c->vertex[n]))
+                return true;
+        }
+    }
+    return false;
+}
+
 /* Triangles without a height lie along edges of the solid, and their normals mean nothing: the vertex in the middle of
  * the three goes, before creases are looked for. */
 static void remove_slivers(struct simplifier *s) {
@@ -461,7 +474,7 @@ static void remove_slivers(struct simplifier *s) {
             continue;
         struct corners c = corners_of(s->mesh, i);
         double length = longest_edge(c.point), twice_area = vec3_length(triangle_normal(c.point));
-        if (twice_area > 8 * s->input->resolution * length)
+        if (twice_area > 8 * s->input->resolution * length || join_corners(s, &c))
             continue;
         for (int k = 0; k < 3; k++) {
             double opposite = vec3_length(vec3_sub(c.point[(k + 1) % 3], c.point[(k + 2) % 3]));

@@ -38,7 +38,7 @@ static bool add_deflated(struct list *out, const void *data, size_t size, uint32
 /* The header of an entry comes before its bytes, which are compressed first. */
 bool zip_add(struct list *out, struct list *directory, const char *name, const void *data, size_t size) {
     struct list packed = {0};
-    uint32_t crc, packed_size, offset = (uint32_t)out->count, length = (uint32_t)strlen(name);
+    uint32_t crc = 0, packed_size = 0, offset = (uint32_t)out->count, length = (uint32_t)strlen(name);
     bool ok = add_deflated(&packed, data, size, &crc, &packed_size);
     /* What the header and the record in the directory have in common. */
     const uint32_t about[] = {ZIP_VERSION, 0, ZIP_DEFLATED, 0, ZIP_DATE, crc, packed_size, (uint32_t)size, length, 0};
