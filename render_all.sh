@@ -78,7 +78,7 @@ render() { # render SCRIPT NAME COST
     limit=$(limit_of "$3")
     options=$(about "$script" OPTIONS)
     case $name in
-    10demo | 14demo) options="${options:+$options }--size 1280x960 -ss 4 -al-samples 8" ;;
+    10demo | 14demo) options="${options:+$options }--size 1280x960 -ss 3 -al-samples 8" ;;
     esac
     output="$gallery/$name-%02d.png"
     case $script in data/animation/*) output="$gallery/$name.apng" ;; esac

@@ -1,6 +1,6 @@
 -- Soap bubbles: the film is thin above and thick below, and currents stir it.
 -- TITLE: Soap bubbles
--- OPTIONS: --spp 96
+-- OPTIONS: --spp 72
 
 -- A wall of the index of air is its film alone; the thickness in micrometres is a function of the point.
 local function soap(seed, thin, thick)

@@ -218,7 +218,7 @@ TEST(the_gallery_has_the_shape_of_each_picture_and_the_command_that_made_it) {
     check_has("gallery/index.html",
               "<figure style=\"--shape: 1.33333\">\n<a class=\"picture\" href=\"14demo.png\"><img "
               "src=\"14demo.png\" width=\"400\" height=\"300\" alt=\"14demo &amp; more\"");
-    check_has("gallery/index.html", "./gray --size 1280x960 -ss 4 -al-samples 8 -o gallery/14demo-%02d.png <a "
+    check_has("gallery/index.html", "./gray --size 1280x960 -ss 3 -al-samples 8 -o gallery/14demo-%02d.png <a "
                                     "href=\"../data/14demo.lua\">data/14demo.lua</a></code>");
     check_has("out.txt", "\ndone: open gallery/index.html in a browser; docs/start.md leads to your first scene; ");
 }
