@@ -21,8 +21,8 @@ local lamp = gr.difference {
     gr.box { min = { -60, -60, -60 }, max = { 60, 60, -48 }, material = white },
     name = 'lamp',
 }
-lamp:export('gyroid_lamp.stl', { tolerance = 0.25 })
-lamp:export('gyroid_lamp.3mf', { tolerance = 0.25 })
+lamp:export('gyroid_lamp.stl', { tolerance = 0.4 })
+lamp:export('gyroid_lamp.3mf', { tolerance = 0.4 })
 
 gr.render {
     node = lamp, file = 'gyroid_lamp.png', eye = { 150, -190, 90 }, target = { 0, -0, 0 }, fov = 36, width = 400, height = 400, up = { 0, 0, 1 }, ambient = { 0.3, 0.3, 0.32 },
