@@ -37,7 +37,7 @@ struct geom_scratch {
     struct crossing *items;
     uint32_t capacity, used;
     bool overflow;
-    float tolerance; /* 0, or for previews the share of t by twice which crossings may be off */
+    float tolerance; /* 0; of previews a share of t: crossings may be off by twice as much */
     /* the cost of searches; sums, which searches never read */
     uint64_t shape_tests;
     uint64_t box_tests; /* of single boxes; a node of a hierarchy is one of cost.hierarchy_steps */

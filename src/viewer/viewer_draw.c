@@ -113,7 +113,7 @@ static void enlarge_row(const struct viewer *viewer, const struct tone *tone, ui
     }
 }
 
-/* A pass of few samples, enlarged smoothly: what it shows is replaced soon. */
+/* A pass with fewer pixels, enlarged smoothly: what it shows is replaced soon. */
 static bool draw_smooth(struct viewer *viewer) {
     const struct film *film = &viewer->pass.film;
     size_t row = (size_t)3 * viewer->request.width;
