@@ -2,6 +2,7 @@
  * table of solids in Lua, all shapes at random, and random trees. */
 #include "csg/csg_build.h"
 #include "export/model_build.h"
+#include "export/simplify_internal.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
 #include "export/triangles_internal.h"
@@ -620,6 +621,31 @@ TEST(solids_that_touch_in_an_edge_are_separated_there) {
     solid_mesh_destroy(&mesh);
     pool_destroy(pool);
     arena_destroy(&arena);
+}
+
+/* An octahedron whose top is two vertices at one place, with two triangles between them. */
+TEST(vertices_at_one_place_are_joined_although_they_are_kept) {
+    static const double at[7][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
+    static const uint32_t faces[10][3] = {{0, 1, 2}, {0, 4, 1}, {0, 2, 6}, {0, 6, 4}, {6, 2, 3},
+                                          {6, 3, 4}, {5, 2, 1}, {5, 3, 2}, {5, 4, 3}, {5, 1, 4}};
+    const uint8_t keep[7] = {KEEP_VERTEX, KEEP_VERTEX, KEEP_VERTEX, KEEP_VERTEX, KEEP_VERTEX, KEEP_VERTEX, KEEP_VERTEX};
+    const struct simplify_input input = {.tolerance = 1e-2, .size = 2, .resolution = 1e-6, .keep = keep};
+    struct solid_mesh mesh = {0};
+    struct error error = {0};
+    bool closed = false;
+    for (int i = 0; i < 7; i++) {
+        const struct solid_vertex vertex = {.point = {at[i][0], at[i][1], at[i][2]}};
+        CHECK(list_add(&mesh.vertices, &vertex, 1, sizeof vertex));
+    }
+    for (uint32_t i = 0; i < 10; i++) {
+        const struct solid_triangle triangle = {{faces[i][0], faces[i][1], faces[i][2]}, i};
+        CHECK(list_add(&mesh.triangles, &triangle, 1, sizeof triangle));
+    }
+    CHECK(solid_mesh_is_closed(&mesh, &closed, &error) && closed);
+    CHECK(simplify_mesh(&mesh, &input));
+    CHECK(mesh.vertices.count == 6 && mesh.triangles.count == 8 && twins(&mesh) == 0);
+    CHECK(solid_mesh_is_closed(&mesh, &closed, &error) && closed);
+    solid_mesh_destroy(&mesh);
 }
 
 TEST(an_empty_solid_is_an_error) {
