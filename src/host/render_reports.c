@@ -247,6 +247,10 @@ static bool has_effect(enum setting_effect effect, const struct picture_work *wo
         return true;
     case EFFECT_WHITTED:
         return settings->integrator == INTEGRATOR_WHITTED;
+    case EFFECT_TREES:
+        return !integrator_traits(settings->integrator).progressive;
+    case EFFECT_RADIOSITY:
+        return settings->integrator == INTEGRATOR_RADIOSITY;
     case EFFECT_PATH:
         return settings->integrator == INTEGRATOR_PATH;
     case EFFECT_TOON:
