@@ -300,7 +300,7 @@ static int count_marked(const struct key_map *edges, const struct patch *patch) 
 }
 
 /* With any edge of a patch, its longest one is marked, too. */
-static bool close_marks(const struct patches *patches, struct key_map *edges, size_t *count) {
+static bool complete_marked(const struct patches *patches, struct key_map *edges, size_t *count) {
     for (bool more = true; more;) {
         more = false;
         *count = patches->all.count;
@@ -336,7 +336,7 @@ static bool find_middle(struct patches *patches, uint32_t index, int k, uint32_t
     struct vec3 a = c[k], b = c[(k + 1) % 3];
     struct patch_vertex own = {vec3_scale(vec3_add(a, b), 0.5), primitive};
     double length = vec3_length(vec3_sub(b, a));
-    if (is_curved(patches_kind(patches->world, primitive)) &&
+    if (patches->curved[primitive] &&
         patches_hit(patches->world, primitive, own.point, vec3_normalize(normal_of(c)), length, scratch, &hit) &&
         vec3_length(vec3_sub(hit.point, own.point)) < curved_part * length)
         own.point = hit.point;
@@ -382,7 +382,7 @@ static bool divide(struct patches *patches, struct key_map *edges, uint32_t inde
 bool patches_divide(struct patches *patches, struct key_map *edges, uint32_t limit, bool *done, struct error *error) {
     struct world_scratch scratch;
     size_t count = 0;
-    bool ok = close_marks(patches, edges, &count);
+    bool ok = complete_marked(patches, edges, &count);
     *done = ok && count <= limit;
     if (!*done)
         return ok || error_no_memory(error, "patches");
@@ -428,8 +428,10 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
     struct patch_builder b = {.out = patches};
     double area = 0;
     *patches = (struct patches){.world = world};
-    bool ok = world_scratch_init(&b.scratch, world) || error_no_memory(error, "patches");
+    patches->curved = mem_alloc_zero((size_t)world->primitive_count + 1, 1);
+    bool ok = (world_scratch_init(&b.scratch, world) && patches->curved) || error_no_memory(error, "patches");
     for (uint32_t i = 0; ok && i < world->primitive_count; i++) {
+        patches->curved[i] = is_curved(patches_kind(world, i));
         ok = add_primitive(&b, i, pool, error);
         if (ok && patches->all.count > limit)
             ok =
@@ -456,6 +458,7 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
 void patches_destroy(struct patches *patches) {
     list_destroy(&patches->vertices);
     list_destroy(&patches->all);
+    mem_free(patches->curved);
     mem_free(patches->first);
     mem_free(patches->of_vertex);
     box_tree_destroy(&patches->tree);
@@ -491,8 +494,7 @@ bool patches_index_space(struct patches *patches, struct pool *pool, struct erro
         patch_corners(patches, i, c);
         (void)longest_edge(c, &length);
         boxes[i] = (struct box){vec3_min(c[0], vec3_min(c[1], c[2])), vec3_max(c[0], vec3_max(c[1], c[2]))};
-        double margin =
-            is_curved(patches_kind(patches->world, patch_at(patches, i)->primitive)) ? curved_part : 0x1p-20;
+        double margin = patches->curved[patch_at(patches, i)->primitive] ? curved_part : 0x1p-20;
         double far = fmax(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max));
         boxes[i] = box_grow(boxes[i], margin * length + 0x1p-40 * far);
     }
@@ -519,14 +521,14 @@ static double shares_of(const struct vec3 c[3], struct vec3 normal, struct vec3 
     return vec3_length_squared(vec3_sub(p, at));
 }
 
-bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t *patch, double shares[3]) {
-    const struct box region = {hit->point, hit->point};
+/* The nearest patch whose box meets a region. */
+static bool find_within(const struct patches *patches, const struct hit *hit, double margin, uint32_t *patch,
+                        double shares[3]) {
+    const struct box region = box_grow((struct box){hit->point, hit->point}, margin);
     struct box_tree_meeting meeting;
     double nearest = INFINITY;
     uint32_t item;
     *patch = PATCH_NONE;
-    if (patches->tree.node_count == 0)
-        return false;
     box_tree_meeting_begin(&meeting, &patches->tree, &region);
     while (box_tree_meeting_next(&meeting, &item)) {
         struct vec3 c[3];
@@ -548,10 +550,22 @@ bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t
     return *patch != PATCH_NONE;
 }
 
+bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t *patch, double shares[3]) {
+    if (patches->tree.node_count == 0)
+        return false;
+    if (find_within(patches, hit, 0, patch, shares))
+        return true;
+    /* Where a curved surface is further away than boxes of patches go. */
+    for (double margin = patches->edge / 8; patches->curved[hit->primitive] && margin <= patches->edge; margin *= 2)
+        if (find_within(patches, hit, margin, patch, shares))
+            return true;
+    return false;
+}
+
 bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal, double size,
                  struct world_scratch *scratch, struct hit *hit) {
     /* From nearby first: another surface of the primitive may be above. */
-    for (double height = 0x1p-12 * size; height < size; height *= 32) {
+    for (double height = 0x1p-10 * size; height <= size; height *= 32) {
         const struct ray ray = {
             .origin = vec3_add_scaled(point, normal, height), .direction = vec3_negate(normal), .t_max = 2 * height};
         struct crossing crossing;

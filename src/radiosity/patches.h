@@ -25,6 +25,7 @@ struct patch_vertex {
 struct patches {
     const struct world *world;
     struct list vertices, all;   /* struct patch_vertex, struct patch */
+    uint8_t *curved;             /* by primitive: its patches are only near its surface */
     double edge;                 /* at most so long are those of patches in the beginning */
     uint32_t *first, *of_vertex; /* by vertex, one more at the end: its patches */
     struct box_tree tree;        /* over the patches */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256 };
+enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
 static const double first_contrast = 0.1;
 
@@ -297,12 +297,10 @@ bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input 
     }
     radiosity_destroy(radiosity);
     *radiosity = next;
-    bool whole = radiosity_shoot(radiosity, input->error_share, input->pool);
-    radiosity_drop_factors(radiosity);
-    if (whole)
+    if (radiosity_finish(radiosity, input->error_share, input->pool, error))
         return true;
     radiosity_destroy(radiosity);
-    return error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
+    return false;
 }
 
 void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
@@ -365,6 +363,52 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
                 shoot(radiosity, i);
     }
     return true;
+}
+
+/* One step: each side takes the mean over the patches of its vertex, weighted as products of hat functions, which keeps
+ * the power. from, to: 3 numbers for each side. */
+static void smooth(const struct radiosity *radiosity, uint32_t back, const struct colour *from, struct colour *to) {
+    const struct patches *patches = &radiosity->patches;
+    for (uint32_t v = 0; v < patches->vertices.count; v++) {
+        const uint32_t own = 2 * v + back;
+        struct colour sum = {0, 0, 0};
+        double weights = 0;
+        for (uint32_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
+            const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
+            struct vec3 c[3];
+            patch_corners(patches, patches->of_vertex[i], c);
+            double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+            for (int k = 0; k < 3; k++) {
+                const uint32_t side = 2 * vertex[k] + back;
+                double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
+                sum = colour_add_scaled(sum, from[side], weight);
+                weights += weight;
+            }
+        }
+        to[own] = weights > 0 ? colour_scale(sum, 1 / weights) : from[own];
+    }
+}
+
+bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error) {
+    const uint32_t count = side_count(radiosity);
+    struct colour *direct = mem_alloc(count * sizeof *direct), *indirect = mem_alloc(count * sizeof *indirect);
+    struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
+    bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
+    for (uint32_t i = 0; ok && i < count; i++)
+        direct[i] = radiosity->sides[i].light;
+    if (ok && !radiosity_shoot(radiosity, error_share, pool))
+        ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
+    for (uint32_t i = 0; ok && i < count; i++)
+        indirect[i] = colour_sub(radiosity->sides[i].light, direct[i]);
+    for (uint32_t step = 0; ok && step < 2 * SMOOTH_STEPS; step++)
+        smooth(radiosity, step % 2, step / 2 % 2 ? smoothed : indirect, step / 2 % 2 ? indirect : smoothed);
+    for (uint32_t i = 0; ok && i < count; i++)
+        radiosity->sides[i].light = colour_add(direct[i], (SMOOTH_STEPS % 2 ? smoothed : indirect)[i]);
+    radiosity_drop_factors(radiosity);
+    mem_free(direct);
+    mem_free(indirect);
+    mem_free(smoothed);
+    return ok;
 }
 
 bool radiosity_light(const struct radiosity *radiosity, const struct hit *hit, struct colour *light) {

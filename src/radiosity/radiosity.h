@@ -47,6 +47,9 @@ struct radiosity_input {
 bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error);
 /* Shoots until this share of light is left. False: cancelled. */
 bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct pool *pool);
+/* The same until it is solved: light from other surfaces, whose form factors have noise, becomes smooth. Then drops the
+ * factors. Errors: no memory, cancelled. */
+bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error);
 /* The solution of a world, computed only if it differs from the one that is there. Errors: those of radiosity_prepare.
  */
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error);

@@ -307,7 +307,7 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(NUMBER, double, radiosity_error, SAMPLES, 0.001, 1e-9, 1, NO_WORDS, "--radiosity-error", "X", NULL,              \
       "radiosity_error", NULL, RAYS, "Stop when the share X of light is not yet shot, with integrator radiosity.",     \
       EFFECT_RADIOSITY)                                                                                                \
-    X(WHOLE, int, radiosity_patches, SAMPLES, 20000, 16, PATCHES_MAX, NO_WORDS, "--radiosity-patches", "N", NULL,      \
+    X(WHOLE, int, radiosity_patches, SAMPLES, 20000, 1, PATCHES_MAX, NO_WORDS, "--radiosity-patches", "N", NULL,       \
       "radiosity_patches", NULL, RAYS, "At most N patches, with integrator radiosity.", EFFECT_RADIOSITY)              \
     X(CHOICE, enum filter_kind, filter, SAMPLES, FILTER_BOX, 0, 0, FILTERS, "--filter", NULL, NULL, "filter", NULL,    \
       RAYS, "Reconstruction filter of a pixel.")                                                                       \
@@ -328,7 +328,7 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(CHOICE, enum colour_pipeline, colour, SAMPLES, COLOUR_AUTO, 0, 0, COLOUR_PIPELINES, "--colour", NULL, NULL,      \
       "colour", NULL, SIZE_AND_COLOUR,                                                                                 \
       "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; "    \
-      "auto: linear with integrator path.")                                                                            \
+      "auto: linear with integrators path and radiosity.")                                                             \
     X(FLAG, bool, deep, FINISH, false, 0, 1, NO_WORDS, "--deep", NULL, NULL, "deep", NULL, SIZE_AND_COLOUR,            \
       "16 bits per channel in PNG files.", EFFECT_DISPLAY)                                                             \
     X(CHOICE, enum style, style, SAMPLES, STYLE_NONE, 0, 0, STYLES, "--style", NULL, NULL, "style", NULL, FINISH,      \
