@@ -37,12 +37,9 @@ move() { # move WAY: 3 seconds of it; prints what the program says about its lon
     : >"$work/said"
     case $1 in
     orbits)
-        xdotool mousemove 800 500 mousedown 2
-        for i in $(seq 75); do
-            xdotool mousemove_relative -- $((i % 50 < 25 ? 4 : -4)) 1
-            sleep 0.03
-        done
-        xdotool mouseup 2 ;;
+        # One process: those of its own for each movement would take a part of the processors.
+        xdotool mousemove 800 500 mousedown 2 $(seq 150 | awk '{ print "mousemove_relative --", ($1 % 100 < 50 ? 2 : -2), $1 % 2, "sleep 0.02" }') \
+            mouseup 2 ;;
     walks) xdotool key grave keydown w sleep 3 keyup w key Escape ;;
     esac
     after=$(ticks)

@@ -36,9 +36,10 @@ local function candle(name, material, x, z, radius, height)
         {r, 0.06}, {0.97 * r, 0}, {0, 0},
     }))
     node:add_child(gr.cylinder{material = soot, from = {0, h - 0.5, 0}, to = {0.03, h + 0.06, 0}, radius = 0.03})
-    local flame = gr.sphere{material = fire, centre = {0, 0, 0}, radius = 0.12}
-    flame:scale(1, 3, 1)
-    flame:translate(0.03, h + 0.42, 0)
+    local flame = gr.lathe(fire, {
+        {0, 0}, {0.06, 0.03}, {0.1, 0.1}, {0.115, 0.2}, {0.1, 0.33}, {0.07, 0.48}, {0.035, 0.63}, {0.012, 0.74}, {0, 0.8},
+    })
+    flame:translate(0.03, h + 0.05, 0)
     node:add_child(flame)
     node:translate(x, 0, z)
     scene:add_child(node)
@@ -61,5 +62,6 @@ gr.render{
     lights = {gr.sky_light{sky = {0.09, 0.12, 0.18}}},
     tone = 'filmic',
     exposure = 0.3,
+    bloom = 0.15,
     filter = 'gaussian',
 }

@@ -68,5 +68,5 @@ gr.render{
     tone = 'filmic',
     exposure = 0.3,
     filter = 'gaussian',
-    clamp = 6,
+    clamp = 3,
 }

@@ -455,15 +455,15 @@ static void command_overlay(struct viewer *viewer) {
                                                .overlay = viewer_overlay_request(viewer, false)};
 }
 
-/* Between the preview and the picture of a progressive integrator: denoised pictures, of 4 samples at a third of the
- * pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part of.
+/* Between the preview and the picture of a progressive integrator: denoised pictures, of 2 and 4 samples at a third of
+ * the pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part of.
  * Where the noise or the time decides, there are at most 16. */
 static void begin_finer_pass(struct viewer *viewer, double now) {
-    enum { FIRST = 4, HALF = 8, ADAPTIVE_LIMIT = 16 };
+    enum { FIRST = 2, HALF = 8, ADAPTIVE_LIMIT = 16 };
     const struct settings *settings = &viewer->request.settings;
     bool adapts = settings->noise > 0 || settings->time_limit > 0;
     uint32_t done = viewer->pass.view.samples, all = settings_path_samples(settings);
-    uint32_t samples = done > 0 ? 2 * done : FIRST, divide = samples == FIRST ? 3 : samples == HALF ? 2 : 1;
+    uint32_t samples = done > 0 ? 2 * done : FIRST, divide = samples < HALF ? 3 : samples == HALF ? 2 : 1;
     bool last = !viewer_shows_denoised(viewer) || samples > all / 2 || (adapts && samples > ADAPTIVE_LIMIT);
     bool keeps = done > HALF && !adapts && viewer->pass.result == RESULT_COARSE;
     begin_pass(viewer, last ? 1 : divide, false, false, now);

@@ -18,6 +18,7 @@ struct picture_tiles {
     GdkTexture **textures; /* NULL: not made yet */
     uint32_t *seen;        /* the number of each tile when its texture was made */
     uint32_t count;
+    uint32_t width, height; /* of the picture as its textures show it: at most its own */
 };
 
 /* The widgets of a field of the form. */

@@ -27,35 +27,104 @@ void gui_picture_attach(struct gui *gui, const struct window_order *order, int d
     tiles->seen = g_new0(uint32_t, tiles->count);
 }
 
-static void tile_rectangle(const struct picture_tiles *tiles, uint32_t tile, uint32_t *x, uint32_t *y, int *width,
-                           int *height) {
-    uint32_t columns = (tiles->shared.width + WINDOW_TILE - 1) / WINDOW_TILE;
-    *x = tile % columns * WINDOW_TILE;
-    *y = tile / columns * WINDOW_TILE;
-    *width = (int)MIN(WINDOW_TILE, tiles->shared.width - *x);
-    *height = (int)MIN(WINDOW_TILE, tiles->shared.height - *y);
+/* Where the tile is in a picture that is shown with so many pixels. Tiles begin and end at whole pixels, so that no
+ * line shows between them. */
+struct tile_place {
+    uint32_t left, top, right, bottom;
+};
+static struct tile_place tile_place(const struct picture_tiles *tiles, uint32_t tile, uint32_t width, uint32_t height) {
+    const uint32_t full_width = tiles->shared.width, full_height = tiles->shared.height;
+    uint32_t columns = (full_width + WINDOW_TILE - 1) / WINDOW_TILE;
+    uint32_t x = tile % columns * WINDOW_TILE, y = tile / columns * WINDOW_TILE;
+    uint32_t right = MIN(x + WINDOW_TILE, full_width), bottom = MIN(y + WINDOW_TILE, full_height);
+    return (struct tile_place){
+        (uint32_t)((uint64_t)x * width / full_width), (uint32_t)((uint64_t)y * height / full_height),
+        (uint32_t)((uint64_t)right * width / full_width), (uint32_t)((uint64_t)bottom * height / full_height)};
+}
+
+/* The pixels of the picture that a pixel of a smaller one covers: from (p * full) to ((p + 1) * full), in units of
+ * 1 / part pixels. */
+struct cover {
+    uint64_t from, to;
+    uint32_t first, last, part;
+};
+static struct cover cover_of(uint32_t p, uint32_t full, uint32_t part) {
+    uint64_t from = (uint64_t)p * full, to = from + full;
+    return (struct cover){from, to, (uint32_t)(from / part), (uint32_t)((to - 1) / part), part};
+}
+static uint64_t cover_weight(const struct cover *cover, uint32_t pixel) {
+    return MIN(cover->to, (uint64_t)(pixel + 1) * cover->part) - MAX(cover->from, (uint64_t)pixel * cover->part);
+}
+
+/* A part of the picture that is shown smaller, with whole pixels: means by area. GTK would take several times as long.
+ */
+static void shrink(const struct window_picture *picture, const struct tile_place *to, uint32_t width, uint32_t height,
+                   uint8_t *out) {
+    const uint8_t *pixels = window_picture_pixels(picture);
+    float *sums = g_new(float, 3 * (size_t)picture->width);
+    const uint32_t begin = cover_of(to->left, picture->width, width).first,
+                   end = cover_of(to->right - 1, picture->width, width).last;
+    const float unit = 1 / ((float)picture->width * (float)picture->height);
+    for (uint32_t y = to->top; y < to->bottom; y++) {
+        const struct cover rows = cover_of(y, picture->height, height);
+        for (uint32_t i = 3 * begin; i < 3 * (end + 1); i++)
+            sums[i] = 0;
+        for (uint32_t row = rows.first; row <= rows.last; row++) {
+            const float weight = (float)cover_weight(&rows, row) * unit;
+            const uint8_t *from = pixels + 3 * (size_t)row * picture->width;
+            for (uint32_t i = 3 * begin; i < 3 * (end + 1); i++)
+                sums[i] += weight * (float)from[i];
+        }
+        for (uint32_t x = to->left; x < to->right; x++) {
+            const struct cover columns = cover_of(x, picture->width, width);
+            float mean[3] = {0.5f, 0.5f, 0.5f};
+            for (uint32_t column = columns.first; column <= columns.last; column++) {
+                const float weight = (float)cover_weight(&columns, column);
+                for (int c = 0; c < 3; c++)
+                    mean[c] += weight * sums[3 * column + (uint32_t)c];
+            }
+            for (int c = 0; c < 3; c++)
+                *out++ = (uint8_t)MIN(mean[c], 255);
+        }
+    }
+    g_free(sums);
+}
+
+static void copy(const struct window_picture *picture, const struct tile_place *to, uint8_t *out) {
+    const size_t row = 3 * (size_t)(to->right - to->left);
+    for (uint32_t y = to->top; y < to->bottom; y++)
+        memcpy(out + (y - to->top) * row, window_picture_pixels(picture) + 3 * ((size_t)y * picture->width + to->left),
+               row);
 }
 
 static void make_texture(struct picture_tiles *tiles, uint32_t tile) {
-    uint32_t x, y;
-    int width, height;
-    tile_rectangle(tiles, tile, &x, &y, &width, &height);
-    size_t row = 3 * (size_t)width;
-    uint8_t *copy = g_malloc(row * (size_t)height);
-    const uint8_t *pixels = window_picture_pixels(&tiles->shared);
-    for (int v = 0; v < height; v++)
-        memcpy(copy + (size_t)v * row, pixels + 3 * ((size_t)(y + (uint32_t)v) * tiles->shared.width + x), row);
-    GBytes *owned = g_bytes_new_take(copy, row * (size_t)height);
+    const struct window_picture *picture = &tiles->shared;
+    const struct tile_place to = tile_place(tiles, tile, tiles->width, tiles->height);
+    const uint32_t width = to.right - to.left, height = to.bottom - to.top;
     g_clear_object(&tiles->textures[tile]);
-    tiles->textures[tile] = gdk_memory_texture_new(width, height, GDK_MEMORY_R8G8B8, owned, row);
+    if (width == 0 || height == 0)
+        return;
+    uint8_t *pixels = g_malloc(3 * (size_t)width * height);
+    if (tiles->width == picture->width && tiles->height == picture->height)
+        copy(picture, &to, pixels);
+    else
+        shrink(picture, &to, tiles->width, tiles->height, pixels);
+    GBytes *owned = g_bytes_new_take(pixels, 3 * (size_t)width * height);
+    tiles->textures[tile] =
+        gdk_memory_texture_new((int)width, (int)height, GDK_MEMORY_R8G8B8, owned, 3 * (size_t)width);
     g_bytes_unref(owned);
 }
 
 void gui_picture_draw(struct gui *gui) {
     struct picture_tiles *tiles = &gui->tiles;
+    uint32_t width = MIN(tiles->shared.width, (uint32_t)MAX(gui->state.shown_width, 1)),
+             height = MIN(tiles->shared.height, (uint32_t)MAX(gui->state.shown_height, 1));
+    bool resized = width != tiles->width || height != tiles->height;
+    tiles->width = width;
+    tiles->height = height;
     for (uint32_t tile = 0; tile < tiles->count; tile++) {
         uint32_t number = atomic_load_explicit(&window_picture_numbers(&tiles->shared)[tile], memory_order_acquire);
-        if (number == tiles->seen[tile] && tiles->textures[tile])
+        if (number == tiles->seen[tile] && tiles->textures[tile] && !resized)
             continue;
         tiles->seen[tile] = number;
         make_texture(tiles, tile);
@@ -72,23 +141,17 @@ struct _GrayPicture {
 };
 G_DEFINE_FINAL_TYPE(GrayPicture, gray_picture, GTK_TYPE_WIDGET)
 
-/* Tiles of a scaled picture begin and end at whole pixels, so that no line shows between them. */
-static void draw_tiles(GtkSnapshot *snapshot, const struct picture_tiles *tiles, const graphene_rect_t *place,
-                       double scale) {
-    double zoom_x = (double)place->size.width / tiles->shared.width;
-    double zoom_y = (double)place->size.height / tiles->shared.height;
-    for (uint32_t tile = 0; tile < tiles->count; tile++) {
-        uint32_t x, y;
-        int width, height;
-        if (!tiles->textures[tile])
+static void draw_tiles(GtkSnapshot *snapshot, const struct gui *gui, double scale) {
+    const struct window_state *state = &gui->state;
+    for (uint32_t tile = 0; tile < gui->tiles.count; tile++) {
+        if (!gui->tiles.textures[tile])
             continue;
-        tile_rectangle(tiles, tile, &x, &y, &width, &height);
-        double left = floor((double)place->origin.x + x * zoom_x), top = floor((double)place->origin.y + y * zoom_y);
-        double right = floor((double)place->origin.x + (x + (uint32_t)width) * zoom_x);
-        double bottom = floor((double)place->origin.y + (y + (uint32_t)height) * zoom_y);
-        graphene_rect_t to = GRAPHENE_RECT_INIT((float)(left / scale), (float)(top / scale),
-                                                (float)((right - left) / scale), (float)((bottom - top) / scale));
-        gtk_snapshot_append_texture(snapshot, tiles->textures[tile], &to);
+        struct tile_place to =
+            tile_place(&gui->tiles, tile, (uint32_t)MAX(state->shown_width, 0), (uint32_t)MAX(state->shown_height, 0));
+        graphene_rect_t place = GRAPHENE_RECT_INIT(
+            (float)((state->left + (double)to.left) / scale), (float)((state->top + (double)to.top) / scale),
+            (float)((to.right - to.left) / scale), (float)((to.bottom - to.top) / scale));
+        gtk_snapshot_append_texture(snapshot, gui->tiles.textures[tile], &place);
     }
 }
 
@@ -121,9 +184,7 @@ static void gray_picture_snapshot(GtkWidget *widget, GtkSnapshot *snapshot) {
     graphene_rect_t whole = GRAPHENE_RECT_INIT(0, 0, width, height);
     gtk_snapshot_push_clip(snapshot, &whole);
     gtk_snapshot_append_color(snapshot, &(GdkRGBA){0.1f, 0.1f, 0.1f, 1}, &whole);
-    graphene_rect_t area = GRAPHENE_RECT_INIT((float)gui->state.left, (float)gui->state.top,
-                                              (float)gui->state.shown_width, (float)gui->state.shown_height);
-    draw_tiles(snapshot, &gui->tiles, &area, scale);
+    draw_tiles(snapshot, gui, scale);
     if (gui->state.line_count > 0) {
         cairo_t *cairo = gtk_snapshot_append_cairo(snapshot, &whole);
         cairo_scale(cairo, 1 / scale, 1 / scale);

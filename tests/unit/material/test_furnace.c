@@ -240,27 +240,35 @@ static struct colour random_colour(struct test_random *random) {
 
 /* With a depth, and a medium inside that scatters: paths of the renderer, under a white sky. */
 TEST_TIMES(balls_of_random_white_materials_with_white_insides_are_invisible_in_uniform_light, 20) {
-    const struct effort effort = {8, times > 1 ? 1024 : 128, 1};
-    struct test_random random = {23};
-    for (int k = 0; k < 5 * times; k++) {
-        struct ball ball;
-        random_material(&ball, &random);
-        struct openpbr *v = &ball.numbers;
-        v->deep = true;
-        v->transmission_scattering = colour_scale(random_colour(&random), 2);
-        v->transmission_anisotropy = test_uniform(&random, -0.5, 0.8);
-        struct stage s;
-        stage_begin(&s, 1);
-        s.light_count = 0;
-        s.sky = (struct sky){.kind = SKY_CONSTANT, .colour = colour_all(1)};
-        struct material *surface = stage_glass(&s, 0, 0, 1);
-        *surface = ball.material;
-        (void)stage_sphere(&s, s.root, surface);
-        s.camera.fov = 10;
-        struct estimate e = estimate_render(&s, &effort, 1000, k + 1);
-        if (!(fabs(e.mean - 1) < 0.01 + 4 * e.error && e.error < (times > 1 ? 0.01 : 0.05)))
-            test_fail(__FILE__, __LINE__, "material %d: %.4f +- %.4f", k, e.mean, e.error);
-        stage_end(&s);
+    const struct effort effort = {8, times > 1 ? 512 : 128, 1};
+    const int count = 5 * times, seeds = times > 1 ? 3 : 1;
+    for (int seed = 1; seed <= seeds; seed++) {
+        struct test_random random = {23};
+        double mean = 0, squares = 0;
+        for (int k = 0; k < count; k++) {
+            struct ball ball;
+            random_material(&ball, &random);
+            struct openpbr *v = &ball.numbers;
+            v->deep = true;
+            v->transmission_scattering = colour_scale(random_colour(&random), 2);
+            v->transmission_anisotropy = test_uniform(&random, -0.5, 0.8);
+            struct stage s;
+            stage_begin(&s, 1);
+            s.light_count = 0;
+            s.sky = (struct sky){.kind = SKY_CONSTANT, .colour = colour_all(1)};
+            struct material *surface = stage_glass(&s, 0, 0, 1);
+            *surface = ball.material;
+            (void)stage_sphere(&s, s.root, surface);
+            s.camera.fov = 10;
+            struct estimate e = estimate_render(&s, &effort, 1000, count * seed + k + 1 - count);
+            mean += e.mean / count;
+            squares += pow(e.error / count, 2);
+            if (!(fabs(e.mean - 1) < 0.01 + 4 * e.error && e.error < (times > 1 ? 0.01 : 0.05)))
+                test_fail(__FILE__, __LINE__, "material %d: %.4f +- %.4f", k, e.mean, e.error);
+            stage_end(&s);
+        }
+        CHECK(sqrt(squares) < (times > 1 ? 0.001 : 0.02));
+        CHECK_NEAR(mean, 1, (times > 1 ? 0.001 : 0.005) + 4 * sqrt(squares));
     }
 }
 

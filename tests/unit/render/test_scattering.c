@@ -1,6 +1,7 @@
 /* Light that a medium scatters, along paths: against closed forms and integrals. */
 #include "tests/harness.h"
 
+#include "film/path_film.h"
 #include "light/light_bounds.h"
 #include "material/density.h"
 #include "tests/stage.h"
@@ -45,6 +46,29 @@ TEST(what_is_not_scattered_is_beers_law_of_absorption_and_scattering) {
     CHECK_NEAR(mean.r, exp(-0.4), 4e-3);
     CHECK_NEAR(mean.g, exp(-1), 4e-3);
     CHECK_NEAR(mean.b, exp(-2), 4e-3);
+    stage_end(&s);
+}
+
+/* Whichever event a path meets first. */
+TEST(features_seen_through_a_medium_are_the_mean_of_the_medium_and_what_is_behind) {
+    const struct medium medium = medium_of(colour_make(0.2, 0.1, 0), colour_make(0.2, 0.3, 0.4), 0);
+    struct stage s;
+    begin_room(&s, &medium)->phong.kd = colour_make(0.5, 0.2, 0.1);
+    s.settings.denoise = DENOISER_GRAY;
+    (void)mean_of(&s, 8, 2, 4);
+    const double left = exp(-0.4),
+                 albedo[3] = {0.5 * left + 0.5 * (1 - left), 0.2 * left + 0.75 * (1 - left), 0.1 * left + (1 - left)};
+    for (size_t i = 0; i < 64; i++) {
+        const struct path_pixel pixel = path_film_load(&s.film, i);
+        double normal = 0;
+        for (int c = 0; c < 3; c++) {
+            double part = path_pixel_feature(&pixel, 0, PATH_NORMAL + c);
+            CHECK_NEAR(path_pixel_feature(&pixel, 0, PATH_ALBEDO + c), albedo[c], 1e-6);
+            normal += part * part;
+        }
+        CHECK_NEAR(sqrt(normal), left, 1e-5);
+        CHECK_NEAR(path_pixel_feature(&pixel, 1, PATH_DEPTH), 1, 1e-5);
+    }
     stage_end(&s);
 }
 
