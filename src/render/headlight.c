@@ -30,6 +30,7 @@ struct headlight {
     enum headlight_shows shows;
     double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
+    bool coarse;
 };
 
 /* The surface in the other pictures. */
@@ -72,6 +73,8 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
     bool found = met != NULL;
     if (met)
         world_describe(world, &ray, met->primitive, &met->crossing, &hit);
+    if (headlight->coarse)
+        hit.footprint = 0;
     for (int i = 0; found && i < HOLES; i++) {
         material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
@@ -173,10 +176,13 @@ static void measure_depths(struct headlight *headlight) {
     headlight->farthest = vec3_length(vec3_max(vec3_negate(before), vec3_negate(behind)));
 }
 
-bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
+bool render_headlight(const struct render_job *job, enum headlight_shows shows, bool coarse, struct pool *pool,
                       struct render_statistics *statistics, struct error *error) {
-    struct headlight headlight = {
-        .job = job, .pool = pool, .shows = shows, .brightness = el_exp2(-job->settings.tone.exposure)};
+    struct headlight headlight = {.job = job,
+                                  .pool = pool,
+                                  .shows = shows,
+                                  .coarse = coarse,
+                                  .brightness = el_exp2(-job->settings.tone.exposure)};
     struct settings settings = job->settings;
     char warning[256];
     int workers = pool_workers(pool);

@@ -11,8 +11,8 @@
 enum headlight_shows { HEADLIGHT_SURFACES, HEADLIGHT_NORMALS, HEADLIGHT_DEPTH, HEADLIGHT_COST };
 
 /* Renders every wanted tile of the film. Surfaces are as bright in the file as without exposure; the sky is that of the
- * picture. False: cancelled, or no memory. */
-bool render_headlight(const struct render_job *job, enum headlight_shows shows, struct pool *pool,
+ * picture. coarse: functions of colours are evaluated once for a pixel, not over it. False: cancelled, or no memory. */
+bool render_headlight(const struct render_job *job, enum headlight_shows shows, bool coarse, struct pool *pool,
                       struct render_statistics *statistics, struct error *error);
 
 #endif
