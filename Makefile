@@ -31,7 +31,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon render sandbox record call compat script session inspect output preview window viewer host
+MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon radiosity render sandbox record call compat script session inspect output preview window viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual

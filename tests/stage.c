@@ -22,6 +22,7 @@ void stage_begin(struct stage *s, int threads) {
     s->sky = (struct sky){.kind = SKY_CONSTANT};
     s->settings = settings_default();
     s->settings.cutoff = 0;
+    s->settings.radiosity_patches = 500;
     s->camera = (struct camera){{0, 0, 10}, {0, 0, -1}, {0, 1, 0}, 50};
 }
 

@@ -35,7 +35,7 @@ static inline struct film_record stage_record(enum integrator_kind integrator) {
     return render_record(&settings);
 }
 /* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings except
- * that no ray is cut off. */
+ * that no ray is cut off and radiosity has few patches. */
 void stage_begin(struct stage *s, int threads);
 void stage_end(struct stage *s);
 /* Begins with a white floor at y = 0 (normal +y), one light that the caller fills in, one sample per pixel. */

@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "csg/csg_build.h"
+#include "export/primitive_mesh.h"
 #include "export/solid_cast_internal.h"
 #include "export/solid_mesh_internal.h"
 #include "export/triangles_internal.h"
@@ -14,17 +15,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WORLD_LEAVES = 65535 };
-
 struct model_builder {
     const struct model_build_input *input;
     struct export_model *out;
     double tolerance;
     uint32_t *cluster;     /* by primitive: the first one of those that it is united with */
     uint32_t *material_of; /* by material of the world: number in the model and 1, or 0 */
-    struct csg_leaf *leaves;
-    struct csg_token *program;
-    uint32_t leaf_count, length;
+    struct solid_program program;
 };
 
 /* --- what can be printed --- */
@@ -193,57 +190,25 @@ static bool add_part(struct model_builder *b, const struct export_part *about, c
 }
 
 static uint32_t material_of_leaf(const struct model_builder *b, uint32_t surface) {
-    return b->leaves[solid_leaf(surface)].material;
+    return b->program.leaves[solid_leaf(surface)].material;
 }
 
 static uint32_t material_of_slot(const struct model_builder *b, uint32_t slot) {
-    return b->leaves[0].material + (b->leaves[0].slot_count > 1 ? slot : 0);
-}
-
-/* Adds the solid of a primitive to the program, in the space of the world. False: too many. */
-static bool add_leaves(struct model_builder *b, uint32_t primitive) {
-    const struct world *world = b->input->world;
-    const struct prototype *prototype = primitive_prototype(world, primitive);
-    const struct csg *csg = prototype->geometry.csg;
-    struct transform map = world_placement(world, primitive, 0);
-    uint32_t first = b->leaf_count, count = csg ? csg->leaf_count : 1;
-    if (count > WORLD_LEAVES - first)
-        return false;
-    for (uint32_t i = 0; i < count; i++) {
-        struct csg_leaf *leaf = &b->leaves[b->leaf_count++];
-        if (csg)
-            *leaf = csg->leaves[i];
-        else
-            *leaf = (struct csg_leaf){.shape = prototype->geometry.shape,
-                                      .csg_from_leaf = transform_identity(),
-                                      .material = prototype->material,
-                                      .slot_count = prototype->slot_count};
-        leaf->csg_from_leaf = transform_compose(&map, &leaf->csg_from_leaf);
-        leaf->limit = NULL;
-    }
-    const struct csg_token own = {.operation = CSG_LEAF};
-    const struct csg_token *program = csg ? csg->program : &own;
-    for (uint32_t i = 0; i < (csg ? csg->program_length : 1); i++) {
-        struct csg_token token = program[i];
-        token.leaf = (uint16_t)(token.operation == CSG_LEAF ? token.leaf + first : 0);
-        b->program[b->length++] = token;
-    }
-    if (first > 0)
-        b->program[b->length++] = (struct csg_token){.operation = CSG_UNION};
-    return true;
+    return b->program.leaves[0].material + (b->program.leaves[0].slot_count > 1 ? slot : 0);
 }
 
 /* The leaves and the program of a cluster, as one solid in the space of the world. */
 static const struct csg *unite(struct model_builder *b, uint32_t first, struct error *error) {
     const struct world *world = b->input->world;
-    b->leaf_count = b->length = 0;
+    b->program.leaf_count = b->program.length = 0;
     for (uint32_t i = first; i < world->primitive_count; i++) {
-        if (b->cluster[i] != first || add_leaves(b, i))
+        if (b->cluster[i] != first || solid_program_add(&b->program, world, i))
             continue;
-        error_set(error, ERROR_SCENE, "solids that touch have more than %d operands together", WORLD_LEAVES);
+        error_set(error, ERROR_SCENE, "solids that touch have more than %d operands together", SOLID_LEAVES);
         return NULL;
     }
-    return csg_build(b->input->arena, b->leaves, b->leaf_count, b->program, b->length, error);
+    return csg_build(b->input->arena, b->program.leaves, b->program.leaf_count, b->program.tokens, b->program.length,
+                     error);
 }
 
 static void note(const struct model_builder *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -260,8 +225,8 @@ static void note(const struct model_builder *b, const char *format, ...) {
 /* The triangles of a mesh as they are, with the vertices that its file has. */
 static bool add_mesh(struct model_builder *b, const struct mesh *mesh, struct export_part *about, struct error *error) {
     struct solid_mesh own = {0};
-    bool ok =
-        solid_mesh_of_triangles(mesh, &b->leaves[0].csg_from_leaf.forward, &own) || error_no_memory(error, "a model");
+    bool ok = solid_mesh_of_triangles(mesh, &b->program.leaves[0].csg_from_leaf.forward, &own) ||
+              error_no_memory(error, "a model");
     ok = ok && add_part(b, about, &own, material_of_slot, error);
     solid_mesh_destroy(&own);
     if (ok && !export_parts(b->out)[b->out->parts.count - 1].closed)
@@ -333,9 +298,10 @@ static bool make_room(struct model_builder *b, struct error *error) {
     struct arena *arena = b->input->arena;
     b->cluster = arena_alloc_array(arena, world->primitive_count, sizeof *b->cluster);
     b->material_of = arena_alloc_array(arena, world->material_count, sizeof *b->material_of);
-    b->leaves = arena_alloc_array(arena, leaves, sizeof *b->leaves);
-    b->program = arena_alloc_array(arena, tokens, sizeof *b->program);
-    return (b->cluster && b->material_of && b->leaves && b->program) || error_no_memory(error, "a model");
+    b->program.leaves = arena_alloc_array(arena, leaves, sizeof *b->program.leaves);
+    b->program.tokens = arena_alloc_array(arena, tokens, sizeof *b->program.tokens);
+    return (b->cluster && b->material_of && b->program.leaves && b->program.tokens) ||
+           error_no_memory(error, "a model");
 }
 
 bool model_build(const struct model_build_input *input, struct export_model *out, struct error *error) {

@@ -77,6 +77,7 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
                              .settings = work->job.settings,
                              .ambient = work->job.ambient,
                              .background_lights = work->job.background_lights,
+                             .radiosity = work->job.radiosity,
                              .film = &film};
     /* A small, quick picture without what the brightness does not depend on. */
     struct lens *lens = &job.settings.lens;

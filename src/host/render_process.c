@@ -145,7 +145,7 @@ struct world_input render_process_world_input(const struct picture_work *work) {
                                 .accel = work->job.settings.accel,
                                 .linear_colours = settings_linear(&work->job.settings),
                                 .encodes = work->job.settings.tone.srgb,
-                                .classic = work->job.settings.integrator == INTEGRATOR_WHITTED,
+                                .classic = integrator_traits(work->job.settings.integrator).is_classic,
                                 .warn = render_process_warn,
                                 .warn_context = work->process};
 }
@@ -426,6 +426,7 @@ static void init_work(struct picture_work *work, struct render_process *process,
         .height = options->height ? (uint32_t)options->height : in_preview(options, request->height),
         .ambient = request->ambient,
         .background_lights = request->sky_chosen,
+        .radiosity = &process->radiosity,
         .film = &work->film,
         .shard = options->shard,
         .shards = options->shards,
@@ -597,6 +598,7 @@ static void begin_memory(struct render_process *process) {
     if (process->assets.memory > script_picture_memory(&process->options->script)) {
         assets_destroy(&process->assets);
         world_cache_destroy(&process->world_cache);
+        radiosity_destroy(&process->radiosity);
     }
     process->account = NULL;
     process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory is the limit"};
@@ -726,6 +728,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->skips = repeats && !frame_is_selected(selection, frame.number);
     (void)mem_charge(process->account);
     world_cache_destroy(&process->world_cache);
+    radiosity_destroy(&process->radiosity);
     (void)mem_charge(NULL);
     uint64_t first = process->pictures, before = first;
     int status = run_once(process, path, &frame, false);
@@ -841,6 +844,7 @@ void render_process_run(const struct options *options, const struct host_service
     arena_destroy(&process.job);
     assets_destroy(&process.assets);
     world_cache_destroy(&process.world_cache);
+    radiosity_destroy(&process.radiosity);
     file_read_log_destroy(&process.read_log);
     file_set_destroy(&process.reported);
 }

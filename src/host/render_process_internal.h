@@ -10,6 +10,7 @@
 #include "export/print_check.h"
 #include "host/render_process.h"
 #include "output/picture_files.h"
+#include "radiosity/radiosity.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "world/world.h"
@@ -39,6 +40,7 @@ struct render_process {
     struct arena job;   /* memory of the current picture */
     struct assets assets;
     struct world_cache world_cache;  /* of the frame before, in an animation */
+    struct radiosity radiosity;      /* of the picture before */
     struct digest rendered;          /* picture_work.shows of the last picture that was rendered */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */

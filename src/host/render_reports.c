@@ -246,9 +246,13 @@ static bool has_effect(enum setting_effect effect, const struct picture_work *wo
     case EFFECT_ALWAYS:
         return true;
     case EFFECT_WHITTED:
-        return settings->integrator == INTEGRATOR_WHITTED;
+        return integrator_traits(settings->integrator).has_styles;
+    case EFFECT_TREES:
+        return !integrator_traits(settings->integrator).progressive;
+    case EFFECT_RADIOSITY:
+        return settings->integrator == INTEGRATOR_RADIOSITY;
     case EFFECT_PATH:
-        return settings->integrator == INTEGRATOR_PATH;
+        return integrator_traits(settings->integrator).progressive;
     case EFFECT_TOON:
         return settings->style == STYLE_TOON;
     case EFFECT_DISPLAY:

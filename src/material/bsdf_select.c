@@ -59,6 +59,14 @@ struct colour bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lam
     return sum;
 }
 
+struct colour bsdf_diffuse(const struct bsdf *bsdf) {
+    struct colour sum = {0, 0, 0};
+    for (int i = 0; i < bsdf->count && !bsdf->dark; i++)
+        if ((lobe_flags(bsdf->lobes[i].kind) & (BSDF_CLASSIC | BSDF_DIFFUSE)) == (BSDF_CLASSIC | BSDF_DIFFUSE))
+            sum = colour_add(sum, bsdf->lobes[i].weight);
+    return sum;
+}
+
 double bsdf_lambert(const struct bsdf *bsdf) {
     double largest = 0;
     for (int i = 0; i < bsdf->count; i++)

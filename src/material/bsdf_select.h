@@ -34,6 +34,8 @@ static inline bool bsdf_is_smooth(const struct bsdf *bsdf, uint32_t lobes) {
 
 /* The sum of the weights of a set of lobes, from which it removes black ones. *lambert: all others are Lambert's. */
 struct colour bsdf_weight_of(const struct bsdf *bsdf, uint32_t *lobes, bool *lambert);
+/* The light of all sides that diffuse lobes reflect; black on dark sides. */
+struct colour bsdf_diffuse(const struct bsdf *bsdf);
 /* The largest component of the light that Lambert's lobe reflects. */
 double bsdf_lambert(const struct bsdf *bsdf);
 /* Whether a branch is a rough lobe of a layered material. */

@@ -6,13 +6,15 @@
 #include "render/integrator.h"
 #include "render/path_internal.h"
 #include "render/path_trace_internal.h"
+#include "render/stored_light_internal.h"
 #include "render/whitted_internal.h"
 #include "render/whitted_trace_internal.h"
 
 struct integrator {
     enum integrator_kind kind;
+    struct radiosity radiosity; /* of one picture, if the job keeps none */
     union {
-        struct whitted whitted;
+        struct whitted whitted; /* also of radiosity, which replaces its light */
         struct path_tracer path;
     };
 };
@@ -22,6 +24,7 @@ static const char *const no_kind = "an integrator of no kind";
 struct film_record render_record(const struct settings *settings) {
     switch (settings->integrator) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         return whitted_record(settings);
     case INTEGRATOR_PATH:
         return path_tracer_record(settings);
@@ -35,6 +38,9 @@ void integrator_warn(const struct render_job *job, world_warning *warn, void *co
         break;
     case INTEGRATOR_PATH:
         path_tracer_warn(job, warn, context);
+        break;
+    case INTEGRATOR_RADIOSITY:
+        radiosity_warn(job->world, warn, context);
         break;
     }
 }
@@ -50,6 +56,9 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
         return whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     case INTEGRATOR_PATH:
         return path_tracer_create(&integrator->path, renderer, statistics, error);
+    case INTEGRATOR_RADIOSITY:
+        return stored_light_begin(&integrator->radiosity, renderer, workers, statistics, error) &&
+               whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     }
     UNREACHABLE(no_kind);
 }
@@ -59,7 +68,9 @@ void integrator_destroy(struct integrator *integrator) {
         return;
     switch (integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         whitted_destroy(&integrator->whitted);
+        radiosity_destroy(&integrator->radiosity);
         break;
     case INTEGRATOR_PATH:
         path_tracer_destroy(&integrator->path);
@@ -71,6 +82,7 @@ void integrator_destroy(struct integrator *integrator) {
 bool integrator_render(struct renderer *renderer, struct worker *worker, const struct film_rectangle *part) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         return whitted_render(&renderer->integrator->whitted, renderer, worker, part);
     case INTEGRATOR_PATH:
         return path_tracer_render(&renderer->integrator->path, renderer, worker, part);
@@ -82,6 +94,7 @@ struct colour integrator_radiance(struct renderer *renderer, struct worker *work
                                   uint64_t key) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         return whitted_trace(&renderer->integrator->whitted, &worker->state, ray, key);
     case INTEGRATOR_PATH:
         return path_trace(&renderer->integrator->path, &worker->state, ray, NULL, true, key);
@@ -93,6 +106,7 @@ struct colour integrator_radiance_met(struct renderer *renderer, struct worker *
                                       const struct packet_answer *met, uint64_t key) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         return whitted_trace_met(&renderer->integrator->whitted, &worker->state, ray, met, key);
     case INTEGRATOR_PATH:
         return path_trace(&renderer->integrator->path, &worker->state, ray, met, false, key);
@@ -103,6 +117,7 @@ struct colour integrator_radiance_met(struct renderer *renderer, struct worker *
 void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         whitted_repeat(&renderer->integrator->whitted, renderer, worker, x, y);
         break;
     case INTEGRATOR_PATH:
@@ -114,6 +129,7 @@ void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t
 void integrator_add_statistics(const struct renderer *renderer, struct render_statistics *out) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:
+    case INTEGRATOR_RADIOSITY:
         whitted_add_statistics(&renderer->integrator->whitted, renderer, out);
         break;
     case INTEGRATOR_PATH:

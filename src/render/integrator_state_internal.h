@@ -6,6 +6,7 @@
 #include "film/path_parts.h"
 #include "math/range.h"
 #include "photon/photon_map.h"
+#include "radiosity/radiosity.h"
 #include "render/observer.h"
 #include "render/render.h"
 #include "render/sampler.h"
@@ -31,6 +32,7 @@ struct integrator_state {
     const struct medium_stack *lit_from;         /* the media before the surface that is lit; or NULL: nothing dims */
     struct sampler sampler;                      /* of the current pixel sample */
     const struct photon_map *caustics;           /* or NULL */
+    const struct radiosity *radiosity;           /* stored light in place of that of the lights; or NULL */
     struct observer *observer;                   /* or NULL */
     struct path_parts *parts;                    /* or NULL; of the current camera ray, zero before */
     struct camera_hit *camera_hit;               /* or NULL; for a camera ray until its first hit is shaded */

@@ -200,6 +200,7 @@ static enum aov path_layer(uint32_t mask) {
 }
 
 bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error) {
+    static const char *const integrators[] = {INTEGRATORS(LIST_WORD)};
     const struct settings *s = &job->settings;
     struct camera_frame frame;
     char ignored[256];
@@ -211,8 +212,9 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
                          aov_name(path_layer(s->aov)));
     if (settings_exclude(s))
         return error_set(error, ERROR_SCENE,
-                         "styles are for the integrator 'whitted', not for 'path'; --line-width draws lines over its "
-                         "pictures");
+                         "styles are for the integrator 'whitted', not for '%s'; --line-width draws lines over its "
+                         "pictures",
+                         integrators[s->integrator]);
     *area = (struct render_area){0, 0, job->width, job->height};
     if (!s->cropped)
         return true;

@@ -13,6 +13,7 @@
 #include "world/world.h"
 
 struct pixel_trace;
+struct radiosity;
 
 struct render_job {
     const struct world *world;
@@ -22,8 +23,9 @@ struct render_job {
     struct colour ambient;
     bool background_lights; /* the script chose the sky of the world: paths take its light */
     uint32_t
-        kept_samples;  /* that all pixels of the film have: passes of a progressive integrator go on with the next */
-    struct film *film; /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
+        kept_samples; /* that all pixels of the film have: passes of a progressive integrator go on with the next */
+    struct radiosity *radiosity;     /* or NULL: kept for the next picture (radiosity_update) */
+    struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
     struct pool_event *handed;       /* or NULL; signalled when tiles become wanted, and when no more can */
     uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */

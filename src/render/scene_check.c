@@ -122,7 +122,7 @@ static void check_size(const struct check *check) {
 static bool shows_without_light(const struct check *check) {
     const struct render_job *job = check->job;
     const struct world *world = check->world;
-    bool paths = job->settings.integrator == INTEGRATOR_PATH;
+    bool paths = integrator_traits(job->settings.integrator).sky_lights;
     bool sky = !sky_is_black(&world->sky) && (!paths || job->background_lights);
     if (job->settings.style == STYLE_INK || medium_brightest(world_outside(world)) > 0 || world_outside(world)->fog ||
         world->emission_bound > 0 || (paths && sky) || (!paths && colour_max_abs(job->ambient) > 0))
@@ -138,7 +138,7 @@ static bool shows_without_light(const struct check *check) {
 
 static void check_light(const struct check *check) {
     const struct world *world = check->world;
-    bool paths = check->job->settings.integrator == INTEGRATOR_PATH;
+    bool paths = integrator_traits(check->job->settings.integrator).sky_lights;
     if (shows_without_light(check))
         return;
     for (uint32_t i = 0; i < world->light_count; i++) {
@@ -276,7 +276,7 @@ static void origin_of(const struct node *node, char *text, size_t size) {
 static void check_thin_walls(const struct check *check) {
     const struct settings *settings = &check->job->settings;
     const struct world *world = check->world;
-    if ((settings->integrator == INTEGRATOR_WHITTED && settings->caustics.photons == 0) ||
+    if ((!integrator_traits(settings->integrator).follows_paths && settings->caustics.photons == 0) ||
         (*check->noticed >> FAULT_THIN_WALL & 1))
         return;
     for (uint32_t i = 0; i < world->prototype_count; i++) {
@@ -295,7 +295,8 @@ static void check_thin_walls(const struct check *check) {
 
 static void check_subsurface(const struct check *check) {
     const struct world *world = check->world;
-    for (uint32_t i = 0; i < world->material_count && check->job->settings.integrator == INTEGRATOR_WHITTED; i++)
+    bool follows = integrator_traits(check->job->settings.integrator).follows_paths;
+    for (uint32_t i = 0; i < world->material_count && !follows; i++)
         if (surface_walks(&world->surfaces.materials[i]))
             give(check, FAULT_SUBSURFACE,
                  "light that is scattered under a surface is shown as diffuse light of subsurface_color; "
@@ -304,7 +305,7 @@ static void check_subsurface(const struct check *check) {
 
 /* Photons are of single wavelengths under every integrator. */
 static void check_dispersion(const struct check *check) {
-    if (check->job->settings.integrator == INTEGRATOR_WHITTED && world_disperses(check->world))
+    if (!integrator_traits(check->job->settings.integrator).follows_paths && world_disperses(check->world))
         give(check, FAULT_DISPERSION,
              "glass with dispersion is shown with one index of refraction; --integrator path divides the colours");
 }

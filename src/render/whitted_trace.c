@@ -3,6 +3,7 @@
 #include "material/bsdf_select.h"
 #include "material/medium.h"
 #include "render/media_light_internal.h"
+#include "render/stored_light_internal.h"
 #include "render/style_internal.h"
 #include "render/whitted_trace_internal.h"
 #include "world/joint.h"
@@ -276,7 +277,8 @@ static struct colour follow_layers(struct integrator_state *state, const struct 
 static struct colour shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
     OBSERVE(state->observer, OBSERVED_SURFACE, .surface = at->bsdf);
     state->lit_from = state->media_dim ? at->ray->media : NULL;
-    struct colour colour = style_light(state, at->hit, at->bsdf, path->key);
+    struct colour colour = state->radiosity ? stored_light(state, at->hit, at->bsdf, path->key)
+                                            : style_light(state, at->hit, at->bsdf, path->key);
     colour = colour_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
     const struct bsdf_draw smooth = {.facet = at->bsdf->side};

@@ -144,7 +144,8 @@ void studio_light(struct render_request *request, bool even, struct scene_light 
     /* {y of the direction, r, g, b}: light from the sky of a path. */
     static const double stops[][4] = {{-1, 0.28, 0.28, 0.28}, {0, 0.52, 0.52, 0.52}, {1, 0.46, 0.46, 0.46}};
     const struct camera *camera = &request->camera;
-    bool linear = settings_linear(&request->settings), is_path = request->settings.integrator == INTEGRATOR_PATH;
+    bool linear = settings_linear(&request->settings);
+    bool is_path = integrator_traits(request->settings.integrator).sky_lights;
     struct vec3 view = request->settings.view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view;
     bool has_view = vec3_max_abs(view) > 0;
     struct camera_axes axes = axes_of(has_view ? view : vec3_make(0, 0, -1), camera->up);
@@ -170,7 +171,7 @@ double studio_ground(const struct settings *settings, struct vec3 view) {
     const double facing = 0.893; /* of a soft box of that size, which is near: its solid angle is smaller */
     struct camera_axes axes = axes_of(vec3_max_abs(view) > 0 ? view : default_view, vec3_make(0, 1, 0));
     bool linear = settings_linear(settings);
-    double light = settings->integrator == INTEGRATOR_PATH ? even_sky : ambient[linear];
+    double light = integrator_traits(settings->integrator).sky_lights ? even_sky : ambient[linear];
     for (int i = 0; i < STUDIO_LIGHTS; i++)
         light += facing * before_even * soft_lights[i].light[linear] *
                  fmax(vec3_normalize(along_axes(&axes, soft_lights[i].to)).y, 0);

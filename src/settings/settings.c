@@ -8,9 +8,15 @@
 struct integrator_traits integrator_traits(enum integrator_kind integrator) {
     switch (integrator) {
     case INTEGRATOR_WHITTED:
-        return (struct integrator_traits){0};
+        return (struct integrator_traits){.is_classic = true, .has_styles = true};
     case INTEGRATOR_PATH:
-        return (struct integrator_traits){.progressive = true, .has_light_parts = true, .is_linear = true};
+        return (struct integrator_traits){.progressive = true,
+                                          .has_light_parts = true,
+                                          .is_linear = true,
+                                          .sky_lights = true,
+                                          .follows_paths = true};
+    case INTEGRATOR_RADIOSITY:
+        return (struct integrator_traits){.is_linear = true, .sky_lights = true};
     }
     UNREACHABLE("an integrator of no kind");
 }

@@ -71,6 +71,7 @@ struct caustics {
     double radius; /* of what one photon lights, world units; 0: by their density */
 };
 enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
+enum { PATCHES_MAX = 10000000 };
 
 /* What colours mean (docs/colour.md). AUTO: linear with integrators of light (integrator_traits), else classic. */
 #define COLOUR_PIPELINES(X)                                                                                            \
@@ -82,13 +83,18 @@ enum colour_pipeline { COLOUR_PIPELINES(LIST_MEMBER) };
 /* How light becomes a picture; render/integrator.c switches over them. */
 #define INTEGRATORS(X)                                                                                                 \
     X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
-    X(INTEGRATOR_PATH, "path")
+    X(INTEGRATOR_PATH, "path")                                                                                         \
+    X(INTEGRATOR_RADIOSITY, "radiosity")
 enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
 /* What the pictures of an integrator are to the rest of the program. */
 struct integrator_traits {
     bool progressive;     /* a pixel is the mean of a sequence of samples: --spp, --noise and --time-limit hold */
     bool has_light_parts; /* its light is known by kind of scattering: the layers AOV_PATH */
     bool is_linear;       /* COLOUR_AUTO is linear */
+    bool is_classic;      /* materials with layers may be shaded by numbers of gr.material */
+    bool sky_lights;      /* the background lights surfaces, and ambient light does not */
+    bool has_styles;      /* pictures may look like drawings */
+    bool follows_paths;   /* through thin walls, under surfaces, and by wavelength */
 };
 struct integrator_traits integrator_traits(enum integrator_kind integrator);
 /* NOISE: the limit with --noise and without --spp. */
@@ -252,6 +258,8 @@ enum option_group {
 #define SETTING_EFFECTS(X)                                                                                             \
     X(EFFECT_ALWAYS, "")                                                                                               \
     X(EFFECT_WHITTED, "integrator whitted")                                                                            \
+    X(EFFECT_TREES, "integrators whitted and radiosity")                                                               \
+    X(EFFECT_RADIOSITY, "integrator radiosity")                                                                        \
     X(EFFECT_PATH, "integrator path")                                                                                  \
     X(EFFECT_TOON, "style toon")                                                                                       \
     X(EFFECT_DISPLAY, "PNG files and animations; .pfm, .hdr and .exr have linear light")                               \
@@ -274,31 +282,31 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
 #define SETTINGS_OF_SCENES(X)                                                                                          \
     X(CHOICE, enum integrator_kind, integrator, SAMPLES, INTEGRATOR_WHITTED, 0, 0, INTEGRATORS, "--integrator", NULL,  \
       NULL, "integrator", NULL, RAYS,                                                                                  \
-      "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.")      \
+      "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces; "      \
+      "radiosity has whitted's mirrors and glass, and stored light that diffuse surfaces exchange.")                   \
     X(WHOLE, int, samples, SAMPLES, 3, 1, 64, NO_WORDS, "-ss", "N", NULL, "samples", NULL, RAYS,                       \
-      "N x N samples for a marked pixel.", EFFECT_WHITTED)                                                             \
+      "N x N samples for a marked pixel.", EFFECT_TREES)                                                               \
     X(FLAG, bool, full, SAMPLES, false, 0, 1, NO_WORDS, "-full", NULL, NULL, "full", NULL, RAYS,                       \
-      "N x N samples for every pixel, not only for marked ones.", EFFECT_WHITTED)                                      \
+      "N x N samples for every pixel, not only for marked ones.", EFFECT_TREES)                                        \
     X(NUMBER, double, side_tolerance, SAMPLES, 0.005, 0, HUGE_VAL, NO_WORDS, "-side-tolerance", "X", NULL,             \
       "side_tolerance", NULL, RAYS, "A pixel is marked when the squared RGB distance to a side neighbour exceeds X.",  \
-      EFFECT_WHITTED)                                                                                                  \
+      EFFECT_TREES)                                                                                                    \
     X(NUMBER, double, corner_tolerance, SAMPLES, 0.01, 0, HUGE_VAL, NO_WORDS, "-corner-tolerance", "X", NULL,          \
-      "corner_tolerance", NULL, RAYS, "The same for the corner neighbours.", EFFECT_WHITTED)                           \
+      "corner_tolerance", NULL, RAYS, "The same for the corner neighbours.", EFFECT_TREES)                             \
     X(WHOLE, int, reflect_limit, SAMPLES, 2, 0, 1000, NO_WORDS, "-reflect-limit", "N", NULL, "reflect_limit", NULL,    \
-      RAYS, "How often a path may reflect.", EFFECT_WHITTED)                                                           \
+      RAYS, "How often a path may reflect.", EFFECT_TREES)                                                             \
     X(WHOLE, int, refract_limit, SAMPLES, 4, 0, 1000, NO_WORDS, "-refract-limit", "N", NULL, "refract_limit", NULL,    \
-      RAYS, "How often a path may refract.", EFFECT_WHITTED)                                                           \
+      RAYS, "How often a path may refract.", EFFECT_TREES)                                                             \
     X(FLAG, bool, use_tir, SAMPLES, false, 0, 1, NO_WORDS, "-use-tir", NULL, NULL, "use_tir", NULL, RAYS,              \
       "At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.",  \
-      EFFECT_WHITTED)                                                                                                  \
+      EFFECT_TREES)                                                                                                    \
     X(WHOLE, int, area_samples, SAMPLES, 4, 1, 64, NO_WORDS, "-al-samples|alsamples", "N", NULL, "area_samples", NULL, \
-      RAYS, "N x N shadow rays for each area light.", EFFECT_WHITTED)                                                  \
+      RAYS, "N x N shadow rays for each area light.", EFFECT_TREES)                                                    \
     X(WHOLE, int, medium_samples, SAMPLES, 16, 1, 4096, NO_WORDS, "--medium-samples", "N", NULL, "medium_samples",     \
       NULL, RAYS, "N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.",     \
-      EFFECT_WHITTED)                                                                                                  \
+      EFFECT_TREES)                                                                                                    \
     X(NUMBER, double, cutoff, SAMPLES, 0.0001, 0, 1, NO_WORDS, "--cutoff", "X", NULL, "cutoff", NULL, RAYS,            \
-      "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.",                \
-      EFFECT_WHITTED)                                                                                                  \
+      "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.", EFFECT_TREES)  \
     X(WHOLE, int, path_samples, SAMPLES, 0, 1, PATH_SAMPLES_MAX, NO_WORDS, "--spp", "N", NULL, "spp", "64", RAYS,      \
       "N samples for a pixel, with integrator path.", EFFECT_PATH)                                                     \
     X(WHOLE, int, max_depth, SAMPLES, 16, 0, DEPTH_MAX, NO_WORDS, "--max-depth", "N", NULL, "max_depth", NULL, RAYS,   \
@@ -312,6 +320,11 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
       "With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture "     \
       "becomes darker than it should be (bias).",                                                                      \
       EFFECT_PATH)                                                                                                     \
+    X(NUMBER, double, radiosity_error, SAMPLES, 0.001, 1e-9, 1, NO_WORDS, "--radiosity-error", "X", NULL,              \
+      "radiosity_error", NULL, RAYS, "Stop when the share X of light is not yet shot, with integrator radiosity.",     \
+      EFFECT_RADIOSITY)                                                                                                \
+    X(WHOLE, int, radiosity_patches, SAMPLES, 20000, 1, PATCHES_MAX, NO_WORDS, "--radiosity-patches", "N", NULL,       \
+      "radiosity_patches", NULL, RAYS, "At most N patches, with integrator radiosity.", EFFECT_RADIOSITY)              \
     X(CHOICE, enum filter_kind, filter, SAMPLES, FILTER_BOX, 0, 0, FILTERS, "--filter", NULL, NULL, "filter", NULL,    \
       RAYS, "Reconstruction filter of a pixel.")                                                                       \
     X(CHOICE, enum resolve, resolve, SAMPLES, RESOLVE_MEAN, 0, 0, RESOLVES, "--resolve", NULL, NULL, "resolve", NULL,  \
@@ -331,7 +344,7 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(CHOICE, enum colour_pipeline, colour, SAMPLES, COLOUR_AUTO, 0, 0, COLOUR_PIPELINES, "--colour", NULL, NULL,      \
       "colour", NULL, SIZE_AND_COLOUR,                                                                                 \
       "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; "    \
-      "auto: linear with integrator path.")                                                                            \
+      "auto: linear with integrators path and radiosity.")                                                             \
     X(FLAG, bool, deep, FINISH, false, 0, 1, NO_WORDS, "--deep", NULL, NULL, "deep", NULL, SIZE_AND_COLOUR,            \
       "16 bits per channel in PNG files.", EFFECT_DISPLAY)                                                             \
     X(CHOICE, enum style, style, SAMPLES, STYLE_NONE, 0, 0, STYLES, "--style", NULL, NULL, "style", NULL, FINISH,      \
@@ -386,7 +399,7 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
       NULL, RAYS,                                                                                                      \
       "Which pixels are marked, and where their samples are; rotated: marked by colours, surfaces and thin "           \
       "primitives, samples on a rotated grid; grid: marked by colours only, samples at the centres of N x N cells.",   \
-      EFFECT_WHITTED)                                                                                                  \
+      EFFECT_TREES)                                                                                                    \
     X(CHOICE, bool, view_is_target, SAMPLES, false, 0, 0, VIEW_MEANINGS, "--view", NULL, NULL, NULL, NULL,             \
       OTHER_PROGRAMS, "Meaning of the view argument: a direction, or a point to look at.")                             \
     X(CHOICE, bool, pixel_corner, SAMPLES, false, 0, 0, PIXEL_POSITIONS, "--pixel-sample", NULL, NULL, NULL, NULL,     \
@@ -469,7 +482,7 @@ static inline double settings_line_width(const struct settings *settings) {
 }
 /* Whether two settings exclude each other: styles are for the integrator whitted. */
 static inline bool settings_exclude(const struct settings *settings) {
-    return integrator_traits(settings->integrator).progressive && settings->style != STYLE_NONE;
+    return !integrator_traits(settings->integrator).has_styles && settings->style != STYLE_NONE;
 }
 /* Whether the picture is denoised. */
 static inline bool settings_denoise(const struct settings *settings) {

@@ -83,7 +83,7 @@ TEST(the_middle_of_the_square_is_the_centre_of_every_filter) {
 /* The right half of the picture glows; nothing is in the left one. */
 static void begin_edge(struct stage *s, enum integrator_kind integrator, enum filter_kind filter) {
     stage_begin(s, 2);
-    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    struct material *glowing = stage_phong(s, colour_all(0.5), colour_all(0), 1);
     glowing->phong.emission = colour_all(1);
     glowing->phong.two_sided = true;
     struct node *cube = stage_cube(s, s->root, glowing);

@@ -35,7 +35,7 @@ TEST(an_option_without_effect_has_one_notice) {
     prints("--spp 256", ball, "scene.lua:2: gr.render: --spp has no effect: it is for integrator path");
     prints("--denoise", ball, "--denoise has no effect");
     prints("--max-depth 3", ball, "--max-depth has no effect");
-    prints("--integrator path --spp 1 -ss 4", ball, "-ss has no effect: it is for integrator whitted");
+    prints("--integrator path --spp 1 -ss 4", ball, "-ss has no effect: it is for integrators whitted and radiosity");
     prints("--tone filmic -o x.pfm", ball, "--tone has no effect: it is for PNG files");
     prints("--deep --dither ordered", ball, "--dither has no effect: it is for PNG files of 8 bits");
     prints("--toon-steps 5", ball, "--toon-steps has no effect: it is for style toon");

@@ -1,0 +1,431 @@
+#include "radiosity/radiosity.h"
+
+#include "base/mem.h"
+#include "radiosity/receive_internal.h"
+#include "world/world_lights.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
+enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
+static const double first_contrast = 0.1;
+
+void radiosity_drop_factors(struct radiosity *radiosity) {
+    mem_free(radiosity->first);
+    mem_free(radiosity->receivers);
+    radiosity->first = NULL;
+    radiosity->receivers = NULL;
+}
+
+void radiosity_destroy(struct radiosity *radiosity) {
+    radiosity_drop_factors(radiosity);
+    patches_destroy(&radiosity->patches);
+    mem_free(radiosity->sides);
+    *radiosity = (struct radiosity){0};
+}
+
+static uint32_t side_count(const struct radiosity *radiosity) {
+    return 2 * (uint32_t)radiosity->patches.vertices.count;
+}
+
+/* --- direct light and rays --- */
+
+struct preparation {
+    struct radiosity *out;
+    const struct radiosity_input *input;
+    struct world_lights lights;
+    struct receiver_input receivers;
+    uint8_t *buries, *emissive;
+    struct world_scratch *scratches; /* of each worker */
+    uint32_t *sides, count;          /* those that send rays */
+    uint32_t *targets;
+};
+
+static void direct_batch(void *context, uint32_t batch, int worker) {
+    struct preparation *p = context;
+    uint32_t end = (batch + 1) * BATCH, count = side_count(p->out);
+    for (uint32_t i = batch * BATCH; i < end && i < count && !pool_cancelled(p->input->pool); i++)
+        if (p->out->sides[i].area < 0)
+            receive_direct(&p->receivers, i, &p->scratches[worker], &p->out->sides[i]);
+}
+
+static void ray_batch(void *context, uint32_t batch, int worker) {
+    struct preparation *p = context;
+    uint32_t end = (batch + 1) * BATCH;
+    for (uint32_t i = batch * BATCH; i < end && i < p->count && !pool_cancelled(p->input->pool); i++)
+        receive_rays(&p->receivers, p->sides[i], &p->scratches[worker], &p->out->sides[p->sides[i]],
+                     p->targets + (size_t)i * p->receivers.rays);
+}
+
+static bool run(struct preparation *p, uint32_t count, pool_function *function, struct error *error) {
+    bool whole = pool_run(p->input->pool, (count + BATCH - 1) / BATCH, function, p), failed = false;
+    for (int i = 0; i < pool_workers(p->input->pool); i++)
+        failed = failed || p->scratches[i].failed;
+    if (failed)
+        return error_no_memory(error, "radiosity");
+    return whole || error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
+}
+
+/* The direct light of all vertices whose patches have changed: one of their vertices is new. */
+static bool find_direct(struct preparation *p, uint32_t old_vertices, struct error *error) {
+    struct radiosity *out = p->out;
+    struct side_light *sides = mem_resize_array(out->sides, side_count(out), sizeof *sides);
+    out->sides = sides ? sides : out->sides;
+    if (!sides || !patches_index(&out->patches, error))
+        return error_no_memory(error, "radiosity");
+    for (uint32_t i = 0; i < 3 * out->patches.all.count; i++) {
+        const uint32_t *vertex = patch_at(&out->patches, i / 3)->vertex, own = vertex[i % 3];
+        if (vertex[0] >= old_vertices || vertex[1] >= old_vertices || vertex[2] >= old_vertices)
+            sides[2 * own].area = sides[2 * own + 1].area = -1;
+    }
+    return run(p, side_count(out), direct_batch, error);
+}
+
+/* --- adaptive division --- */
+
+static double mean_light(const struct radiosity *radiosity) {
+    double sum = 0, area = 0;
+    for (uint32_t i = 0; i < side_count(radiosity); i++) {
+        const struct side_light *side = &radiosity->sides[i];
+        sum += side->area * colour_max_abs(side->light);
+        area += side->area;
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+/* How different the light is at the ends of an edge: at most 1 on each side. */
+static double contrast(const struct radiosity *radiosity, uint32_t a, uint32_t b, double mean) {
+    double largest = 0;
+    for (uint32_t back = 0; back < 2; back++) {
+        const struct side_light *x = &radiosity->sides[2 * a + back], *y = &radiosity->sides[2 * b + back];
+        double level = colour_max_abs(x->light) + colour_max_abs(y->light) + mean;
+        if (x->area > 0 && y->area > 0 && level > 0)
+            largest = fmax(largest, colour_max_abs(colour_sub(x->light, y->light)) / level);
+    }
+    return largest;
+}
+
+/* Marks the edges whose contrast, times their share of the longest, is above a limit. */
+static bool mark_edges(const struct radiosity *radiosity, double limit, struct key_map *edges) {
+    const struct patches *patches = &radiosity->patches;
+    double mean = mean_light(radiosity);
+    for (uint32_t i = 0; i < 3 * patches->all.count; i++) {
+        const uint32_t *vertex = patch_at(patches, i / 3)->vertex;
+        uint32_t a = vertex[i % 3], b = vertex[(i + 1) % 3];
+        double length = vec3_length(vec3_sub(patch_vertex_at(patches, a)->point, patch_vertex_at(patches, b)->point));
+        double share = fmin(length / patches->edge, 1);
+        if (share * FINEST > 1 && contrast(radiosity, a, b, mean) * sqrt(share) > limit && !patches_mark(edges, a, b))
+            return false;
+    }
+    return true;
+}
+
+/* Divides patches where direct light changes, those of most contrast first if there may not be enough patches. */
+static bool refine(struct preparation *p, struct error *error) {
+    struct radiosity *out = p->out;
+    bool done = true, ok = true;
+    for (double limit = first_contrast; ok && limit < 1;) {
+        struct key_map edges = {0};
+        uint32_t old = (uint32_t)out->patches.vertices.count;
+        ok = mark_edges(out, limit, &edges) || error_no_memory(error, "radiosity");
+        size_t count = edges.count;
+        ok = ok && patches_divide(&out->patches, &edges, p->input->limit, &done, error);
+        key_map_destroy(&edges);
+        if (count == 0)
+            return ok;
+        if (!done)
+            limit *= 1.5;
+        else
+            ok = ok && find_direct(p, old, error);
+    }
+    return ok;
+}
+
+/* From what each ray meets to the receivers of each side. */
+static bool find_receivers(struct preparation *p, struct error *error) {
+    struct radiosity *out = p->out;
+    uint32_t sides = side_count(out), rays = p->receivers.rays;
+    size_t all = (size_t)p->count * rays;
+    out->first = mem_alloc_zero((size_t)sides + 2, sizeof *out->first);
+    if (!out->first)
+        return error_no_memory(error, "radiosity");
+    for (size_t i = 0; i < all; i++)
+        if (p->targets[i] != SIDE_NONE)
+            out->first[p->targets[i] + 2]++;
+    for (uint32_t i = 0; i < sides; i++)
+        out->first[i + 2] += out->first[i + 1];
+    out->receivers = mem_alloc(out->first[sides + 1] * sizeof *out->receivers);
+    if (!out->receivers)
+        return error_no_memory(error, "radiosity");
+    /* first[j + 1] moves from the beginning of j to its end. */
+    for (size_t i = 0; i < all; i++)
+        if (p->targets[i] != SIDE_NONE)
+            out->receivers[out->first[p->targets[i] + 1]++] = p->sides[i / rays];
+    out->rays += all;
+    return true;
+}
+
+static bool find_rays(struct preparation *p, struct error *error) {
+    struct radiosity *out = p->out;
+    p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
+    for (uint32_t i = 0; p->sides && i < side_count(out); i++)
+        if (out->sides[i].area > 0)
+            p->sides[p->count++] = i;
+    if (p->sides && p->count == 0)
+        return error_set(error, ERROR_SCENE,
+                         "--integrator radiosity needs diffuse surfaces, and nothing in the scene is diffuse");
+    p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
+    return ((p->sides && p->targets) || error_no_memory(error, "radiosity")) &&
+           patches_index_space(&out->patches, p->input->pool, error) && run(p, p->count, ray_batch, error) &&
+           find_receivers(p, error);
+}
+
+/* --- preparation --- */
+
+/* Lights are sampled, and rays meet emitters: neither can be done with one that has no end. */
+static bool check_emitters(const struct world *world, const uint8_t *emissive, struct error *error) {
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        const struct geometry *geometry = primitive_geometry(world, i);
+        const struct box *box = &world->boxes[i];
+        bool shines = !geometry->csg && emissive[primitive_prototype(world, i)->material];
+        for (uint32_t k = 0; geometry->csg && k < geometry->csg->leaf_count; k++)
+            shines = shines || emissive[geometry->csg->leaves[k].material];
+        if (shines && !box_is_empty(box) && !(vec3_finite(box->min) && vec3_finite(box->max)))
+            return error_set(error, ERROR_SCENE,
+                             "--integrator radiosity: '%.100s' emits light and has no end; emitters have to be finite",
+                             primitive_node(world, i)->name);
+    }
+    return true;
+}
+
+static bool begin_preparation(struct preparation *p, struct arena *arena, struct error *error) {
+    const struct world *world = p->input->world;
+    struct world_lights_options options = {p->input->background, LIGHT_CHOICE_TREE};
+    int workers = pool_workers(p->input->pool);
+    p->buries = mem_alloc_zero((size_t)world->primitive_count + 1, 1);
+    p->emissive = mem_alloc_zero((size_t)world->material_count + 1, 1);
+    p->scratches = mem_alloc_zero((size_t)workers, sizeof *p->scratches);
+    bool ok = p->buries && p->emissive && p->scratches;
+    for (int i = 0; ok && i < workers; i++)
+        ok = world_scratch_init(&p->scratches[i], world);
+    if (!ok)
+        return error_no_memory(error, "radiosity");
+    receive_find_buries(world, p->buries);
+    receive_find_emissive(world, p->emissive);
+    p->receivers = (struct receiver_input){.radiosity = p->out,
+                                           .lights = &p->lights,
+                                           .buries = p->buries,
+                                           .emissive = p->emissive,
+                                           .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
+                                           .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
+    return check_emitters(world, p->emissive, error) &&
+           world_lights_build(&p->lights, world, options, arena, p->input->pool, error);
+}
+
+/* What the solution depends on, as a sample of a light and the material in the middle of every patch show it. */
+static struct digest digest_of(const struct preparation *p) {
+    const struct radiosity_input *input = p->input;
+    const struct world *world = input->world;
+    const struct patches *patches = &p->out->patches;
+    const double numbers[] = {input->background, input->limit, input->rays, (double)input->seed, input->error_share};
+    struct digest digest = digest_bytes(numbers, sizeof numbers, (struct digest){1, 1});
+    digest = digest_bytes(world->boxes, world->primitive_count * sizeof *world->boxes, digest);
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->buries[i]};
+        digest = digest_bytes(flags, sizeof flags, digest);
+    }
+    for (uint32_t i = 0; i < patches->all.count; i++) {
+        struct receiver_probe probe;
+        struct vec3 corners[3];
+        patch_corners(patches, i, corners);
+        receive_probe(&p->receivers, i, &p->scratches[0], &probe);
+        digest = digest_bytes(&probe, sizeof probe, digest_bytes(corners, sizeof corners, digest));
+    }
+    return digest;
+}
+
+static bool solve(struct preparation *p, struct error *error) {
+    struct radiosity *out = p->out;
+    bool ok = find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
+    for (uint32_t i = 0; ok && i < p->count; i++)
+        out->sides[p->sides[i]].unshot = out->sides[p->sides[i]].light;
+    return ok;
+}
+
+/* *same: the digest is that of `known`, so there are only patches. */
+static bool prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct digest known, bool *same,
+                    struct error *error) {
+    struct preparation p = {.out = radiosity, .input = input};
+    struct arena arena = {0};
+    *radiosity = (struct radiosity){0};
+    bool ok = begin_preparation(&p, &arena, error), has_lights = ok;
+    ok = ok && patches_build(&radiosity->patches, input->world, input->limit, input->pool, error);
+    if (ok)
+        radiosity->digest = digest_of(&p);
+    *same = ok && digest_equal(radiosity->digest, known);
+    ok = ok && (*same || solve(&p, error));
+    if (has_lights)
+        world_lights_destroy(&p.lights);
+    for (int i = 0; p.scratches && i < pool_workers(input->pool); i++)
+        world_scratch_destroy(&p.scratches[i]);
+    arena_destroy(&arena);
+    mem_free(p.scratches);
+    mem_free(p.buries);
+    mem_free(p.emissive);
+    mem_free(p.sides);
+    mem_free(p.targets);
+    if (!ok)
+        radiosity_destroy(radiosity);
+    return ok;
+}
+
+bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
+    bool same;
+    return prepare(radiosity, input, (struct digest){0}, &same, error);
+}
+
+bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
+    struct radiosity next;
+    bool same = false;
+    if (!prepare(&next, input, radiosity->digest, &same, error))
+        return false;
+    if (same) {
+        radiosity_destroy(&next);
+        radiosity->patches.world = input->world;
+        return true;
+    }
+    radiosity_destroy(radiosity);
+    *radiosity = next;
+    if (radiosity_finish(radiosity, input->error_share, input->pool, error))
+        return true;
+    radiosity_destroy(radiosity);
+    return false;
+}
+
+void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
+    uint32_t count = 0, first = 0;
+    char text[512];
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        bool bare = patches_kind(world, i) == PATCHES_BARE;
+        first = bare && count == 0 ? i : first;
+        count += bare;
+    }
+    if (count == 0)
+        return;
+    (void)snprintf(text, sizeof text,
+                   "'%.100s'%s open or without end, so radiosity has no patches there: %s the lights alone",
+                   primitive_node(world, first)->name, count > 1 ? " and others are" : " is",
+                   count > 1 ? "they show" : "it shows");
+    warn(context, text);
+}
+
+/* --- solution --- */
+
+static double power_of(const struct side_light *side, struct colour light) {
+    struct colour reflected = colour_abs(colour_mul(side->reflectance, light));
+    return side->area * (reflected.r + reflected.g + reflected.b);
+}
+
+/* A side gives its unshot light to all that its surface is seen from. */
+static void shoot(struct radiosity *radiosity, uint32_t from) {
+    struct side_light *side = &radiosity->sides[from];
+    const struct colour shot = colour_mul(side->reflectance, side->unshot);
+    side->unshot = colour_all(0);
+    for (size_t i = radiosity->first[from]; i < radiosity->first[from + 1]; i++) {
+        struct side_light *to = &radiosity->sides[radiosity->receivers[i]];
+        const struct colour add = colour_scale(shot, to->weight);
+        to->light = colour_add(to->light, add);
+        to->unshot = colour_add(to->unshot, add);
+    }
+    radiosity->shots++;
+}
+
+bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct pool *pool) {
+    const uint32_t count = side_count(radiosity);
+    for (int pass = 0; pass < PASSES; pass++) {
+        double all = 0, unshot = 0, largest = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            const struct side_light *side = &radiosity->sides[i];
+            double own = power_of(side, side->unshot);
+            all += power_of(side, side->light);
+            unshot += own;
+            largest = fmax(largest, own);
+        }
+        radiosity->left = all > 0 ? unshot / all : 0;
+        if (!(radiosity->left > error_share))
+            return true;
+        if (pool_cancelled(pool))
+            return false;
+        /* All that have at least half of the largest, by number. */
+        for (uint32_t i = 0; i < count; i++)
+            if (power_of(&radiosity->sides[i], radiosity->sides[i].unshot) >= 0.5 * largest)
+                shoot(radiosity, i);
+    }
+    return true;
+}
+
+/* One step: each side takes the mean over the patches of its vertex, weighted as products of hat functions, which keeps
+ * the power. from, to: 3 numbers for each side. */
+static void smooth(const struct radiosity *radiosity, uint32_t back, const struct colour *from, struct colour *to) {
+    const struct patches *patches = &radiosity->patches;
+    for (uint32_t v = 0; v < patches->vertices.count; v++) {
+        const uint32_t own = 2 * v + back;
+        struct colour sum = {0, 0, 0};
+        double weights = 0;
+        for (uint32_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
+            const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
+            struct vec3 c[3];
+            patch_corners(patches, patches->of_vertex[i], c);
+            double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+            for (int k = 0; k < 3; k++) {
+                const uint32_t side = 2 * vertex[k] + back;
+                double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
+                sum = colour_add_scaled(sum, from[side], weight);
+                weights += weight;
+            }
+        }
+        to[own] = weights > 0 ? colour_scale(sum, 1 / weights) : from[own];
+    }
+}
+
+bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error) {
+    const uint32_t count = side_count(radiosity);
+    struct colour *direct = mem_alloc(count * sizeof *direct), *indirect = mem_alloc(count * sizeof *indirect);
+    struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
+    bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
+    for (uint32_t i = 0; ok && i < count; i++)
+        direct[i] = radiosity->sides[i].light;
+    if (ok && !radiosity_shoot(radiosity, error_share, pool))
+        ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
+    for (uint32_t i = 0; ok && i < count; i++)
+        indirect[i] = colour_sub(radiosity->sides[i].light, direct[i]);
+    for (uint32_t step = 0; ok && step < 2 * SMOOTH_STEPS; step++)
+        smooth(radiosity, step % 2, step / 2 % 2 ? smoothed : indirect, step / 2 % 2 ? indirect : smoothed);
+    for (uint32_t i = 0; ok && i < count; i++)
+        radiosity->sides[i].light = colour_add(direct[i], (SMOOTH_STEPS % 2 ? smoothed : indirect)[i]);
+    radiosity_drop_factors(radiosity);
+    mem_free(direct);
+    mem_free(indirect);
+    mem_free(smoothed);
+    return ok;
+}
+
+bool radiosity_light(const struct radiosity *radiosity, const struct hit *hit, struct colour *light) {
+    uint32_t patch;
+    double shares[3], sum = 0;
+    *light = colour_all(0);
+    if (!patches_find(&radiosity->patches, hit, &patch, shares))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        const struct side_light *side =
+            &radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + !hit->front];
+        if (!(side->area > 0))
+            continue;
+        *light = colour_add_scaled(*light, side->light, shares[k]);
+        sum += shares[k];
+    }
+    if (sum > 0)
+        *light = colour_scale(*light, 1 / sum);
+    return sum > 0;
+}

@@ -1,0 +1,405 @@
+#include "radiosity/receive_internal.h"
+
+#include "base/random.h"
+#include "light/light_edit.h"
+#include "material/bsdf_select.h"
+#include "material/classic.h"
+#include "material/material_eval.h"
+#include "math/elementary.h"
+#include "math/frame.h"
+#include "world/joint.h"
+#include "world/world_describe.h"
+
+#include <math.h>
+
+enum { HOLES = 200, BURYING = 16 };
+static const struct joint no_joint = {.joined = JOINED_NOT};
+static const struct material_context context;
+
+/* --- primitives and materials --- */
+
+static bool hides_inside(const struct world *world, uint32_t first, uint32_t slots) {
+    bool hides = true;
+    for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
+        const struct surface_material *material = &world->surfaces.materials[i];
+        hides = hides && !world->material_has_medium[i] && !surface_has_holes(material) && !material->phong.two_sided &&
+                !material->phong.unlit && colour_is_black(surface_emission_bound(&world->surfaces, material));
+    }
+    return hides;
+}
+
+void receive_find_buries(const struct world *world, uint8_t *buries) {
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        const struct prototype *prototype = primitive_prototype(world, i);
+        const struct geometry *geometry = &prototype->geometry;
+        const struct mesh *mesh = geometry_mesh(geometry);
+        bool hides = geometry_is_closed(geometry) && (!mesh || mesh_is_outward(mesh));
+        hides = hides && (geometry->csg || hides_inside(world, prototype->material, prototype->slot_count));
+        for (uint32_t k = 0; hides && geometry->csg && k < geometry->csg->leaf_count; k++)
+            hides = hides_inside(world, geometry->csg->leaves[k].material, geometry->csg->leaves[k].slot_count);
+        buries[i] = hides;
+    }
+}
+
+void receive_find_emissive(const struct world *world, uint8_t *emissive) {
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        const struct surface_material *material = &world->surfaces.materials[i];
+        emissive[i] = material->phong.unlit || material->has_layers ||
+                      colour_max_abs(surface_emission_bound(&world->surfaces, material)) > 0;
+    }
+}
+
+/* --- positions of a side --- */
+
+struct receiver {
+    const struct receiver_input *input;
+    struct world_scratch *scratch;
+    uint32_t vertex;
+    bool back;
+    uint64_t key;
+    double area; /* a third of its patches */
+    uint32_t burying[BURYING], burying_count;
+};
+
+/* A random order of a stratum for each position. */
+static struct sample2 stratified(const struct receiver *receiver, uint32_t position, uint64_t dimension) {
+    enum { SIDE = 8 };
+    _Static_assert((int)SIDE * (int)SIDE == (int)RECEIVE_POSITIONS, "a square of cells");
+    uint64_t key = random_combine(receiver->key, dimension);
+    uint32_t cell = sample_permute(position, RECEIVE_POSITIONS, key);
+    return sample_cell(key, cell % SIDE, cell / SIDE, SIDE);
+}
+
+static double stratified_number(const struct receiver *receiver, uint32_t position, uint64_t dimension) {
+    uint64_t key = random_combine(receiver->key, dimension);
+    uint32_t cell = sample_permute(position, RECEIVE_POSITIONS, key);
+    return (cell + random_unit(random_combine(key, RECEIVE_POSITIONS + cell))) / RECEIVE_POSITIONS;
+}
+
+static double patch_area(const struct vec3 c[3]) {
+    return vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]))) / 2;
+}
+
+static struct receiver receiver_make(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch) {
+    const struct patches *patches = &input->radiosity->patches;
+    struct receiver out = {.input = input,
+                           .scratch = scratch,
+                           .vertex = side / 2,
+                           .back = side & 1,
+                           .key = random_combine(input->seed, side)};
+    struct box box = box_empty();
+    uint32_t own = patch_vertex_at(patches, out.vertex)->primitive;
+    for (uint32_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, patches->of_vertex[i], c);
+        out.area += patch_area(c) / 3;
+        for (int k = 0; k < 3; k++)
+            box = box_add_point(box, c[k]);
+    }
+    uint32_t found[WORLD_NESTING], count = world_closed_in(patches->world, &box, found, WORLD_NESTING);
+    for (uint32_t i = 0; i < count && i < WORLD_NESTING && out.burying_count < BURYING; i++)
+        if (found[i] != own && input->buries[found[i]])
+            out.burying[out.burying_count++] = found[i];
+    return out;
+}
+
+/* A position on a patch of the vertex, and the patch. */
+static struct vec3 position_of(const struct receiver *receiver, uint32_t position, uint32_t *patch) {
+    const struct patches *patches = &receiver->input->radiosity->patches;
+    const uint32_t end = patches->first[receiver->vertex + 1];
+    double until = 3 * receiver->area * stratified_number(receiver, position, 0);
+    struct sample2 xi = stratified(receiver, position, 1);
+    struct vec3 c[3];
+    uint32_t i = patches->first[receiver->vertex];
+    for (;; i++) {
+        patch_corners(patches, patches->of_vertex[i], c);
+        double area = patch_area(c);
+        if (until < area || i + 1 == end)
+            break;
+        until -= area;
+    }
+    *patch = patches->of_vertex[i];
+    /* The density of its own share is 6 x (1 - x): the inverse of 3 x^2 - 2 x^3. */
+    double share = 0.5 - el_sin(el_asin(1 - 2 * xi.x) / 3);
+    struct vec3 at = vec3_all(0);
+    int others = 0;
+    for (int k = 0; k < 3; k++) {
+        bool own = patch_at(patches, *patch)->vertex[k] == receiver->vertex;
+        double rest = others == 0 ? xi.y : 1 - xi.y;
+        others += !own;
+        at = vec3_add_scaled(at, c[k], own ? share : (1 - share) * rest);
+    }
+    return at;
+}
+
+/* The surface at a position, seen from the side. False: there is none, or it is inside of another solid. */
+static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit) {
+    const struct patches *patches = &receiver->input->radiosity->patches;
+    uint32_t patch, inside;
+    struct vec3 point = position_of(receiver, position, &patch), c[3];
+    patch_corners(patches, patch, c);
+    struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
+    double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
+    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, vec3_normalize(normal), size,
+                     receiver->scratch, hit))
+        return false;
+    hit->view = receiver->back ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
+    hit->front = !receiver->back;
+    if (receiver->burying_count == 0)
+        return true;
+    const struct inside_query query = {vec3_add_scaled(hit->point, hit->view, hit->offset), 0, receiver->burying,
+                                       receiver->burying_count};
+    return world_containing(patches->world, &query, receiver->scratch, &inside, 1) == 0;
+}
+
+static struct light_receiver light_receiver_of(const struct hit *hit) {
+    return (struct light_receiver){.point = hit->point,
+                                   .from = vec3_add_scaled(hit->point, hit->view, hit->offset),
+                                   .normal = hit->view,
+                                   .primitive = hit->primitive};
+}
+
+static double power_weight(double pdf, double other) {
+    return pdf * pdf / (pdf * pdf + other * other);
+}
+
+/* How many rays there are for a sample of a light. */
+static double rays_per_sample(const struct receiver_input *input) {
+    return input->rays / (double)RECEIVE_POSITIONS;
+}
+
+/* --- samples of lights --- */
+
+/* The intensity that arrives from a sample of a light. */
+static struct colour light_of_sample(const struct receiver *receiver, const struct hit *hit, uint32_t position) {
+    const struct world_lights *lights = receiver->input->lights;
+    const struct light_receiver at = light_receiver_of(hit);
+    struct world_light_sample sample;
+    double pmf, t;
+    struct light_part part =
+        light_sampler_sample(&lights->sampler, at.point, at.normal, stratified_number(receiver, position, 2), &pmf);
+    if (part.light == LIGHT_NONE || !world_lights_sample(lights, &at, part, stratified(receiver, position, 3), &sample))
+        return colour_all(0);
+    double cosine = vec3_dot(sample.direction, hit->view);
+    if (!(cosine > 0))
+        return colour_all(0);
+    struct ray shadow = {.origin = at.from, .direction = light_target_from(&sample.target, at.from), .t_max = INFINITY};
+    struct hit_skip skip = sample.skip_primitive ? (struct hit_skip){sample.skip_primitive, 0}
+                                                 : hit_skip_from(hit, hit->front ? 1 : -1, shadow.direction);
+    shadow.skip_primitive = skip.primitive;
+    shadow.skip_part = skip.part;
+    receiver->scratch->light = sample.light % WORLD_SHADOW_CACHE;
+    struct colour radiance = sample.radiance;
+    if (sample.decided) {
+        radiance = world_lights_seen_by(lights, &at, &sample, &shadow, receiver->scratch, &t);
+    } else {
+        shadow.t_max = light_target_end(&sample.target);
+        radiance = colour_scale(radiance, world_lights_visible(lights, &shadow, receiver->scratch));
+    }
+    double pdf = pmf * sample.pdf, weight = 1;
+    if (!sample.is_delta)
+        weight = power_weight(pdf, intensity_of(cosine) * rays_per_sample(receiver->input));
+    return colour_scale(radiance, intensity_of(cosine) * weight / pdf);
+}
+
+void receive_direct(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
+                    struct side_light *out) {
+    const struct world *world = input->radiosity->patches.world;
+    const struct receiver receiver = receiver_make(input, side, scratch);
+    struct colour light = {0, 0, 0}, reflectance = {0, 0, 0};
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
+        struct hit hit;
+        struct bsdf bsdf;
+        if (!hit_of(&receiver, i, &hit))
+            continue;
+        material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
+        if (bsdf.opacity < 0.5)
+            continue;
+        struct colour own = bsdf_diffuse(&bsdf);
+        reflectance = colour_add(reflectance, own);
+        if (!colour_is_black(own))
+            light = colour_add(light, light_of_sample(&receiver, &hit, i));
+        count++;
+    }
+    *out = (struct side_light){0};
+    if (count == 0 || colour_is_black(reflectance))
+        return;
+    out->reflectance = colour_min(colour_scale(reflectance, 1.0 / count), colour_all(1));
+    out->light = colour_scale(light, 1.0 / count);
+    out->area = receiver.area * count / RECEIVE_POSITIONS;
+    out->weight = 1 / (count * rays_per_sample(input));
+}
+
+/* --- rays --- */
+
+/* A ray from a receiver, until it ends. */
+struct receiver_ray {
+    const struct receiver *receiver;
+    struct light_receiver from;
+    struct vec3 direction;
+    double pdf; /* of all rays for a sample of a light */
+    struct ray ray;
+    struct colour light; /* that it meets, weighted */
+};
+
+static void meet(struct receiver_ray *r, struct colour radiance, double pdf) {
+    r->light = colour_add_scaled(r->light, radiance, power_weight(r->pdf, pdf));
+}
+
+static void meet_area_lights(struct receiver_ray *r, double t_max) {
+    const struct world_lights *lights = r->receiver->input->lights;
+    struct world_lights_traversal traversal;
+    struct light_hit hit;
+    uint32_t number;
+    struct ray ray = r->ray;
+    if (lights->area_light_count == 0)
+        return;
+    ray.t_max = t_max;
+    world_lights_met_begin(&traversal, lights, &ray);
+    while (world_lights_met_next(&traversal, &number, &hit))
+        if (world_lights_illuminate(lights, number, r->from.primitive))
+            meet(r, light_emitted(&lights->lights[number], &ray, &hit),
+                 world_lights_pdf(lights, &r->from, number, r->direction, &hit));
+}
+
+static void meet_sky(struct receiver_ray *r) {
+    const struct world_lights *lights = r->receiver->input->lights;
+    const struct light_hit hit = {.t = INFINITY};
+    for (uint32_t i = 0; i < lights->sampler.infinite_count; i++) {
+        uint32_t number = lights->sampler.infinite[i];
+        const struct light *light = &lights->lights[number];
+        if (!light_is_delta(light) && world_lights_illuminate(lights, number, r->from.primitive))
+            meet(r, light_emitted(light, &r->ray, &hit),
+                 world_lights_pdf(lights, &r->from, number, r->direction, &hit));
+    }
+}
+
+/* Follows the ray to a surface that is no hole there. */
+static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
+    const struct receiver_input *input = r->receiver->input;
+    const struct world *world = input->radiosity->patches.world;
+    for (int i = 0; i < HOLES; i++) {
+        if (!world_nearest(world, &r->ray, r->receiver->scratch, hit)) {
+            meet_area_lights(r, INFINITY);
+            meet_sky(r);
+            return false;
+        }
+        meet_area_lights(r, hit->t);
+        bool holes = primitive_prototype(world, hit->primitive)->holes;
+        bool shines = input->emissive[hit->material] || input->lights->of_primitive[hit->primitive] != LIGHT_NONE;
+        struct bsdf bsdf;
+        if (!holes && !shines)
+            return true;
+        material_eval(&world->surfaces, hit, NULL, &context, &bsdf);
+        if (!holes || bsdf.opacity >= 1 || random_unit(random_combine(key, (uint64_t)i)) < bsdf.opacity) {
+            if (shines)
+                meet(r, world_lights_radiance(input->lights, r->from.primitive, hit, bsdf.emission),
+                     world_lights_pdf_of_hit(input->lights, &r->from, r->direction, hit));
+            return true;
+        }
+        r->ray = joint_ray_through_hole(&no_joint, hit, &r->ray, NULL);
+    }
+    return false;
+}
+
+/* The side of a vertex of a hit, by the shares of those that reflect light. */
+static uint32_t target_of(const struct radiosity *radiosity, const struct hit *hit, double choice) {
+    uint32_t patch;
+    double shares[3], sum = 0;
+    uint32_t side = SIDE_NONE;
+    if (!patches_find(&radiosity->patches, hit, &patch, shares))
+        return SIDE_NONE;
+    const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
+    for (int k = 0; k < 3; k++)
+        sum += radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
+    choice *= sum;
+    for (int k = 0; k < 3; k++) {
+        uint32_t own = 2 * vertex[k] + !hit->front;
+        if (!(radiosity->sides[own].area > 0))
+            continue;
+        side = own;
+        if (choice < shares[k])
+            break;
+        choice -= shares[k];
+    }
+    return side;
+}
+
+/* A cosine-distributed direction. */
+static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
+    struct sample2 disc = sample_disc(xi);
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    double height = sqrt(fmax(0, 1 - disc.x * disc.x - disc.y * disc.y));
+    return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
+}
+
+void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
+                  struct side_light *out, uint32_t *targets) {
+    const struct world *world = input->radiosity->patches.world;
+    const struct receiver receiver = receiver_make(input, side, scratch);
+    const uint32_t n = (uint32_t)lround(sqrt(input->rays)), each = input->rays / RECEIVE_POSITIONS;
+    const uint64_t key = random_combine(receiver.key, 4);
+    struct colour sum = {0, 0, 0};
+    for (uint32_t i = 0; i < input->rays; i++)
+        targets[i] = SIDE_NONE;
+    for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
+        struct hit from, hit;
+        struct bsdf bsdf;
+        if (!hit_of(&receiver, i, &from))
+            continue;
+        if (primitive_prototype(world, from.primitive)->holes) {
+            material_eval(&world->surfaces, &from, NULL, &context, &bsdf);
+            if (bsdf.opacity < 0.5)
+                continue;
+        }
+        for (uint32_t k = 0; k < each; k++) {
+            uint32_t cell = sample_permute(i * each + k, input->rays, key);
+            uint64_t own = random_combine(key, input->rays + cell);
+            struct receiver_ray r = {.receiver = &receiver, .from = light_receiver_of(&from)};
+            r.direction = direction_of(from.view, sample_cell(key, cell % n, cell / n, n));
+            r.pdf = intensity_of(vec3_dot(r.direction, from.view)) * rays_per_sample(input);
+            const struct ray start = {.origin = r.from.from};
+            r.ray = hit_ray(&from, &start, r.direction, NULL);
+            if (follow_ray(&r, own, &hit))
+                targets[i * each + k] = target_of(input->radiosity, &hit, random_unit(own));
+            sum = colour_add(sum, r.light);
+        }
+    }
+    out->light = colour_add_scaled(out->light, sum, out->weight);
+}
+
+/* --- digests --- */
+
+void receive_probe(const struct receiver_input *input, uint32_t patch, struct world_scratch *scratch,
+                   struct receiver_probe *out) {
+    const struct patches *patches = &input->radiosity->patches;
+    const struct world *world = patches->world;
+    struct world_light_sample sample;
+    struct vec3 c[3];
+    struct hit hit;
+    struct bsdf bsdf;
+    double pmf;
+    *out = (struct receiver_probe){0};
+    patch_corners(patches, patch, c);
+    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+    struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
+    if (!patches_hit(world, patch_at(patches, patch)->primitive, middle, normal, vec3_length(vec3_sub(c[1], c[0])),
+                     scratch, &hit))
+        return;
+    material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
+    out->diffuse = bsdf_diffuse(&bsdf);
+    out->emission = bsdf.emission;
+    out->opacity = bsdf.opacity;
+    uint64_t key = random_combine(input->seed, patch);
+    const struct light_receiver at = light_receiver_of(&hit);
+    const struct sample2 xi = {random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))};
+    struct light_part part =
+        light_sampler_sample(&input->lights->sampler, at.point, at.normal, random_unit(random_combine(key, 0)), &pmf);
+    if (part.light == LIGHT_NONE || !world_lights_sample(input->lights, &at, part, xi, &sample))
+        return;
+    out->radiance = sample.radiance;
+    out->direction = sample.direction;
+    out->pdf = pmf * sample.pdf;
+}

@@ -1,0 +1,41 @@
+/* What a side of a vertex receives: direct light, and what its rays meet. Positions are drawn with the density of the
+ * hat function of the vertex over its patches. So the sum over all vertices by their areas is the mean over the surface
+ * without bias, and no ray starts in a corner. */
+#ifndef GRAY_RADIOSITY_RECEIVE_INTERNAL_H
+#define GRAY_RADIOSITY_RECEIVE_INTERNAL_H
+
+#include "radiosity/radiosity.h"
+#include "world/world_lights.h"
+
+enum { RECEIVE_POSITIONS = 64 }; /* of a side of a vertex, each with one sample of a light */
+
+struct receiver_input {
+    const struct radiosity *radiosity;
+    const struct world_lights *lights;
+    const uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
+    const uint8_t *emissive; /* by material */
+    uint64_t seed;
+    uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
+};
+
+/* Sets reflectance, area and weight, and as light that of samples of lights. */
+void receive_direct(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
+                    struct side_light *out);
+/* Adds the direct light that rays meet; targets: of each ray the side of a vertex that it meets, or SIDE_NONE. */
+void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
+                  struct side_light *out, uint32_t *targets);
+
+/* In the middle of a patch, for digests; only numbers that are not padded. */
+struct receiver_probe {
+    struct colour diffuse, emission, radiance;
+    struct vec3 direction;
+    double opacity, pdf;
+};
+void receive_probe(const struct receiver_input *input, uint32_t patch, struct world_scratch *scratch,
+                   struct receiver_probe *out);
+
+/* Fill these flags. */
+void receive_find_buries(const struct world *world, uint8_t *buries);
+void receive_find_emissive(const struct world *world, uint8_t *emissive);
+
+#endif

@@ -1,0 +1,42 @@
+#include "render/stored_light_internal.h"
+
+#include "material/bsdf_select.h"
+#include "render/direct_internal.h"
+
+bool stored_light_begin(struct radiosity *own, struct renderer *renderer, int workers,
+                        struct render_statistics *statistics, struct error *error) {
+    const struct render_job *job = renderer->job;
+    const struct settings *settings = &job->settings;
+    struct radiosity *radiosity = job->radiosity ? job->radiosity : own;
+    const struct radiosity_input input = {.world = job->world,
+                                          .background = job->background_lights,
+                                          .limit = (uint32_t)settings->radiosity_patches,
+                                          .error_share = settings->radiosity_error,
+                                          .seed = settings->seed,
+                                          .pool = renderer->pool};
+    if (!radiosity_update(radiosity, &input, error))
+        return false;
+    for (int i = 0; i < workers; i++)
+        renderer->workers[i].state.radiosity = radiosity;
+    (void)statistics;
+    return true;
+}
+
+struct colour stored_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
+                           uint64_t key) {
+    struct colour light, shiny_weight;
+    if (bsdf->dark || !radiosity_light(state->radiosity, hit, &light)) {
+        struct bsdf lit = *bsdf;
+        lit.ambient = colour_all(0);
+        return direct_light(state, hit, &lit, key);
+    }
+    const struct bsdf shiny = bsdf_shiny_copy(bsdf, &shiny_weight);
+    struct colour sum = colour_mul(bsdf_diffuse(bsdf), light);
+    if (shiny.count > 0 && !colour_is_black(shiny_weight))
+        sum = colour_add(sum, direct_light(state, hit, &shiny, key));
+    if (state->caustics)
+        sum = colour_add(
+            sum, photon_map_light(state->caustics, state->job->world, hit, bsdf, bsdf_lobes_with(bsdf, BSDF_DIFFUSE)));
+    state->camera_hit = NULL;
+    return sum;
+}
