@@ -9,7 +9,7 @@
 
 enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
-static const double first_contrast = 0.1;
+static const double first_contrast = 0.1, border_contrast = 0.3;
 
 void radiosity_drop_factors(struct radiosity *radiosity) {
     mem_free(radiosity->first);
@@ -99,6 +99,9 @@ static double contrast(const struct radiosity *radiosity, uint32_t a, uint32_t b
     double largest = 0;
     for (uint32_t back = 0; back < 2; back++) {
         const struct side_light *x = &radiosity->sides[2 * a + back], *y = &radiosity->sides[2 * b + back];
+        /* Patches at the border of another solid are partly inside of it. */
+        if ((x->buried > 0) != (y->buried > 0) || (x->buried > 0 && x->buried < 1 && y->buried < 1))
+            largest = fmax(largest, border_contrast);
         double level = colour_max_abs(x->light) + colour_max_abs(y->light) + mean;
         if (x->area > 0 && y->area > 0 && level > 0)
             largest = fmax(largest, colour_max_abs(colour_sub(x->light, y->light)) / level);

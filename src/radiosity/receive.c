@@ -132,11 +132,12 @@ static struct vec3 position_of(const struct receiver *receiver, uint32_t positio
     return at;
 }
 
-/* The surface at a position, seen from the side. False: there is none, or it is inside of another solid. */
-static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit) {
+/* The surface at a position, seen from the side. False: there is none, or *buried: it is inside of another solid. */
+static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit, bool *buried) {
     const struct patches *patches = &receiver->input->radiosity->patches;
     uint32_t patch, inside;
     struct vec3 point = position_of(receiver, position, &patch), c[3];
+    *buried = false;
     patch_corners(patches, patch, c);
     struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
     double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
@@ -149,7 +150,8 @@ static bool hit_of(const struct receiver *receiver, uint32_t position, struct hi
         return true;
     const struct inside_query query = {vec3_add_scaled(hit->point, hit->view, hit->offset), 0, receiver->burying,
                                        receiver->burying_count};
-    return world_containing(patches->world, &query, receiver->scratch, &inside, 1) == 0;
+    *buried = world_containing(patches->world, &query, receiver->scratch, &inside, 1) > 0;
+    return !*buried;
 }
 
 static struct light_receiver light_receiver_of(const struct hit *hit) {
@@ -207,11 +209,13 @@ void receive_direct(const struct receiver_input *input, uint32_t side, struct wo
     const struct world *world = input->radiosity->patches.world;
     const struct receiver receiver = receiver_make(input, side, scratch);
     struct colour light = {0, 0, 0}, reflectance = {0, 0, 0};
-    uint32_t count = 0;
+    uint32_t count = 0, buried = 0;
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit hit;
         struct bsdf bsdf;
-        if (!hit_of(&receiver, i, &hit))
+        bool inside, found = hit_of(&receiver, i, &hit, &inside);
+        buried += inside;
+        if (!found)
             continue;
         material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
         if (bsdf.opacity < 0.5)
@@ -222,7 +226,7 @@ void receive_direct(const struct receiver_input *input, uint32_t side, struct wo
             light = colour_add(light, light_of_sample(&receiver, &hit, i));
         count++;
     }
-    *out = (struct side_light){0};
+    *out = (struct side_light){.buried = buried / (double)RECEIVE_POSITIONS};
     if (count == 0 || colour_is_black(reflectance))
         return;
     out->reflectance = colour_min(colour_scale(reflectance, 1.0 / count), colour_all(1));
@@ -347,7 +351,8 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit from, hit;
         struct bsdf bsdf;
-        if (!hit_of(&receiver, i, &from))
+        bool buried;
+        if (!hit_of(&receiver, i, &from, &buried))
             continue;
         if (primitive_prototype(world, from.primitive)->holes) {
             material_eval(&world->surfaces, &from, NULL, &context, &bsdf);
