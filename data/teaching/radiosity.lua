@@ -1,5 +1,4 @@
 -- TITLE: Radiosity: a flight through a room that is solved once
--- OPTIONS: -o radiosity.apng
 -- The sun falls through a window on a red carpet, whose light colours the wall and the ceiling. The light of all
 -- surfaces is stored before the first frame; the other frames show it from other eyes.
 -- Author: gray project
@@ -9,7 +8,7 @@ local room = gr.node('room')
 local function matte(r, g, b)
     return gr.material { kd = { r, g, b }, two_sided = true }
 end
-local white, floor, carpet = matte(.8, .78, .74), matte(.5, .36, .22), matte(.7, .07, .05)
+local white, floor, carpet = matte(.8, .78, .74), matte(.5, .36, .22), matte(.7, .15, .08)
 local wood, blue = matte(.5, .3, .14), matte(.15, .3, .6)
 
 local function wall(material, corner, along, up)
@@ -25,10 +24,10 @@ wall(white, { 0, 3, 0 }, { 6, 0, 0 }, { 0, 0, -5 })
 wall(white, { 0, 0, -5 }, { 6, 0, 0 }, { 0, 3, 0 })
 wall(white, { 0, 0, 0 }, { 6, 0, 0 }, { 0, 3, 0 })
 wall(blue, { 6, 0, 0 }, { 0, 0, -5 }, { 0, 3, 0 })
-wall(white, { 0, 0, 0 }, { 0, 0, -1.6 }, { 0, 3, 0 })
-wall(white, { 0, 0, -3.6 }, { 0, 0, -1.4 }, { 0, 3, 0 })
-wall(white, { 0, 0, -1.6 }, { 0, 0, -2 }, { 0, .8, 0 })
-wall(white, { 0, 2.4, -1.6 }, { 0, 0, -2 }, { 0, .6, 0 })
+room:add_child(gr.polygon {
+    material = white, outlines = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } },
+    points = { { 0, 0, 0 }, { 0, 0, -5 }, { 0, 3, -5 }, { 0, 3, 0 }, { 0, .8, -1.6 }, { 0, .8, -3.6 }, { 0, 2.4, -3.6 }, { 0, 2.4, -1.6 } },
+})
 -- The sill, and the bar in the middle.
 block(white, { -.15, .74, -3.65 }, { .2, .8, -1.55 })
 block(white, { -.05, .8, -2.64 }, { .03, 2.4, -2.56 })
@@ -57,11 +56,11 @@ local path = gr.keys {
 }
 
 gr.frames {
-    count = 24, fps = 12,
+    count = 16, fps = 10,
     draw = function(t)
         local show = path(t)
-        show.node, show.width, show.height, show.fov = room, 320, 200, 66
-        show.integrator, show.radiosity_patches = 'radiosity', 16000
+        show.node, show.width, show.height, show.fov = room, 240, 150, 66
+        show.integrator, show.radiosity_patches = 'radiosity', 12000
         show.lights, show.background, show.exposure = { sun }, { .55, .75, 1 }, .7
         return show
     end,

@@ -40,6 +40,7 @@ struct preparation {
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
+    double *until;
 };
 
 static void direct_batch(void *context, uint32_t batch, int worker) {
@@ -169,8 +170,29 @@ static bool find_receivers(struct preparation *p, struct error *error) {
     return true;
 }
 
+/* What bright patches reflect is sampled like light of lights: the shares of both sides of each. */
+static bool find_bright_patches(struct preparation *p) {
+    const struct patches *patches = &p->out->patches;
+    double sum = 0;
+    p->until = mem_alloc(2 * patches->all.count * sizeof *p->until);
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, i / 2, c);
+        double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]))) / 2;
+        sum += area * receive_brightness(p->out, i / 2, i % 2);
+        p->until[i] = sum;
+    }
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++)
+        p->until[i] /= sum;
+    p->receivers.until = p->until;
+    p->receivers.power = sum;
+    return p->until != NULL;
+}
+
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
+    for (uint32_t i = 0; i < side_count(out); i++)
+        out->sides[i].unshot = out->sides[i].light;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
     for (uint32_t i = 0; p->sides && i < side_count(out); i++)
         if (out->sides[i].area > 0)
@@ -179,7 +201,7 @@ static bool find_rays(struct preparation *p, struct error *error) {
         return error_set(error, ERROR_SCENE,
                          "--integrator radiosity needs diffuse surfaces, and nothing in the scene is diffuse");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    return ((p->sides && p->targets) || error_no_memory(error, "radiosity")) &&
+    return ((p->sides && p->targets && find_bright_patches(p)) || error_no_memory(error, "radiosity")) &&
            patches_index_space(&out->patches, p->input->pool, error) && run(p, p->count, ray_batch, error) &&
            find_receivers(p, error);
 }
@@ -252,7 +274,7 @@ static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
     bool ok = find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
     for (uint32_t i = 0; ok && i < p->count; i++)
-        out->sides[p->sides[i]].unshot = out->sides[p->sides[i]].light;
+        out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
     return ok;
 }
 
@@ -278,6 +300,7 @@ static bool prepare(struct radiosity *radiosity, const struct radiosity_input *i
     mem_free(p.emissive);
     mem_free(p.sides);
     mem_free(p.targets);
+    mem_free(p.until);
     if (!ok)
         radiosity_destroy(radiosity);
     return ok;
@@ -398,7 +421,7 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
     bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
     for (uint32_t i = 0; ok && i < count; i++)
-        direct[i] = radiosity->sides[i].light;
+        direct[i] = colour_sub(radiosity->sides[i].light, radiosity->sides[i].unshot);
     if (ok && !radiosity_shoot(radiosity, error_share, pool))
         ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
     for (uint32_t i = 0; ok && i < count; i++)
