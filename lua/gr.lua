@@ -1928,7 +1928,7 @@ function gr.medium(scattering, absorption) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
@@ -1993,7 +1993,12 @@ function gr.medium(scattering, absorption) end
 ---@field blade_angle? number blade_angle (a number, in degrees; default 0): Rotation of that polygon.
 ---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: side by side (left picture on the left), or red and cyan.
 ---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): Distance between the eyes.
----@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes see the same point of the picture.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes, or all views of a light field, see the same point of the picture.
+---@field rows? integer rows (a whole number, 1 to 1024; default 9 of gr.light_field): Rows of a light field: a grid of views, each of width x height pixels, in one file.
+---@field columns? integer columns (a whole number, 1 to 1024; default 9 of gr.light_field): Its columns.
+---@field size? number|number[] size (a number or a table of 2 numbers, 1 to 1048576, in pixels; default width, height): Both in one table: {width, height}; a number alone is a square.
+---@field spacing? number spacing (a number, >= 0; default screen / 100): Distance between neighbouring cameras of a light field.
+---@field depth? boolean depth (true or false; default false): Whether a light field keeps the depths of its pixels.
 ---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): Times when the shutter opens and closes, {open, close}; motion between them is blurred.
 ---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Position of a moving camera at time 1.
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
@@ -2003,7 +2008,7 @@ function gr.medium(scattering, absorption) end
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
@@ -2018,7 +2023,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
@@ -2083,7 +2088,12 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field blade_angle? number blade_angle (a number, in degrees; default 0): Rotation of that polygon.
 ---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: side by side (left picture on the left), or red and cyan.
 ---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): Distance between the eyes.
----@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes see the same point of the picture.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes, or all views of a light field, see the same point of the picture.
+---@field rows? integer rows (a whole number, 1 to 1024; default 9 of gr.light_field): Rows of a light field: a grid of views, each of width x height pixels, in one file.
+---@field columns? integer columns (a whole number, 1 to 1024; default 9 of gr.light_field): Its columns.
+---@field size? number|number[] size (a number or a table of 2 numbers, 1 to 1048576, in pixels; default width, height): Both in one table: {width, height}; a number alone is a square.
+---@field spacing? number spacing (a number, >= 0; default screen / 100): Distance between neighbouring cameras of a light field.
+---@field depth? boolean depth (true or false; default false): Whether a light field keeps the depths of its pixels.
 ---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): Times when the shutter opens and closes, {open, close}; motion between them is blurred.
 ---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Position of a moving camera at time 1.
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
@@ -2093,7 +2103,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@param sky string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
@@ -2106,6 +2116,93 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@param fields? gr.render_skybox.fields Fields that are no arguments before it
 ---@overload fun(fields: gr.render_skybox.fields)
 function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, ambient, lights, fields) end
+
+---@class gr.light_field.fields
+---@field node gr.node node (a node): Root node of the picture.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
+---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
+---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
+---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
+---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
+---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
+---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
+---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, 'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, glass and light see sky or the default. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
+---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
+---@field integrator? 'whitted'|'path'|'radiosity' integrator ('whitted'|'path'|'radiosity'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces; radiosity has whitted's mirrors and glass, and stored light that diffuse surfaces exchange.
+---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
+---@field full? boolean full (true or false; default -full): N x N samples for every pixel, not only for marked ones.
+---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): A pixel is marked when the squared RGB distance to a side neighbour exceeds X.
+---@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same for the corner neighbours.
+---@field reflect_limit? integer reflect_limit (a whole number, 0 to 1000; default -reflect-limit): How often a path may reflect.
+---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
+---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
+---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field medium_samples? integer medium_samples (a whole number, 1 to 4096; default --medium-samples): N points on a ray in a medium that scatters or has a density, with shadow rays to all lights.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
+---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
+---@field radiosity_error? number radiosity_error (a number, 1e-09 to 1; default --radiosity-error): Stop when the share X of light is not yet shot, with integrator radiosity.
+---@field radiosity_patches? integer radiosity_patches (a whole number, 1 to 10000000; default --radiosity-patches): At most N patches, with integrator radiosity.
+---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field resolve? 'mean'|'bright' resolve ('mean'|'bright'; default --resolve): How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).
+---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
+---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrators path and radiosity.
+---@field deep? boolean deep (true or false; default --deep): 16 bits per channel in PNG files.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of light; gooch: cool to warm colours.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
+---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
+---@field exposure? 'auto'|number exposure (a number or 'auto', >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written; auto: as a light meter measures.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
+---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): A gray picture: the luminance.
+---@field edges? boolean edges (true or false; default --edges): A picture of the edges of the picture, white on black (Sobel); PNG files only.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Smooth the edges of the finished picture (FXAA); PNG files only.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field medium? gr.medium medium (a medium; default none): A medium around all solids, instead of a fog.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): Shift of the window to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): Shift of the window upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens, in units of the scene; 0 is a pinhole. With a lens, gray resamples every pixel.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane in focus, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of the plane in focus, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): Rotation of that polygon.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: side by side (left picture on the left), or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): Distance between the eyes.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes, or all views of a light field, see the same point of the picture.
+---@field rows? integer rows (a whole number, 1 to 1024; default 9 of gr.light_field): Rows of a light field: a grid of views, each of width x height pixels, in one file.
+---@field columns? integer columns (a whole number, 1 to 1024; default 9 of gr.light_field): Its columns.
+---@field size? number|number[] size (a number or a table of 2 numbers, 1 to 1048576, in pixels; default width, height): Both in one table: {width, height}; a number alone is a square.
+---@field spacing? number spacing (a number, >= 0; default screen / 100): Distance between neighbouring cameras of a light field.
+---@field depth? boolean depth (true or false; default false): Whether a light field keeps the depths of its pixels.
+---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): Times when the shutter opens and closes, {open, close}; motion between them is blurred.
+---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Position of a moving camera at time 1.
+---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
+---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
+---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
+
+---Renders a light field: the pictures of a grid of cameras, in one file.
+---@param node gr.node node (a node): Root node of the picture.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
+---@param fields? gr.light_field.fields Fields that are no arguments before it
+---@overload fun(fields: gr.light_field.fields)
+function gr.light_field(node, file, fields) end
 
 ---@class gr.transform_order.fields
 ---@field order 'new'|'old'|'separate' order ('new'|'old'|'separate'): new: calls act in the order in which they are written; old: the last call acts first; separate: scale, then rotate, then translate.
@@ -2220,7 +2317,7 @@ function node:rotate_quat(w, x, y, z) end
 function node:translate(x, y, z) end
 
 ---@class gr.node.render.fields
----@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@field sky? string|gr.texture|gr.sky sky (the name of a picture file or a texture or a sky; optional): Background that is also light: a sky, or a picture of the whole sphere, twice as wide as high. A picture with six views in a 4 x 3 cross is background only.
 ---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
@@ -2285,7 +2382,12 @@ function node:translate(x, y, z) end
 ---@field blade_angle? number blade_angle (a number, in degrees; default 0): Rotation of that polygon.
 ---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: side by side (left picture on the left), or red and cyan.
 ---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): Distance between the eyes.
----@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes see the same point of the picture.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes, or all views of a light field, see the same point of the picture.
+---@field rows? integer rows (a whole number, 1 to 1024; default 9 of gr.light_field): Rows of a light field: a grid of views, each of width x height pixels, in one file.
+---@field columns? integer columns (a whole number, 1 to 1024; default 9 of gr.light_field): Its columns.
+---@field size? number|number[] size (a number or a table of 2 numbers, 1 to 1048576, in pixels; default width, height): Both in one table: {width, height}; a number alone is a square.
+---@field spacing? number spacing (a number, >= 0; default screen / 100): Distance between neighbouring cameras of a light field.
+---@field depth? boolean depth (true or false; default false): Whether a light field keeps the depths of its pixels.
 ---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): Times when the shutter opens and closes, {open, close}; motion between them is blurred.
 ---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Position of a moving camera at time 1.
 ---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
@@ -2294,7 +2396,7 @@ function node:translate(x, y, z) end
 ---@field model? gr.node model (a node; default node): What -o MODEL writes and --check-print checks, without the ground of the picture.
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr .lf; gray creates missing folders.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.

@@ -128,12 +128,16 @@ static void follow_blocks(const struct token *t, struct evidence *evidence) {
     evidence->awaits_do = is_loop || (evidence->awaits_do && !is_do);
 }
 
+static bool is_render(const struct token *t) {
+    return token_is(t, TOKEN_NAME, "render") || token_is(t, TOKEN_NAME, "light_field");
+}
+
 /* gr.render{...}, gr.render({...}) and node:render{...} have the table form, as have the tables for gr.frames. */
 static void judge_picture(const struct token *w, struct evidence *evidence) {
     const struct token *t = &w[WINDOW - 1];
-    bool after_name = token_is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
-    bool after_bracket = token_is_symbol(&w[WINDOW - 2], '(') && token_is(&w[WINDOW - 3], TOKEN_NAME, "render") &&
-                         is_after_dot(w, WINDOW - 3);
+    bool after_name = is_render(&w[WINDOW - 2]) && is_after_dot(w, WINDOW - 2);
+    bool after_bracket =
+        token_is_symbol(&w[WINDOW - 2], '(') && is_render(&w[WINDOW - 3]) && is_after_dot(w, WINDOW - 3);
     bool is_field = token_is(&w[WINDOW - 3], TOKEN_NAME, "background") || token_is(&w[WINDOW - 3], TOKEN_NAME, "sky");
     if (after_name || after_bracket) {
         evidence->renders = evidence->renders || token_is_symbol(t, '{');

@@ -80,9 +80,16 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
                              .radiosity = work->job.radiosity,
                              .film = &film};
     /* A small, quick picture without what the brightness does not depend on. */
-    double scale = fmin(1, (double)WIDTH / fmax(work->job.width, work->job.height));
-    job.width = (uint32_t)fmax(work->job.width * scale, 1);
-    job.height = (uint32_t)fmax(work->job.height * scale, 1);
+    struct lens *lens = &job.settings.lens;
+    double width = work->job.width, height = work->job.height;
+    if (lens->columns > 0) { /* the middle of a light field */
+        width /= lens->columns;
+        height /= (double)lens->rows * lens_grids(lens);
+        lens->rows = lens->columns = 0;
+    }
+    double scale = fmin(1, (double)WIDTH / fmax(width, height));
+    job.width = (uint32_t)fmax(width * scale, 1);
+    job.height = (uint32_t)fmax(height * scale, 1);
     settings_set_draft(&job.settings, DRAFT_QUICK);
     job.settings.cropped = false;
     job.settings.noise = job.settings.time_limit = 0;

@@ -52,6 +52,7 @@ static void add_usage(struct document *document) {
     document_lines(document, "gray [options] [--] scene.lua|model.glb ...\n"
                              "gray merge [-o FILE] [options] PART ...\n"
                              "gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
+                             "gray view [-o FILE] [--eye X,Y,Z] [--focus DISTANCE] [--aperture RADIUS] FIELD.lf|PANORAMA\n"
                              "gray --man [TOPIC ...]\n"
                              "gray --init [FOLDER]\n");
 }

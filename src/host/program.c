@@ -20,6 +20,7 @@
 #include "output/compare.h"
 #include "output/merge.h"
 #include "output/picture_files.h"
+#include "output/view.h"
 #include "session/options.h"
 #include "session/options_table.h"
 #include "session/text.h"
@@ -141,6 +142,8 @@ static int perform(struct options *options, const struct program_parts *parts, s
         return choose_isa(options) ? merge_run(options) : ERROR_USAGE;
     case ACTION_COMPARE:
         return compare_run(options);
+    case ACTION_VIEW:
+        return view_run(options);
     case ACTION_RENDER:
         break;
     }

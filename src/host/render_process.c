@@ -434,6 +434,12 @@ static void init_work(struct picture_work *work, struct render_process *process,
         .context = control,
         .drain = &control->drain,
     };
+    /* The size is that of a view. */
+    const struct lens *lens = &request->settings.lens;
+    if (lens->columns > 0) {
+        work->job.width *= (uint32_t)lens->columns;
+        work->job.height *= (uint32_t)lens->rows * lens_grids(lens);
+    }
     settings_set_draft(&work->job.settings, options->preview ? DRAFT_PREVIEW
                                             : options->quick ? DRAFT_QUICK
                                                              : DRAFT_NONE);

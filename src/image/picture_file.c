@@ -4,6 +4,7 @@
 #include "image/exr.h"
 #include "image/float_read_internal.h"
 #include "image/float_write.h"
+#include "image/light_field.h"
 #include "image/png_write.h"
 
 #include <stdio.h>
@@ -46,7 +47,7 @@ bool picture_file_is(const uint8_t *head, size_t size) {
         if (size >= signatures[i].size && memcmp(head, signatures[i].bytes, signatures[i].size) == 0)
             return true;
     }
-    return is_pfm(head, size);
+    return is_pfm(head, size) || light_field_is(head, size);
 }
 
 bool picture_file_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
@@ -59,6 +60,8 @@ bool picture_file_write(const struct file_target *target, const struct picture_s
         return hdr_write(target, width, height, source->light, source->context, error);
     case PICTURE_EXR:
         return exr_write(target, width, height, source->light, source->context, error);
+    case PICTURE_LIGHT_FIELD:
+        return light_field_write(target, source, pool, error);
     case PICTURE_PNG:
     case PICTURE_OTHER:
         break;

@@ -13,7 +13,8 @@
 
 /* Formats with their extensions: of numbers for a display, and of linear light without limits. */
 #define DISPLAY_FORMATS(X) X(PICTURE_PNG, ".png")
-#define LIGHT_FORMATS(X) X(PICTURE_PFM, ".pfm") X(PICTURE_HDR, ".hdr") X(PICTURE_EXR, ".exr")
+#define LIGHT_FORMATS(X)                                                                                               \
+    X(PICTURE_PFM, ".pfm") X(PICTURE_HDR, ".hdr") X(PICTURE_EXR, ".exr") X(PICTURE_LIGHT_FIELD, ".lf")
 #define PICTURE_FORMATS(X) DISPLAY_FORMATS(X) LIGHT_FORMATS(X)
 /* PICTURE_OTHER: any other name, which is PNG. */
 enum picture_format { PICTURE_FORMATS(LIST_MEMBER) PICTURE_OTHER };
@@ -29,6 +30,7 @@ const char *picture_extensions(char out[PICTURE_EXTENSIONS_SIZE]);
  * than the readers for short signatures, because a new picture may replace such a file. */
 bool picture_file_is(const uint8_t *head, size_t size);
 
+struct light_field_head;
 /* The rows of a picture, from the top: each function fills the 3 * width numbers of row y. */
 struct picture_source {
     uint32_t width, height;
@@ -36,10 +38,11 @@ struct picture_source {
     void (*words)(void *context, uint32_t y, uint16_t *line);
     void (*light)(void *context, uint32_t y, float *line); /* linear, without limits */
     void *context;
-    bool deep;       /* 16 bits per channel, if the format has them */
-    bool srgb;       /* bytes and words are encoded with the sRGB function */
-    bool unfinished; /* see struct png_source */
-    bool alpha;      /* bytes and words have 4 numbers a pixel; only for PNG */
+    bool deep;                            /* 16 bits per channel, if the format has them */
+    bool srgb;                            /* bytes and words are encoded with the sRGB function */
+    bool unfinished;                      /* see struct png_source */
+    bool alpha;                           /* bytes and words have 4 numbers a pixel; only for PNG */
+    const struct light_field_head *field; /* of a picture that shows the views of a light field; or NULL */
 };
 
 /* Writes a file in the format of its name. With a pool, its threads may request rows at the same time. */

@@ -358,7 +358,7 @@ bool pick_at(const struct render_job *job, const struct node *root, struct pick_
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &frame, ignored,
                         error))
         return false;
-    if (!camera_ray_through(&frame, query.x, query.y, (struct sample2){0.5, 0.5}, 0, &ray))
+    if (!camera_ray_through(&frame, query.x, query.y, (struct sample2){0.5, 0.5}, NULL, &ray))
         return true;
     if (!world_scratch_init(&scratch, job->world))
         return error_no_memory(error, "the ray of a click");

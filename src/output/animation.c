@@ -135,20 +135,20 @@ static bool read_frame(void *context, uint32_t index, uint8_t *rgb, struct error
     return png_frame_read(animation->frames[index], animation->width, animation->height, rgb, error);
 }
 
-static bool write_file(const struct animation *animation, const struct animation_source *source, struct error *error) {
-    const struct file_target target = target_of(animation);
-    switch (animation->format) {
+bool animation_write(const struct picture_files *files, const struct animation_source *source, struct error *error) {
+    const struct file_target target = {.path = files->options->output, .rules = &files->animation};
+    switch (files->options->animation) {
     case ANIMATION_APNG:
         return apng_write(&target, source, error);
     case ANIMATION_GIF:
-        return gif_write(&target, source, animation->files->options->frame_palettes, error);
+        return gif_write(&target, source, files->options->frame_palettes, error);
     case ANIMATION_WEBP:
         return webp_write(&target, source, error);
     case ANIMATION_Y4M:
         return y4m_write(&target, source, error);
     case ANIMATION_MP4:
     case ANIMATION_WEBM:
-        return encoder_write(&target, source, animation->format, error);
+        return encoder_write(&target, source, files->options->animation, error);
     case ANIMATION_NONE:
         break;
     }
@@ -268,7 +268,7 @@ bool animation_finish(struct animation *animation, struct error *error) {
                                             .srgb = animation->srgb,
                                             .frame = read_frame,
                                             .context = animation};
-    if (!write_file(animation, &source, error) || !write_sheet(animation, error))
+    if (!animation_write(animation->files, &source, error) || !write_sheet(animation, error))
         return false;
     if (!animation->files->options->keep_frames && !animation->borrowed)
         remove_frames(animation);

@@ -45,6 +45,8 @@ bool animation_add(struct animation *animation, const char *name, struct error *
 bool animation_put(struct animation *animation, const struct picture *picture, struct error *error);
 /* Uses these PNG files as the frames; they are not removed. */
 bool animation_take_files(struct animation *animation, const char *const *names, uint32_t count, struct error *error);
+/* Writes the file of -o from these frames. */
+bool animation_write(const struct picture_files *files, const struct animation_source *source, struct error *error);
 /* When all frames exist: writes the file and the contact sheet, and removes the frames unless they are to be kept. */
 bool animation_finish(struct animation *animation, struct error *error);
 /* Frees it. *left: the number of frames that remain in the folder of an animation that was not written. */

@@ -106,7 +106,8 @@ bool layers_write(const struct file_target *picture, const struct film *film, co
                                         deep_picture || rows.aov == AOV_DEPTH,
                                         rows.aov == AOV_RAW && tone->srgb,
                                         false,
-                                        false};
+                                        false,
+                                        NULL};
         if (!picture_file_write(&target, &source, NULL, error))
             return false;
     }

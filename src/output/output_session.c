@@ -369,6 +369,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
                          written);
     if (request->settings.transparent &&
         (picture_format(written) == PICTURE_PFM || picture_format(written) == PICTURE_HDR ||
+         picture_format(written) == PICTURE_LIGHT_FIELD ||
          output->options->animation != ANIMATION_NONE))
         return error_set(error, ERROR_SCENE, "%s: background 'transparent' needs a file with alpha: .png or .exr",
                          written);

@@ -6,6 +6,7 @@
 #include "denoise/film_denoise.h"
 #include "film/aov.h"
 #include "film/path_film.h"
+#include "image/light_field.h"
 #include "image/picture_file.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
@@ -81,16 +82,47 @@ static void row_linear(void *context, uint32_t y, float *line) {
     film_row_linear(rows->film, rows->view, y, line);
 }
 
+/* Of the file of a light field. Any other picture is a grid of one view. */
+static struct light_field_head field_of(const struct picture_request *request, const struct tone *tone) {
+    const struct lens *lens = &request->settings.lens;
+    struct light_field_head head = {.columns = 1,
+                                    .rows = 1,
+                                    .width = request->width,
+                                    .height = request->height,
+                                    .screen = lens->screen > 0 ? lens->screen : 1,
+                                    .fov = lens->fov > 0 ? lens->fov : 50,
+                                    .tone = *tone};
+    if (lens_fits(lens, request->width, request->height)) {
+        head.columns = (uint32_t)lens->columns;
+        head.rows = (uint32_t)lens->rows;
+        head.width /= head.columns;
+        head.height /= head.rows * lens_grids(lens);
+        head.depth = lens->depth;
+        head.spacing = lens->spacing;
+    }
+    return head;
+}
+
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
                         struct pool *pool, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     const float *alpha = view == FILM_FINAL ? picture->alpha : NULL;
     struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither, alpha};
-    struct picture_source source = {
-        request->width,      request->height, alpha ? row_with_alpha : row, alpha ? row_16_with_alpha : row_16,
-        row_linear,          &rows,           request->settings.deep,       tone.srgb,
-        picture->unfinished, alpha != NULL};
+    const struct light_field_head field = field_of(request, &tone);
+    struct picture_source source = {request->width,
+                                    request->height,
+                                    alpha ? row_with_alpha : row,
+                                    alpha ? row_16_with_alpha : row_16,
+                                    row_linear,
+                                    &rows,
+                                    request->settings.deep,
+                                    tone.srgb,
+                                    picture->unfinished,
+                                    alpha != NULL,
+                                    &field};
+    if (picture_format(target->path) != PICTURE_LIGHT_FIELD && field.depth) /* without depths */
+        source.height /= 2;
     if (view == FILM_FINAL && (picture->film.layer_mask || alpha) && picture_format(target->path) == PICTURE_EXR)
         return layers_write_exr(target, &picture->film, alpha, error);
     return picture_file_write(target, &source, pool, error);
@@ -335,6 +367,69 @@ static void *cut_away(void *whole, const struct film *film, const struct film_re
     return out;
 }
 
+/* The colours of the film, and the numbers for PNG files unless display is NULL. */
+static bool make_colours(const struct picture *picture, const struct denoising *by, float (*light)[3],
+                         float (*display)[3], struct error *error) {
+    return make_light(picture, by, light, error) &&
+           (!display || make_display(picture, (const float(*)[3])light, display, error));
+}
+
+static void paste(float (*out)[3], const float (*in)[3], const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0;
+    for (uint32_t y = part->y0; y < part->y1; y++)
+        memcpy(out[(size_t)y * film->width + part->x0], in[(y - part->y0) * width], width * sizeof *out);
+}
+
+/* A view of a light field is a picture of its own; depths stay as they are. */
+static bool make_view(const struct picture *picture, struct denoising by, const struct film_rectangle *part,
+                      float (*light)[3], float (*display)[3], struct error *error) {
+    const struct film *film = &picture->film;
+    size_t pixels = (size_t)(part->x1 - part->x0) * (part->y1 - part->y0);
+    struct picture view = *picture;
+    view.film.width = view.film.full_width = part->x1 - part->x0;
+    view.film.height = view.film.full_height = part->y1 - part->y0;
+    view.film.pixels = mem_alloc(pixels * sizeof *view.film.pixels);
+    view.film.floats = mem_alloc(pixels * film->record.floats * sizeof *view.film.floats);
+    float(*own_light)[3] = mem_alloc(pixels * sizeof *own_light);
+    float(*own_display)[3] = display ? mem_alloc(pixels * sizeof *own_display) : NULL;
+    bool ok = view.film.pixels && view.film.floats && own_light && (!display || own_display);
+    if (ok) {
+        cut(view.film.pixels, film->pixels, sizeof *film->pixels, film, part);
+        cut(view.film.floats, film->floats, film->record.floats * sizeof *film->floats, film, part);
+        ok = make_colours(&view, &by, own_light, own_display, error);
+    } else {
+        (void)error_no_memory(error, "a picture that is finished");
+    }
+    if (ok)
+        paste(light, (const float(*)[3])own_light, film, part);
+    if (ok && display)
+        paste(display, (const float(*)[3])own_display, film, part);
+    mem_free(view.film.pixels);
+    mem_free(view.film.floats);
+    mem_free(own_light);
+    mem_free(own_display);
+    return ok;
+}
+
+static bool make_views(const struct picture *picture, const struct denoising *by, float (*light)[3],
+                       float (*display)[3], struct error *error) {
+    const struct tone tone = picture_tone(&picture->request);
+    const struct light_field_head head = field_of(&picture->request, &tone);
+    bool ok = true;
+    for (uint32_t i = 0; ok && i < head.columns * head.rows * lens_grids(&picture->request.settings.lens); i++) {
+        uint32_t x = i % head.columns * head.width, y = i / head.columns * head.height;
+        struct picture own = *picture;
+        struct denoising own_by = *by;
+        if (i >= head.columns * head.rows) {
+            own.request.settings.finish = (struct finish){0};
+            own_by.denoiser = DENOISER_NONE;
+        }
+        ok = make_view(&own, own_by, &(struct film_rectangle){x, y, x + head.width, y + head.height}, light, display,
+                       error);
+    }
+    return ok;
+}
+
 static bool fill_shown(struct picture_shown *out, const struct picture *picture, const struct film_rectangle *part,
                        const struct denoising *by, struct error *error) {
     const struct film *film = &picture->film;
@@ -346,8 +441,8 @@ static bool fill_shown(struct picture_shown *out, const struct picture *picture,
     if (!out->pixels || (displays && !out->display))
         return error_no_memory(error, "a picture that is finished");
     float(*light)[3] = (float(*)[3])(void *)out->pixels;
-    if (!make_light(picture, by, light, error) ||
-        (displays && !make_display(picture, (const float(*)[3])light, out->display, error)))
+    bool has_views = whole && lens_fits(&picture->request.settings.lens, film->width, film->height);
+    if (!(has_views ? make_views : make_colours)(picture, by, light, out->display, error))
         return false;
     out->pixels = cut_away(out->pixels, film, part);
     out->display = displays ? cut_away(out->display, film, part) : NULL;

@@ -65,7 +65,7 @@ static struct film_rectangle rectangle_of(const struct camera_frame *frame, cons
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     enum projection projection = frame->lens.projection;
     if ((projection != PROJECTION_PERSPECTIVE && projection != PROJECTION_ORTHOGRAPHIC) ||
-        frame->lens.stereo != STEREO_NONE || !vec3_finite(box->min) || !vec3_finite(box->max))
+        camera_has_views(frame) || !vec3_finite(box->min) || !vec3_finite(box->max))
         return all;
     for (int i = 0; i < 8; i++) {
         struct vec3 p = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
@@ -112,7 +112,7 @@ static void outline_rows(void *context, uint32_t item, int worker) {
     for (uint32_t y = o->area.y0 + item * ROWS; y < o->area.y1 && y < o->area.y0 + (item + 1) * ROWS; y++) {
         for (uint32_t x = o->area.x0; x < o->area.x1; x++) {
             bool shows = camera_ray_through(o->frame, film->x0 + x + 0.5, film->y0 + y + 0.5,
-                                            (struct sample2){0.5, 0.5}, 0, &ray) &&
+                                            (struct sample2){0.5, 0.5}, NULL, &ray) &&
                          world_nearest(o->job->world, &ray, &o->scratch[worker], &hit) &&
                          is_member(o->node_members, &hit);
             o->shows[(size_t)y * film->width + x] = shows;

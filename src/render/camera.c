@@ -21,14 +21,26 @@ static struct vec3 nearest_axis(struct vec3 forward) {
 }
 
 /* The parts of the frame that only a lens, another projection or a second eye needs. */
-static bool prepare_lens(const struct camera *camera, const struct lens *lens, struct camera_frame *out,
-                         struct error *error) {
+static bool prepare_lens(const struct camera *camera, const struct settings *settings, struct picture_size size,
+                         struct camera_frame *out, struct error *error) {
+    enum { FILM_SIDE = 1 << 20 };
+    const struct lens *lens = &settings->lens;
     bool planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
     out->lens = *lens;
     if (lens->aperture > 0 && !planar)
         return error_set(error, ERROR_SCENE, "a lens (aperture) works only with perspective and orthographic pictures");
     if (lens->stereo != STEREO_NONE && lens->projection != PROJECTION_PERSPECTIVE)
         return error_set(error, ERROR_SCENE, "stereo works only with perspective pictures");
+    if (lens->columns > 0 && (lens->projection != PROJECTION_PERSPECTIVE || lens->aperture > 0 || lens->shift_x != 0 ||
+                              lens->shift_y != 0 || lens->stereo != STEREO_NONE))
+        return error_set(error, ERROR_SCENE,
+                         "the views of a light field are perspective pictures through pinholes: they have no aperture, "
+                         "shift or stereo");
+    if (lens->columns > 0 && (size.width > FILM_SIDE || size.height > FILM_SIDE))
+        return error_set(error, ERROR_SCENE, "a light field of %.0f x %.0f pixels; its grid has at most %d on a side",
+                         size.width, size.height, FILM_SIDE);
+    if (lens->columns > 0 && (settings->cropped || settings->overlay != OVERLAY_NONE))
+        return error_set(error, ERROR_SCENE, "a light field cannot be combined with --crop or --overlay");
     /* Each picture of a pair has half of the width. */
     if (lens->stereo == STEREO_SIDE) {
         if (floor(out->width / 2) != out->width / 2)
@@ -41,7 +53,7 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
         return error_set(error, ERROR_SCENE, "the point in focus must be in front of the camera");
     if (lens->aperture > 0 && out->focus < NUMBER_SMALLEST)
         return error_set(error, ERROR_SCENE, "focus is too small: %g", out->focus);
-    if (lens->stereo != STEREO_NONE && lens->screen < NUMBER_SMALLEST)
+    if (camera_has_views(out) && lens->screen < NUMBER_SMALLEST)
         return error_set(error, ERROR_SCENE, "screen is too small: %g", lens->screen);
     /* How wide a pixel is, in the unit of the projection: a length, or an angle. */
     if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
@@ -61,8 +73,13 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
 
 bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
                     struct camera_frame *out, char warning[256], struct error *error) {
+    const struct lens *lens = &settings->lens;
     double width = size.width, height = size.height;
     warning[0] = '\0';
+    if (lens->columns > 0) {
+        width /= lens->columns;
+        height /= (double)lens->rows * lens_grids(lens);
+    }
     struct vec3 view = settings->view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view;
     if (!vec3_finite(view) || !(vec3_length(view) > 0))
         return error_set(error, ERROR_SCENE, "%s",
@@ -90,7 +107,7 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     out->spread = pixel;
     out->unit_right = right;
     out->unit_down = vec3_normalize(down);
-    return prepare_lens(camera, &settings->lens, out, error);
+    return prepare_lens(camera, settings, size, out, error);
 }
 
 struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time) {
@@ -106,6 +123,8 @@ struct box camera_origins(const struct camera_frame *frame) {
     double radius = lens->aperture;
     if (lens->stereo != STEREO_NONE)
         radius += lens->eye_distance / 2;
+    if (lens->columns > 0)
+        radius += lens->spacing * (lens->rows + lens->columns - 2) / 2;
     if (lens->projection == PROJECTION_ORTHOGRAPHIC)
         radius += vec3_length(frame->right) * frame->width * (0.5 + fabs(lens->shift_x)) +
                   vec3_length(frame->down) * frame->height * (0.5 + fabs(lens->shift_y));
@@ -156,14 +175,44 @@ static struct vec3 panorama_direction(const struct camera_frame *frame, double x
     return vec3_add_scaled(vec3_scale(level, c_lat), frame->unit_down, s_lat);
 }
 
-bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position, int eye,
-                        struct ray *out) {
+struct camera_view camera_view_of_eye(const struct camera_frame *frame, int eye) {
+    return (struct camera_view){.right = 0.5 * eye * frame->lens.eye_distance};
+}
+
+/* The step of `count` of that length that `x` is in; what is beyond the last one belongs to it. */
+static double step_at(double x, double length, double count) {
+    return fmin(fmax(floor(x / length), 0), count - 1);
+}
+
+struct camera_view camera_view_at(const struct camera_frame *frame, double x, double y) {
     const struct lens *lens = &frame->lens;
-    /* The right half of a pair belongs to the right eye. */
-    if (lens->stereo == STEREO_SIDE && eye == 0) {
-        eye = x < frame->width ? -1 : 1;
-        x = x < frame->width ? x : x - frame->width;
+    if (lens->columns > 0) {
+        double column = step_at(x, frame->width, lens->columns);
+        double row = step_at(y, frame->height, (double)lens->rows * lens_grids(lens));
+        double own = fmod(row, lens->rows); /* in its grid */
+        return (struct camera_view){.x = column * frame->width,
+                                    .y = row * frame->height,
+                                    .right = (column - (lens->columns - 1) / 2.0) * lens->spacing,
+                                    .down = (own - (lens->rows - 1) / 2.0) * lens->spacing,
+                                    .number = (uint32_t)(row * lens->columns + column),
+                                    .depth = row >= lens->rows};
     }
+    if (lens->stereo != STEREO_SIDE)
+        return (struct camera_view){0};
+    /* The right half of a pair belongs to the right eye. */
+    bool is_right = x >= frame->width;
+    struct camera_view view = camera_view_of_eye(frame, is_right ? 1 : -1);
+    view.x = is_right ? frame->width : 0;
+    view.number = is_right;
+    return view;
+}
+
+bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position,
+                        const struct camera_view *view, struct ray *out) {
+    const struct lens *lens = &frame->lens;
+    struct camera_view at = view ? *view : camera_view_at(frame, x, y);
+    x -= at.x;
+    y -= at.y;
     x += lens->shift_x * frame->width;
     y -= lens->shift_y * frame->height;
     switch (lens->projection) {
@@ -184,9 +233,9 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
         out->direction = panorama_direction(frame, x, y);
         return true;
     }
-    /* The rays of both eyes meet on the screen. */
-    if (lens->stereo != STEREO_NONE) {
-        struct vec3 offset = vec3_scale(frame->unit_right, 0.5 * eye * lens->eye_distance);
+    /* The rays of all eyes meet on the screen. */
+    if (at.right != 0 || at.down != 0) {
+        struct vec3 offset = vec3_add_scaled(vec3_scale(frame->unit_right, at.right), frame->unit_down, at.down);
         out->origin = vec3_add(out->origin, offset);
         out->direction = vec3_add_scaled(out->direction, offset, -1 / lens->screen);
     }

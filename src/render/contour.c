@@ -35,10 +35,11 @@ void contour_destroy(struct contour *contour) {
 static struct contour_sample sample_at(const struct renderer *renderer, struct worker *worker, double x, double y) {
     const struct world *world = renderer->job->world;
     struct contour_sample sample = {.primitive = WORLD_NOTHING};
-    sample.second = renderer->camera.lens.stereo == STEREO_SIDE && x >= renderer->camera.width;
+    const struct camera_view view = camera_view_at(&renderer->camera, x, y);
+    sample.view = view.number;
     struct ray ray;
     struct hit hit;
-    if (!renderer_middle_ray(renderer, x, y, &ray))
+    if (view.depth || !renderer_middle_ray(renderer, x, y, &ray))
         return sample;
     bool met = world_nearest(world, &ray, &worker->scratch, &hit);
     for (int i = 0; met && i < MEDIA_LIMIT && world->material_has_medium[hit.material]; i++) {
@@ -58,7 +59,7 @@ static struct contour_sample sample_at(const struct renderer *renderer, struct w
 /* Whether an edge is between two neighbouring samples. A surface that curves away stays near the tangent plane of one
  * of them, and so gives no edge. */
 static bool has_edge(const struct contour_sample *a, const struct contour_sample *b) {
-    if (a->second != b->second)
+    if (a->view != b->view)
         return false;
     if (a->primitive != b->primitive || a->material != b->material)
         return true;

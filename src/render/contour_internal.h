@@ -12,7 +12,7 @@ struct contour_sample {
     struct vec3 point, normal; /* normal: unit, to the viewer */
     double pixel;              /* diameter of a pixel there, world units */
     uint32_t primitive, material;
-    bool second; /* in the right picture of a pair */
+    uint32_t view; /* its number (struct camera_view) */
 };
 
 /* State of one worker. Owns the samples. Zero: no lines. */

@@ -101,7 +101,7 @@ static void render_single(const struct headlight *headlight, struct world_scratc
     struct packet_answer met;
     struct colour colour = {0, 0, 0};
     uint64_t before = geom_work(&scratch->geom);
-    if (camera_ray_through(&headlight->camera, x + 0.5, y + 0.5, (struct sample2){0.5, 0.5}, 0, &ray)) {
+    if (camera_ray_through(&headlight->camera, x + 0.5, y + 0.5, (struct sample2){0.5, 0.5}, NULL, &ray)) {
         bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
         colour = colour_of(headlight, scratch, ray, found ? &met : NULL);
         if (headlight->shows == HEADLIGHT_COST)

@@ -67,7 +67,7 @@ static double surface_depth(struct overlay_drawing *drawing, struct world_scratc
         return (double)*depth;
     double px = x / cell * cell + film->x0 + 0.5 * cell, py = y / cell * cell + film->y0 + 0.5 * cell;
     *depth = INFINITY;
-    if (camera_ray_through(&drawing->camera, px, py, (struct sample2){0.5, 0.5}, 0, &ray) &&
+    if (camera_ray_through(&drawing->camera, px, py, (struct sample2){0.5, 0.5}, NULL, &ray) &&
         world_nearest(drawing->job->world, &ray, scratch, &hit))
         *depth = (float)fmax(0, depth_of(drawing, hit.point));
     return (double)*depth;

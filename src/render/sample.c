@@ -4,6 +4,8 @@
 #include "render/sample_internal.h"
 #include "render/sampler.h"
 
+#include <float.h>
+
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error) {
@@ -19,7 +21,7 @@ bool renderer_middle_ray(const struct renderer *renderer, double x, double y, st
         *out = camera_ray(&renderer->camera, x, y);
         return true;
     }
-    return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
+    return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, NULL, out);
 }
 
 static struct colour trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
@@ -48,20 +50,38 @@ static struct path_parts parts_of_eyes(const struct path_parts *left, const stru
     return both;
 }
 
-/* Through a lens, in another projection, for two eyes. */
+/* The depth of the middle of a pixel as a colour: the direction of a ray is one unit long along the view. */
+static struct colour sample_depth(struct renderer *renderer, struct worker *worker, const struct pixel_sample *at) {
+    struct ray ray;
+    struct hit hit;
+    worker->camera_rays++;
+    if (!renderer_middle_ray(renderer, (double)at->x + 0.5, (double)at->y + 0.5, &ray) ||
+        !world_nearest(renderer->job->world, &ray, &worker->scratch, &hit))
+        return colour_all(0);
+    return colour_all(fmin(hit.t, (double)FLT_MAX));
+}
+
+/* Through a lens, in another projection, in one of several views. */
 static struct colour sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
-                                    struct sample2 at, double time, double share) {
+                                    const struct pixel_sample *at, double time, double share) {
     const struct sampler sampler = worker->state.sampler;
     struct sample2 position = sampler_lens(&sampler);
+    double x = (double)at->x + at->dx, y = (double)at->y + at->dy;
     struct ray ray, right_ray;
     bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
-    if (!camera_ray_through(camera, at.x, at.y, position, anaglyph ? -1 : 0, &ray))
+    /* A wide filter does not look beyond the view of the pixel. */
+    struct camera_view view =
+        anaglyph ? camera_view_of_eye(camera, -1) : camera_view_at(camera, (double)at->x + 0.5, (double)at->y + 0.5);
+    if (view.depth)
+        return sample_depth(renderer, worker, at);
+    if (!camera_ray_through(camera, x, y, position, &view, &ray))
         return colour_all(0);
     ray.time = time;
     struct colour colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
     if (!anaglyph)
         return colour;
-    (void)camera_ray_through(camera, at.x, at.y, position, 1, &right_ray);
+    view = camera_view_of_eye(camera, 1);
+    (void)camera_ray_through(camera, x, y, position, &view, &right_ray);
     right_ray.time = time;
     struct path_parts *parts = worker->state.parts, left_parts;
     if (parts) {
@@ -115,8 +135,7 @@ static double sample_share(const struct renderer *renderer, uint64_t number) {
 static struct colour sample_single(struct renderer *renderer, struct worker *worker,
                                    const struct pixel_sample *position) {
     begin_sample(renderer, worker, position);
-    double x = (double)position->x + position->dx, y = (double)position->y + position->dy,
-           share = sample_share(renderer, position->number);
+    double share = sample_share(renderer, position->number);
     const struct camera_frame *camera = &renderer->camera;
     double time = renderer->timed ? sampler_time(&worker->state.sampler) : 0;
     if (renderer->timed && renderer->job->settings.motion.moves) {
@@ -127,8 +146,8 @@ static struct colour sample_single(struct renderer *renderer, struct worker *wor
             return colour_all(0); /* the one moment in which a view turns through zero */
     }
     if (!camera_is_plain(camera))
-        return sample_through(renderer, worker, camera, (struct sample2){x, y}, time, share);
-    struct ray ray = camera_ray(camera, x, y);
+        return sample_through(renderer, worker, camera, position, time, share);
+    struct ray ray = camera_ray(camera, (double)position->x + position->dx, (double)position->y + position->dy);
     ray.time = time;
     return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);
 }

@@ -51,11 +51,11 @@ static bool make_planes(const struct camera_frame *camera, struct view_planes *o
     const struct lens *lens = &camera->lens;
     bool is_planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
     struct ray corner[4];
-    if (!is_planar || lens->aperture > 0 || lens->stereo != STEREO_NONE)
+    if (!is_planar || lens->aperture > 0 || camera_has_views(camera))
         return false;
     for (int i = 0; i < 4; i++) {
         double x = i == 1 || i == 2 ? camera->width : 0, y = i >= 2 ? camera->height : 0;
-        if (!camera_ray_through(camera, x, y, (struct sample2){0.5, 0.5}, 0, &corner[i]))
+        if (!camera_ray_through(camera, x, y, (struct sample2){0.5, 0.5}, NULL, &corner[i]))
             return false;
     }
     struct vec3 middle = vec3_scale(vec3_add(ray_at(&corner[0], 1), ray_at(&corner[2], 1)), 0.5);
@@ -227,7 +227,7 @@ static bool fills_picture(struct check *check, uint32_t solid) {
         struct ray ray;
         struct crossing crossing;
         uint32_t primitive;
-        if (!camera_ray_through(camera, x * camera->width, y * camera->height, (struct sample2){0.5, 0.5}, 0, &ray))
+        if (!camera_ray_through(camera, x * camera->width, y * camera->height, (struct sample2){0.5, 0.5}, NULL, &ray))
             continue;
         if (!world_nearest_crossing(check->world, &ray, &check->scratch, &primitive, &crossing) || primitive != solid)
             return false;

@@ -20,18 +20,18 @@ static const double line = 1.2;
 static const double max_bend = 0.25;
 enum { SPLITS = 12, CORNERS = 8, CHUNK = 256 };
 
-/* The projection of one eye; `left` and `right` are its part of the picture. */
+/* The projection of one eye; `left`, `right`, `top` and `bottom` are its part of the picture. */
 struct view {
     struct camera_frame camera;
-    double shift, left, right; /* pixels */
+    double shift, shift_down, left, right, top, bottom; /* pixels */
     bool planar;
 };
 
 struct thin_drawing {
     struct thin_map *map;
     const struct renderer *renderer;
-    struct view views[2];
-    int view_count;
+    struct view *views;
+    uint32_t view_count;
     double margin;
     _Atomic bool found;
 };
@@ -115,7 +115,8 @@ static bool is_outside(const struct view *view, const struct outline *outline, d
         top = fmin(top, outline->y[i]);
         bottom = fmax(bottom, outline->y[i]);
     }
-    return right < view->left - more || left > view->right + more || bottom < -more || top > view->camera.height + more;
+    return right < view->left - more || left > view->right + more || bottom < view->top - more ||
+           top > view->bottom + more;
 }
 
 /* The corners in the picture. */
@@ -132,6 +133,7 @@ static enum outline_kind project(const struct view *view, const struct vec3 corn
             (void)camera_project(camera, corners[i], &out->x[i], &out->y[i]);
         before += seen && isfinite(out->x[i]) && isfinite(out->y[i]);
         out->x[i] += view->shift;
+        out->y[i] += view->shift_down;
         near = fmin(near, depth);
         far = fmax(far, depth);
     }
@@ -184,8 +186,8 @@ static void draw(struct thin_drawing *drawing, const struct view *view, const st
         bottom = fmax(bottom, outline->y[corners[i]]);
     }
     /* The rows that it may touch. */
-    double first = fmax(map->y0, floor(top - more)),
-           last = fmin((double)map->y0 + map->height - 1, floor(bottom + more));
+    double first = fmax(fmax(map->y0, view->top), floor(top - more)),
+           last = fmin(fmin((double)map->y0 + map->height, view->bottom) - 1, floor(bottom + more));
     if (!(first <= last))
         return;
     atomic_store_explicit(&drawing->found, true, memory_order_relaxed);
@@ -289,7 +291,7 @@ static void draw_chunk(void *context, uint32_t chunk, int worker) {
              end = begin + CHUNK < world->primitive_count ? begin + CHUNK : world->primitive_count;
     (void)worker;
     for (uint32_t i = begin; i < end && !pool_cancelled(drawing->renderer->pool); i++) {
-        for (int v = 0; v < drawing->view_count; v++) {
+        for (uint32_t v = 0; v < drawing->view_count; v++) {
             struct shape_part part;
             if (!is_near(drawing, &drawing->views[v], i))
                 continue;
@@ -302,23 +304,40 @@ static void draw_chunk(void *context, uint32_t chunk, int worker) {
 
 /* --- the map --- */
 
-/* For a stereo pair, both eyes: displaced, with windows shifted so that both show the same point at the screen. */
-static void add_view(struct thin_drawing *drawing, int eye) {
+/* Eyes are displaced, with windows shifted so that all show the same point at the screen. */
+static void add_view(struct thin_drawing *drawing, const struct camera_view *from) {
     struct view *view = &drawing->views[drawing->view_count++];
-    const struct lens *lens = &view->camera.lens;
-    view->camera = drawing->renderer->camera;
+    struct camera_frame *camera = &view->camera;
+    const struct lens *lens = &camera->lens;
+    *camera = drawing->renderer->camera;
     view->planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
-    view->right = view->camera.width;
-    if (eye == 0)
+    view->left = from->x;
+    view->right = from->x + camera->width;
+    view->top = from->y;
+    view->bottom = from->y + camera->height;
+    if (!camera_has_views(camera))
         return;
-    double offset = 0.5 * eye * lens->eye_distance;
-    view->camera.eye = vec3_add_scaled(view->camera.eye, view->camera.unit_right, offset);
-    view->shift = offset / lens->screen / vec3_length(view->camera.right);
-    if (lens->stereo == STEREO_SIDE && eye > 0) {
-        view->shift += view->camera.width;
-        view->left = view->camera.width;
-        view->right = 2 * view->camera.width;
+    camera->eye = vec3_add_scaled(camera->eye, camera->unit_right, from->right);
+    camera->eye = vec3_add_scaled(camera->eye, camera->unit_down, from->down);
+    view->shift = from->right / lens->screen / vec3_length(camera->right) + from->x;
+    view->shift_down = from->down / lens->screen / vec3_length(camera->down) + from->y;
+}
+
+/* The views with colours: both eyes of a stereo pair, all of a light field. */
+static bool add_views(struct thin_drawing *drawing) {
+    const struct camera_frame *camera = &drawing->renderer->camera;
+    const struct lens *lens = &camera->lens;
+    uint32_t columns = lens->columns > 0 ? (uint32_t)lens->columns : lens->stereo == STEREO_NONE ? 1 : 2;
+    uint32_t rows = lens->columns > 0 ? (uint32_t)lens->rows : 1;
+    drawing->views = mem_alloc_zero((size_t)columns * rows, sizeof *drawing->views);
+    for (uint32_t i = 0; drawing->views && i < columns * rows; i++) {
+        struct camera_view view =
+            camera_view_at(camera, (i % columns + 0.5) * camera->width, (double)(i / columns + 0.5) * camera->height);
+        if (lens->stereo == STEREO_ANAGLYPH)
+            view = camera_view_of_eye(camera, i == 0 ? -1 : 1);
+        add_view(drawing, &view);
     }
+    return drawing->views != NULL;
 }
 
 bool thin_map_build(struct thin_map *map, const struct renderer *renderer, double margin, struct error *error) {
@@ -333,10 +352,12 @@ bool thin_map_build(struct thin_map *map, const struct renderer *renderer, doubl
     map->nearness = mem_alloc_zero((size_t)map->width * map->height, sizeof *map->nearness);
     if (!map->nearness)
         return error_no_memory(error, "the map of thin primitives");
-    bool pair = renderer->camera.lens.stereo != STEREO_NONE;
-    for (int eye = pair ? -1 : 0; eye <= (pair ? 1 : 0); eye += 2)
-        add_view(&drawing, eye);
+    if (!add_views(&drawing)) {
+        thin_map_destroy(map);
+        return error_no_memory(error, "the map of thin primitives");
+    }
     bool ok = pool_run(renderer->pool, (count + CHUNK - 1) / CHUNK, draw_chunk, &drawing);
+    mem_free(drawing.views);
     if (!ok || !atomic_load(&drawing.found))
         thin_map_destroy(map);
     return ok || error_set(error, ERROR_CANCELLED, "stopped while rendering");

@@ -159,6 +159,7 @@ struct part {
     struct film_rectangle area; /* with the rim, as far as that is in the picture */
     bool has_alpha;
     bool has_first; /* the first pass is made */
+    bool has_views; /* neighbours may be in another view */
 };
 
 static size_t index_of(const struct part *part, int64_t x, int64_t y) {
@@ -167,6 +168,19 @@ static size_t index_of(const struct part *part, int64_t x, int64_t y) {
 
 static struct colour *first_at(const struct part *part, int64_t x, int64_t y) {
     return &part->own->first[index_of(part, x, y)];
+}
+
+static struct camera_view view_of(const struct part *part, int64_t x, int64_t y) {
+    return camera_view_at(&part->renderer->camera, (double)x + 0.5, (double)y + 0.5);
+}
+
+/* Whether a pixel may be compared with the one at that offset: that is in the area and in the same view. */
+static bool has_neighbour(const struct part *part, int64_t x, int64_t y, int dx, int dy) {
+    const struct film_rectangle *area = &part->area;
+    int64_t nx = x + dx, ny = y + dy;
+    if (nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+        return false;
+    return !part->has_views || view_of(part, x, y).number == view_of(part, nx, ny).number;
 }
 
 /* Whether two first samples are on different surfaces, on different sides of an edge, or on different sides of the
@@ -179,18 +193,15 @@ static bool surfaces_differ(const struct camera_hit *a, const struct camera_hit 
 
 /* Whether the pixel may contain a thin primitive in front of the hit of one of the first samples in it or around it. */
 static bool has_thin(const struct part *part, int64_t x, int64_t y) {
-    const struct film_rectangle *area = &part->area;
     double nearness = part->whitted->fine ? (double)thin_map_at(&part->whitted->thin, x, y) : 0;
     if (!(nearness > 0))
         return false;
     bool pair = part->renderer->camera.lens.stereo == STEREO_ANAGLYPH; /* a sample has two rays */
-    for (int64_t ny = y - 1; ny <= y + 1; ny++) {
-        for (int64_t nx = x - 1; nx <= x + 1; nx++) {
-            bool inside = nx >= area->x0 && nx < area->x1 && ny >= area->y0 && ny < area->y1;
-            if (pair || (inside && part->own->hits[index_of(part, nx, ny)].t * nearness >= 1))
+    for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++)
+            if (pair || (has_neighbour(part, x, y, dx, dy) &&
+                         part->own->hits[index_of(part, x + dx, y + dy)].t * nearness >= 1))
                 return true;
-        }
-    }
     return false;
 }
 
@@ -208,13 +219,12 @@ static bool is_fine(const struct part *part, double tolerance) {
 
 static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
     const struct tone *tone = &part->renderer->job->settings.tone;
-    const struct film_rectangle *area = &part->area;
     const struct camera_hit *hits = part->own->hits;
     struct colour own = toned(tone, *first_at(part, x, y));
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
             int64_t nx = x + dx, ny = y + dy;
-            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+            if ((dx == 0 && dy == 0) || !has_neighbour(part, x, y, dx, dy))
                 continue;
             double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
             double alpha =
@@ -237,13 +247,11 @@ static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y
 static bool has_detail(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
     static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
     const struct tone *tone = &part->renderer->job->settings.tone;
-    const struct film_rectangle *area = &part->area;
     struct colour own = toned(tone, *first_at(part, x, y));
     for (int i = 0; i < 4; i++) {
         int dx = steps[i][0], dy = steps[i][1];
         double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
-        if (!is_fine(part, tolerance) || (dx != 0 && (x == area->x0 || x == area->x1 - 1)) ||
-            (dy != 0 && (y == area->y0 || y == area->y1 - 1)))
+        if (!is_fine(part, tolerance) || !has_neighbour(part, x, y, dx, dy) || !has_neighbour(part, x, y, -dx, -dy))
             continue;
         struct colour a = clamped(toned(tone, *first_at(part, x - dx, y - dy))),
                       b = clamped(toned(tone, *first_at(part, x + dx, y + dy)));
@@ -257,6 +265,8 @@ static bool has_detail(const struct part *part, int64_t x, int64_t y, struct obs
 
 static bool is_marked(const struct part *part, int64_t x, int64_t y) {
     struct observed_mark mark;
+    if (part->has_views && view_of(part, x, y).depth)
+        return false;
     bool marked = differs_from_neighbour(part, x, y, &mark) || (part->whitted->fine && has_detail(part, x, y, &mark));
     if (!marked && has_thin(part, x, y)) {
         mark = (struct observed_mark){.reason = MARK_THIN};
@@ -499,6 +509,7 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
                         .worker = worker,
                         .own = &whitted->workers[worker->index],
                         .has_first = !whitted->full || settings->keep_first,
+                        .has_views = camera_has_views(&renderer->camera),
                         .has_alpha = film_has_alpha(renderer->job->film->record)};
     const struct film_rectangle area =
         film_rectangle_grown(tile, whitted->full ? 0 : 1, renderer->job->width, renderer->job->height);

@@ -47,6 +47,11 @@ enum {
     RENDER_STEREO,
     RENDER_EYE_DISTANCE,
     RENDER_SCREEN,
+    RENDER_ROWS,
+    RENDER_COLUMNS,
+    RENDER_SIZE,
+    RENDER_SPACING,
+    RENDER_DEPTH,
     RENDER_SHUTTER,
     RENDER_EYE_TO,
     RENDER_VIEW_TO,
@@ -122,7 +127,18 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",
                              "Distance between the eyes."},
     [RENDER_SCREEN] = {"screen", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "focus",
-                       "Distance along the view where both eyes see the same point of the picture."},
+                       "Distance along the view where both eyes, or all views of a light field, see the same point of "
+                       "the picture."},
+    [RENDER_ROWS] = {"rows", KIND_WHOLE, OPTIONAL, IN_RANGE(1, LIGHT_FIELD_SIDE), NULL, "9 of gr.light_field",
+                     "Rows of a light field: a grid of views, each of width x height pixels, in one file."},
+    [RENDER_COLUMNS] = {"columns", KIND_WHOLE, OPTIONAL, IN_RANGE(1, LIGHT_FIELD_SIDE), NULL, "9 of gr.light_field",
+                        "Its columns."},
+    [RENDER_SIZE] = {"size", KIND_PAIR, OPTIONAL, IN_RANGE(1, 1 << 20), "pixels", "width, height",
+                     "Both in one table: {width, height}; a number alone is a square."},
+    [RENDER_SPACING] = {"spacing", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 100",
+                        "Distance between neighbouring cameras of a light field."},
+    [RENDER_DEPTH] = {"depth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                      "Whether a light field keeps the depths of its pixels."},
     [RENDER_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, NULL, "{0, 1}",
                         "Times when the shutter opens and closes, {open, close}; motion between them is blurred."},
     [RENDER_EYE_TO] = {"eye_to", KIND_POINT, OPTIONAL, ANY, NULL, "eye", "Position of a moving camera at time 1."},
@@ -274,18 +290,20 @@ static void apply_settings(const struct script_options *options, const struct sc
     if (settings_linear(settings) && !args[RENDER_FIRST_SETTING + srgb].given && !script_option_chosen(options, srgb))
         settings->tone.srgb = true;
 }
-_Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of a mask");
+_Static_assert(LIST_COUNT(SETTINGS_WITH_FIELD) <= 64, "every field of a setting has a bit of a mask");
 
 /* A field that has no effect without another one gets a notice, once for each line. */
 static void note_lone_fields(struct script_context *context, const struct script_value *args) {
-    static const struct {
+    const struct {
         int field, needs;
         int choice; /* that it must be; -1: any */
         const char *words;
     } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1, ""},
                  {RENDER_BLADE_ANGLE, RENDER_BLADES, -1, ""},
                  {RENDER_EYE_DISTANCE, RENDER_STEREO, -1, ""},
-                 {RENDER_SCREEN, RENDER_STEREO, -1, ""},
+                 {RENDER_SCREEN, args[RENDER_COLUMNS].given ? RENDER_COLUMNS : RENDER_STEREO, -1, ""},
+                 {RENDER_SPACING, RENDER_COLUMNS, -1, ""},
+                 {RENDER_DEPTH, RENDER_COLUMNS, -1, ""},
                  {RENDER_MIRROR, RENDER_SKY, -1, ""},
                  {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC, " = 'orthographic'"},
                  {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE, " = 'fisheye'"}};
@@ -293,7 +311,7 @@ static void note_lone_fields(struct script_context *context, const struct script
     for (size_t i = 0; i < COUNT(pairs); i++) {
         const struct script_value *needed = &args[pairs[i].needs];
         bool has = needed->given && (pairs[i].choice < 0 || needed->choice == pairs[i].choice);
-        if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox, pairs))
+        if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox, render_parameters))
             continue;
         sandbox_where(&context->sandbox, where, sizeof where);
         (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s", where,
@@ -325,6 +343,11 @@ static bool apply_lens(const struct script_value *args, struct lens *lens, const
     lens->stereo = (enum stereo)args[RENDER_STEREO].choice;
     lens->screen = args[RENDER_SCREEN].given ? args[RENDER_SCREEN].number : lens->focus > 0 ? lens->focus : fallback;
     lens->eye_distance = args[RENDER_EYE_DISTANCE].given ? args[RENDER_EYE_DISTANCE].number : lens->screen / 30;
+    lens->rows = (int)args[RENDER_ROWS].number;
+    lens->columns = (int)args[RENDER_COLUMNS].number;
+    lens->spacing = args[RENDER_SPACING].given ? args[RENDER_SPACING].number : lens->screen / 100;
+    lens->depth = args[RENDER_DEPTH].boolean && lens->columns > 0;
+    lens->fov = camera->fov;
     return true;
 }
 
@@ -432,12 +455,15 @@ static bool render_turntable(struct script_context *context, const struct render
 }
 
 /* The name of a picture without `file`: that of the script, with a number if there are several. False: no memory. */
-static bool name_picture(struct script_context *context, struct script_value *file) {
+static bool name_picture(struct script_context *context, const char *extension, struct script_value *file) {
     struct script *script = script_of(context);
     char end[32], name[PATH_SIZE];
     uint32_t number = ++script->unnamed, namesakes = script->host->namesakes;
     bool numbered = script->several_pictures || number > 1;
-    (void)snprintf(end, sizeof end, numbered ? "-%u.png" : ".png", (unsigned)number);
+    if (numbered)
+        (void)snprintf(end, sizeof end, "-%u%s", (unsigned)number, extension);
+    else
+        (void)snprintf(end, sizeof end, "%s", extension);
     context_picture_name(context, end, name, sizeof name);
     if (script->context.scene.is_model && (namesakes > 0 || assets_has_image(context->scene.assets, name))) {
         (void)snprintf(end, sizeof end, namesakes > 1 ? "-render-%u.png" : "-render.png", (unsigned)namesakes);
@@ -499,8 +525,22 @@ static bool use_sky_of_command_line(struct script_context *context, struct scrip
 /* Fills in what a picture may leave out. Positional pictures of --lenient have a camera of their own. */
 static bool complete(struct script_context *context, struct script_value *args, struct error *error) {
     enum { WIDTH = 960 };
-    if (!args[RENDER_FILE].given && !name_picture(context, &args[RENDER_FILE]))
+    bool has_size = args[RENDER_SIZE].given, is_field = args[RENDER_ROWS].given || args[RENDER_COLUMNS].given;
+    if (has_size && (args[RENDER_WIDTH].given || args[RENDER_HEIGHT].given))
+        return error_set(error, ERROR_SCENE, "size and width, height exclude each other");
+    if (has_size) {
+        struct vec3 size = args[RENDER_SIZE].vector;
+        if (size.x != floor(size.x) || size.y != floor(size.y))
+            return error_set(error, ERROR_SCENE, "size must be whole numbers of pixels");
+        set_number(&args[RENDER_WIDTH], size.x);
+        set_number(&args[RENDER_HEIGHT], size.y);
+    }
+    if (!args[RENDER_FILE].given && !name_picture(context, is_field ? ".lf" : ".png", &args[RENDER_FILE]))
         return error_no_memory(error, "a picture");
+    if (is_field) {
+        set_number(&args[RENDER_ROWS], 1);
+        set_number(&args[RENDER_COLUMNS], 1);
+    }
     set_number(&args[RENDER_WIDTH], args[RENDER_HEIGHT].given ? ceil(args[RENDER_HEIGHT].number * 16 / 9) : WIDTH);
     set_number(&args[RENDER_HEIGHT], ceil(args[RENDER_WIDTH].number * 9 / 16));
     if (!args[RENDER_EYE].given && !(context->lenient && !script_of(context)->only_named_pictures))
@@ -641,6 +681,16 @@ static bool gr_render(struct script_context *context, const struct script_value 
     return done;
 }
 
+static bool gr_light_field(struct script_context *context, const struct script_value *given,
+                           struct script_result *result, struct error *error) {
+    enum { SIDE = 9 };
+    struct script_value args[RENDER_COUNT];
+    memcpy(args, given, sizeof args);
+    set_number(&args[RENDER_ROWS], SIDE);
+    set_number(&args[RENDER_COLUMNS], SIDE);
+    return gr_render(context, args, result, error);
+}
+
 #define RENDER_TAIL " width height eye view up fov ambient? lights?"
 
 static const struct script_function render_rows[] = {
@@ -648,6 +698,8 @@ static const struct script_function render_rows[] = {
        "node file" RENDER_TAIL),
     GR("render_skybox", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render, with a sky picture.",
        "node file sky" RENDER_TAIL),
+    GR("light_field", render_parameters, RESULT_NOTHING, gr_light_field,
+       "Renders a light field: the pictures of a grid of cameras, in one file.", "node file"),
 };
 const struct function_rows render_functions = {render_rows, COUNT(render_rows)};
 

@@ -380,8 +380,7 @@ static bool read_value(const struct setting *option, const char *text, struct op
         if (field == (void *)&options->output && model_format_written(text) != FORMAT_OTHER) {
             options->other_model = options->model;
             options->model = text;
-        }
-        else
+        } else
             *(const char **)field = text;
         break;
     case SETTING_SIZE:
@@ -509,6 +508,9 @@ static const struct {
                       "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress",
                       "it only joins parts that are rendered"},
     [ACTION_COMPARE] = {"compare", "o|force|threshold|q", "it only compares two pictures"},
+    [ACTION_VIEW] = {"view",
+                     "o|force|size|eye|focus|aperture|direction|fov|frames|fps|loop|palette|contact-sheet|deep|j|q",
+                     "it shows a file that is rendered"},
 };
 enum { ACTIONS_WITH_WORDS = sizeof actions / sizeof *actions };
 

@@ -17,6 +17,7 @@ enum options_action {
     ACTION_RENDER,
     ACTION_MERGE /* the arguments are parts of pictures */,
     ACTION_COMPARE /* two pictures */,
+    ACTION_VIEW /* a light field or a panorama */,
     ACTION_HELP,
     ACTION_VERSION,
     ACTION_ANNOTATIONS,
@@ -79,6 +80,9 @@ struct options {
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
     double threshold;                /* --threshold, of gray compare */
+    const char *eyes;                /* --eye, of gray view as the next ones, or NULL */
+    const char *directions;          /* --direction, or NULL */
+    double focus, aperture, fov;     /* --focus, --aperture, --fov; 0: not given */
     bool force;                      /* --force: -o may replace a file that is no picture */
     int width, height;               /* --size, or 0: the sizes that the scripts choose */
     const char *targets_prefix;      /* -write-aa-targets, or NULL */

@@ -13,6 +13,17 @@ static bool check_together(const struct options *options, struct error *error) {
     bool merge = options->action == ACTION_MERGE;
     if (options->action == ACTION_COMPARE)
         return options->script_count == 2 || error_set(error, ERROR_USAGE, "compare needs two pictures");
+    if (options->action == ACTION_VIEW)
+        return options->script_count == 1 || error_set(error, ERROR_USAGE, "view needs one light field or panorama");
+    const char *of_view = options->eyes           ? "--eye"
+                          : options->directions   ? "--direction"
+                          : options->focus > 0    ? "--focus"
+                          : options->aperture > 0 ? "--aperture"
+                          : options->fov > 0      ? "--fov"
+                                                  : NULL;
+    if (of_view)
+        return error_set(error, ERROR_USAGE, "%s is for gray view; the camera of a scene has fields of gr.render",
+                         of_view);
     if (options->threshold > 0)
         return error_set(error, ERROR_USAGE, "--threshold is for gray compare; the noise of a picture is --noise X");
     if (options->action != ACTION_RENDER && !merge)
@@ -217,7 +228,8 @@ static bool check_animation(struct options *options, struct error *error) {
     options->animation = animation_of(options->output);
     /* Options that would have no effect without an animation. */
     if (options->animation == ANIMATION_NONE) {
-        const char *only = options->keep_frames ? "--keep-frames" : options->contact_sheet ? "--contact-sheet" : NULL;
+        bool sheet = options->contact_sheet && options->action != ACTION_VIEW;
+        const char *only = options->keep_frames ? "--keep-frames" : sheet ? "--contact-sheet" : NULL;
         if (options->action == ACTION_MERGE && !only)
             only = options->script.frames.rate > 0 ? "--fps"
                    : options->script.frames.loops  ? "--loop"

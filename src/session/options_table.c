@@ -5,6 +5,7 @@
 #include "base/isa.h"
 #include "formats/model_format.h"
 #include "image/picture_file.h"
+#include "math/range.h"
 #include "session/options_table.h"
 
 #include <limits.h>
@@ -26,6 +27,7 @@ static const char *const group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_FILES] = "Files",
     [OPTION_GROUP_ANIMATION] = "Animation",
     [OPTION_GROUP_MODELS] = "Models",
+    [OPTION_GROUP_VIEWS] = "Light fields and panoramas (gray view)",
     [OPTION_GROUP_OTHER_PROGRAMS] = "Scenes written for other programs",
     [OPTION_GROUP_SANDBOX] = "Sandbox",
     [OPTION_GROUP_EXECUTION] = "Execution",
@@ -103,7 +105,22 @@ static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--keep-frames", NULL, "", NULL, FIELD(keep_frames), 0, 0, 0,
      NULL, "Keep the frames of the animation FILE as PNG files in the folder FILE.frames."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--contact-sheet", NULL, "", NULL, FIELD(contact_sheet), 0, 0,
-     0, NULL, "For the animation dir/foo.gif also write dir/foo.sheet.png: small pictures of all frames."},
+     0, NULL,
+     "For the animation dir/foo.gif also write dir/foo.sheet.png: small pictures of all frames. With gray view: one "
+     "picture of all views."},
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_VIEWS, "--eye", "X,Y,Z[:X,Y,Z...]", "", NULL, FIELD(eyes), 0, 0, 0,
+     "0,0,0",
+     "Where the eye is in a light field: from the middle of its cameras to the right, up and along the view; several "
+     "are a path for --frames."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_VIEWS, "--focus", "DISTANCE", "", NULL, FIELD(focus), 0, NUMBER_SMALLEST,
+     HUGE_VAL, "where all views show the same", "Distance of the plane in focus."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_VIEWS, "--aperture", "RADIUS", "", NULL, FIELD(aperture), 0, 0, HUGE_VAL,
+     NULL, "Radius of the lens."},
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_VIEWS, "--direction", "LON,LAT[:LON,LAT...]", "", NULL, FIELD(directions),
+     0, 0, 0, "0,0",
+     "Where to look in a panorama, degrees to the right and up from its middle; several are a path for --frames."},
+    {SETTING_NUMBER, CHANGES_RUN, OPTION_GROUP_VIEWS, "--fov", "DEGREES", "", NULL, FIELD(fov), 0, 1, 179, "50",
+     "Full vertical angle of the view of a panorama."},
     {SETTING_CHOICE, CHANGES_SAMPLES, OPTION_GROUP_OTHER_PROGRAMS, "--transform-order", NULL, LIST_BARS(SCRIPT_ORDERS),
      NULL, FIELD(script.transform_order), 0, 0, 0, "auto",
      "Order of transforms; new: in the order in which they are written; old: the last one acts first; separate: scale, "

@@ -22,7 +22,7 @@ struct integrator_traits integrator_traits(enum integrator_kind integrator) {
 }
 
 struct settings settings_default(void) {
-    struct settings settings = {.shutter = {0, 1}, .lens = {.view_height = 2, .angle = 180, .screen = 1}};
+    struct settings settings = {.shutter = {0, 1}, .lens = {.view_height = 2, .angle = 180}};
     for (int i = 0; i < setting_count; i++)
         setting_store(&setting_table[i], &settings, setting_table[i].initial);
     return settings;

@@ -41,8 +41,23 @@ struct lens {
     double blade_angle; /* degrees */
     enum stereo stereo;
     double eye_distance; /* between the two eyes */
-    double screen;       /* distance along the view where both eyes see the same place of the picture */
+    double screen;       /* distance along the view where both eyes, or all views, see the same place of the picture */
+    /* A light field: the film is a grid of views, from cameras on a plane across the view. 0: one camera. */
+    int rows, columns;
+    double spacing; /* between neighbouring cameras */
+    bool depth; /* below the grid there is another one, whose colours are depths along the view; 0: nothing is hit */
+    double fov; /* of the camera, for the file of a light field */
 };
+enum { LIGHT_FIELD_SIDE = 1024 }; /* of the grid */
+/* The grids of views of the film, one below the other; 0: no light field. */
+static inline uint32_t lens_grids(const struct lens *lens) {
+    return lens->columns > 0 ? 1 + (uint32_t)lens->depth : 0;
+}
+/* Whether a film of that size is such grids of equal views. */
+static inline bool lens_fits(const struct lens *lens, uint32_t width, uint32_t height) {
+    return lens->columns > 0 && lens->rows > 0 && width % (uint32_t)lens->columns == 0 &&
+           height % ((uint32_t)lens->rows * lens_grids(lens)) == 0;
+}
 
 /* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly. */
 struct camera_motion {
@@ -228,6 +243,7 @@ enum option_group {
     OPTION_GROUP_FILES,
     OPTION_GROUP_ANIMATION,
     OPTION_GROUP_MODELS,
+    OPTION_GROUP_VIEWS,
     OPTION_GROUP_OTHER_PROGRAMS,
     OPTION_GROUP_SANDBOX,
     OPTION_GROUP_EXECUTION,
@@ -419,12 +435,21 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(FLAG, bool, passes, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                        \
     X(FLAG, bool, keep_first, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                    \
     X(FLAG, bool, show_refined, RUN, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)
+/* What the file of a light field states. */
+#define SETTINGS_OF_GRID(X)                                                                                            \
+    X(WHOLE, int, lens.rows, FINISH, 0, 1, LIGHT_FIELD_SIDE, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)       \
+    X(WHOLE, int, lens.columns, FINISH, 0, 1, LIGHT_FIELD_SIDE, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)    \
+    X(NUMBER, double, lens.spacing, FINISH, 0, 0, HUGE_VAL, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)        \
+    X(FLAG, bool, lens.depth, FINISH, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
+    X(NUMBER, double, lens.screen, FINISH, 1, 0, HUGE_VAL, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)         \
+    X(NUMBER, double, lens.fov, FINISH, 0, 0, 180, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)
 #define SETTINGS_OF_RADIUS(X)                                                                                          \
     X(NUMBER, double, caustics.radius, SAMPLES, 0, 0, HUGE_VAL, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)
 
 /* All lists; those with a field of gr.render come first. */
 #define SETTINGS_WITH_FIELD(X) SETTINGS_OF_SCENES(X) SETTINGS_OF_TONE(X) SETTINGS_OF_FINISH(X) SETTINGS_OF_CAUSTICS(X)
-#define SETTINGS(X) SETTINGS_WITH_FIELD(X) SETTINGS_OF_RUNS(X) SETTINGS_WITHIN(X) SETTINGS_OF_RADIUS(X)
+#define SETTINGS(X)                                                                                                    \
+    SETTINGS_WITH_FIELD(X) SETTINGS_OF_RUNS(X) SETTINGS_WITHIN(X) SETTINGS_OF_RADIUS(X) SETTINGS_OF_GRID(X)
 
 #define SETTING_MEMBER(kind, type, member, ...) type member;
 struct settings {

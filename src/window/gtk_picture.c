@@ -144,10 +144,10 @@ G_DEFINE_FINAL_TYPE(GrayPicture, gray_picture, GTK_TYPE_WIDGET)
 static void draw_tiles(GtkSnapshot *snapshot, const struct gui *gui, double scale) {
     const struct window_state *state = &gui->state;
     for (uint32_t tile = 0; tile < gui->tiles.count; tile++) {
-        if (!gui->tiles.textures[tile])
-            continue;
         struct tile_place to =
             tile_place(&gui->tiles, tile, (uint32_t)MAX(state->shown_width, 0), (uint32_t)MAX(state->shown_height, 0));
+        if (!gui->tiles.textures[tile] || to.left == to.right || to.top == to.bottom)
+            continue;
         graphene_rect_t place = GRAPHENE_RECT_INIT(
             (float)((state->left + (double)to.left) / scale), (float)((state->top + (double)to.top) / scale),
             (float)((to.right - to.left) / scale), (float)((to.bottom - to.top) / scale));

@@ -225,12 +225,12 @@ TEST(every_ending_that_gray_writes_is_written_and_others_are_wrong_usage_that_li
     }
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         (void)snprintf(command, sizeof command, "$gray -q -o %s a.lua", others[i]);
-        test_shell(command, 2, "a name ends in .png, .pfm, .hdr or .exr, or for animations in .apng, .gif");
+        test_shell(command, 2, "a name ends in .png, .pfm, .hdr, .exr or .lf, or for animations in .apng, .gif");
     }
     /* Also where a file has that name. */
     test_shell("touch e.bmp; $gray -q -o e.bmp a.lua", 2, "gray writes no .bmp files");
     test_shell("$gray -q a.lua && cp a.png t.bmp; $gray -q -o t.bmp a.lua", 2, "gray writes no .bmp files");
     test_write_text(test_path("b.lua"), "gr.render{node = gr.sphere{}, width = 8, height = 8, file = 'x.bmp'}");
-    test_shell("$gray -q b.lua", 1, "the name of a picture ends in .png, .pfm, .hdr or .exr");
+    test_shell("$gray -q b.lua", 1, "the name of a picture ends in .png, .pfm, .hdr, .exr or .lf");
     test_shell("test -s e.bmp || ls *.bmp *.step 2>/dev/null | tr '\\n' ' '", 0, "e.bmp t.bmp");
 }

@@ -409,7 +409,7 @@ TEST(camera_projects_a_point_to_where_its_ray_goes_through) {
         for (int i = 0; i < 300; i++) {
             double x = test_uniform(&random, 40, 160), y = test_uniform(&random, 30, 120), u, v;
             struct ray ray;
-            if (!camera_ray_through(&frame, x, y, (struct sample2){0.5, 0.5}, 0, &ray))
+            if (!camera_ray_through(&frame, x, y, (struct sample2){0.5, 0.5}, NULL, &ray))
                 continue;
             CHECK(camera_project(&frame, vec3_add_scaled(ray.origin, ray.direction, test_uniform(&random, 0.5, 9)), &u,
                                  &v));

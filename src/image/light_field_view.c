@@ -1,0 +1,379 @@
+/* A ray is looked up in the four cameras around the point where it crosses the plane of the cameras, at the point where
+ * it crosses the plane in focus: the mean of 4 x 4 pixels, linear in each of four coordinates. With depths, that plane
+ * is at the surface that the ray meets (S. Gortler, R. Grzeszczuk, R. Szeliski, M. Cohen, "The Lumigraph", SIGGRAPH
+ * 1996), and cameras that see another surface there do not count. A lens is the mean over its points.
+ *
+ * Coordinates are those of the picture: x to the right, y downwards. A point at distance z from the plane is given by
+ * its inverse, the disparity: the pixel of a camera that shows it is linear in it. The terms are ordered so that an eye
+ * at a camera gives the whole numbers of its pixels without rounding. */
+#include "image/light_field_view.h"
+
+#include "base/mem.h"
+#include "math/elementary.h"
+
+#include <math.h>
+
+enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS = 6 };
+#define GOLDEN_ANGLE 2.39996322972865332
+
+/* A point of the lens: its share of the picture is the same for all. */
+struct lens_point {
+    double offset[AXES];
+};
+
+struct drawing {
+    const struct light_field *field;
+    struct light_field_camera camera;
+    double count[AXES], size[AXES]; /* of cameras, and of the pixels of a view */
+    double spacing, screen, pixel;  /* pixel: its side at distance 1 */
+    double eye[AXES];
+    double ratio;                   /* of a pixel of the picture to one of a view */
+    double disparity, shares[AXES]; /* of the plane in focus; half of the picture, pixels of a view */
+    struct lens_point *points;
+    uint32_t point_count;
+    double *weights; /* of all cameras for the whole picture; NULL: they differ by pixel */
+    double *sums;    /* for each worker a row of it */
+    float (*out)[3];
+};
+
+/* --- where rays are in the field --- */
+
+/* A ray from a point of the lens: the point of the plane that it crosses, and two terms of its pixels (pixel_of). */
+struct field_ray {
+    double crossing[AXES], picture[AXES], lens[AXES];
+};
+
+/* Within a millionth of a camera, it is at the camera. */
+static double snapped(double u) {
+    double near = floor(u + 0.5);
+    return fabs(u - near) < 1e-6 ? near : u;
+}
+
+static double middle_of(double count) {
+    return (count - 1) / 2;
+}
+
+/* The place of a point among the cameras: 0 is the first one. */
+static double among_cameras(const struct drawing *d, int axis, double x) {
+    return d->spacing > 0 ? snapped(x / d->spacing + middle_of(d->count[axis])) : 0;
+}
+
+static double camera_at(const struct drawing *d, int axis, double index) {
+    return (index - middle_of(d->count[axis])) * d->spacing;
+}
+
+static struct field_ray ray_of(const struct drawing *d, const struct lens_point *point, double x, double y) {
+    const double at[AXES] = {x, y};
+    struct field_ray ray;
+    for (int k = 0; k < AXES; k++) {
+        ray.picture[k] = at[k] * d->ratio - d->shares[k];
+        ray.lens[k] = -d->eye[k] / d->screen - point->offset[k] / d->camera.focus;
+        double slope = ray.picture[k] * d->pixel + ray.lens[k];
+        ray.crossing[k] = d->eye[k] + point->offset[k] - d->camera.z * slope;
+    }
+    return ray;
+}
+
+/* The pixel of the camera at `camera` that shows the point of the ray with this disparity, from the corner of the
+ * view. */
+static double pixel_of(const struct drawing *d, const struct field_ray *ray, int axis, double camera,
+                       double disparity) {
+    double shift = (ray->crossing[axis] - camera) * disparity + (camera / d->screen + ray->lens[axis]);
+    return d->size[axis] / 2 + ray->picture[axis] + shift / d->pixel;
+}
+
+/* --- pixels of a view --- */
+
+static uint32_t index_in(double x, double size) {
+    return (uint32_t)fmin(fmax(x, 0), size - 1);
+}
+
+/* Adds the pixels around a place, linear between their middles. What is beyond the border hardly counts. */
+static void add_pixels(const struct drawing *d, const float *view, const double at[AXES], double weight,
+                       double sum[4]) {
+    uint32_t first[AXES], second[AXES];
+    double part[AXES];
+    for (int k = 0; k < AXES; k++) {
+        double low = at[k] - 0.5, whole = floor(low);
+        if (!(at[k] >= 0 && at[k] <= d->size[k]))
+            weight *= 1e-9;
+        first[k] = index_in(whole, d->size[k]);
+        second[k] = index_in(whole + 1, d->size[k]);
+        part[k] = low - whole;
+    }
+    size_t width = (size_t)d->size[X];
+    const float *rows[2] = {view + first[Y] * width * LIGHT_FIELD_NUMBERS,
+                            view + second[Y] * width * LIGHT_FIELD_NUMBERS};
+    for (int c = 0; c < 3; c++) {
+        double value = 0;
+        for (int j = 0; j < 2; j++) {
+            double share = j == 0 ? 1 - part[Y] : part[Y];
+            double left = (double)rows[j][first[X] * LIGHT_FIELD_NUMBERS + (uint32_t)c];
+            double right = (double)rows[j][second[X] * LIGHT_FIELD_NUMBERS + (uint32_t)c];
+            value += share * ((1 - part[X]) * left + part[X] * right);
+        }
+        sum[c] += weight * value;
+    }
+    sum[3] += weight;
+}
+
+/* The disparity of the pixel there; false: it is beyond the border. */
+static bool disparity_there(const struct drawing *d, const float *view, const double at[AXES], double *out) {
+    if (!(at[X] >= 0 && at[X] <= d->size[X] && at[Y] >= 0 && at[Y] <= d->size[Y]))
+        return false;
+    size_t x = index_in(at[X], d->size[X]), y = index_in(at[Y], d->size[Y]);
+    double depth = (double)view[(y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS + 3];
+    *out = depth > 0 ? 1 / depth : 0;
+    return true;
+}
+
+/* --- a ray --- */
+
+/* A camera near a ray. */
+struct near_camera {
+    const float *view;
+    double at[AXES], weight;
+};
+
+static void find_pixel(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
+                        double disparity, double out[AXES]) {
+    for (int k = 0; k < AXES; k++)
+        out[k] = pixel_of(d, ray, k, camera->at[k], disparity);
+}
+
+/* At most four, with the sum of weights 1. */
+static int find_cameras(const struct drawing *d, const struct field_ray *ray, struct near_camera out[4]) {
+    double low[AXES], part[AXES];
+    int count = 0;
+    for (int k = 0; k < AXES; k++) {
+        double u = fmin(fmax(among_cameras(d, k, ray->crossing[k]), 0), d->count[k] - 1);
+        low[k] = floor(u);
+        part[k] = u - low[k];
+    }
+    for (int i = 0; i < 4; i++) {
+        double index[AXES] = {low[X] + (i & 1), low[Y] + (i >> 1)};
+        double weight = (i & 1 ? part[X] : 1 - part[X]) * (i & 2 ? part[Y] : 1 - part[Y]);
+        if (!(weight > 0))
+            continue;
+        size_t view = (size_t)index[Y] * d->field->head.columns + (size_t)index[X];
+        out[count++] =
+            (struct near_camera){d->field->views[view], {camera_at(d, X, index[X]), camera_at(d, Y, index[Y])}, weight};
+    }
+    return count;
+}
+
+/* By how many pixels a camera shows points of two disparities apart. */
+static double pixels_apart(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
+                           double a, double b) {
+    double off = fmax(fabs(ray->crossing[X] - camera->at[X]), fabs(ray->crossing[Y] - camera->at[Y]));
+    return fabs(a - b) * off / d->pixel;
+}
+
+/* Follows the ray in the picture of a camera from the plane in focus to the depths that it finds. False: it finds no
+ * surface on the ray. */
+static bool find_surface(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
+                         double *disparity) {
+    double at[AXES], found;
+    *disparity = d->disparity;
+    for (int step = 0; step < STEPS; step++) {
+        find_pixel(d, ray, camera, *disparity, at);
+        if (!disparity_there(d, camera->view, at, &found))
+            return false;
+        bool is_there = pixels_apart(d, ray, camera, found, *disparity) < 0.5;
+        *disparity = found;
+        if (is_there)
+            return true;
+    }
+    return false;
+}
+
+/* The surface that the nearest camera sees, else another one, else the plane in focus. */
+static double disparity_of(const struct drawing *d, const struct field_ray *ray, const struct near_camera *cameras,
+                           int count) {
+    int first = 0;
+    double disparity;
+    for (int i = 1; i < count; i++)
+        first = cameras[i].weight > cameras[first].weight ? i : first;
+    for (int i = 0; i < count; i++)
+        if (find_surface(d, ray, &cameras[(first + i) % count], &disparity))
+            return disparity;
+    return d->disparity;
+}
+
+static void add_ray(const struct drawing *d, const struct field_ray *ray, double sum[4]) {
+    struct near_camera cameras[4];
+    int count = find_cameras(d, ray, cameras);
+    bool has_depth = d->field->head.depth;
+    double disparity = has_depth ? disparity_of(d, ray, cameras, count) : d->disparity;
+    for (int i = 0; i < count; i++) {
+        double at[AXES], seen, weight = cameras[i].weight;
+        find_pixel(d, ray, &cameras[i], disparity, at);
+        bool hidden = has_depth && disparity_there(d, cameras[i].view, at, &seen) &&
+                      fabs(seen - disparity) * d->spacing / d->pixel > 1;
+        add_pixels(d, cameras[i].view, at, hidden ? weight * 1e-6 : weight, sum);
+    }
+}
+
+/* --- the picture --- */
+
+static bool is_in_grid(const struct drawing *d, const struct field_ray *ray) {
+    bool inside = true;
+    for (int k = 0; k < AXES; k++) {
+        double u = among_cameras(d, k, ray->crossing[k]);
+        inside = inside && u >= 0 && u <= d->count[k] - 1;
+    }
+    return inside;
+}
+
+static void prepare(struct drawing *d, const struct light_field_head *head, const struct light_field_camera *camera) {
+    *d = (struct drawing){.camera = *camera,
+                          .count = {head->columns, head->rows},
+                          .size = {head->width, head->height},
+                          .spacing = head->spacing,
+                          .screen = head->screen,
+                          .pixel = 2 * el_tan(head->fov * (PI / 360)) / head->height};
+    d->ratio = fmin((double)head->width / camera->width, (double)head->height / camera->height);
+    d->shares[X] = camera->width / 2.0 * d->ratio;
+    d->shares[Y] = camera->height / 2.0 * d->ratio;
+    d->disparity = 1 / (camera->focus + camera->z);
+    const double eye[AXES] = {camera->x, -camera->y};
+    for (int k = 0; k < AXES; k++) {
+        double u = among_cameras(d, k, eye[k]);
+        d->eye[k] = d->spacing > 0 && u == floor(u) ? camera_at(d, k, u) : eye[k];
+    }
+}
+
+bool light_field_clamp(const struct light_field_head *head, struct light_field_camera *camera) {
+    const struct lens_point middle = {{0, 0}};
+    struct drawing d;
+    bool outside = false;
+    prepare(&d, head, camera);
+    for (int i = 0; i < 4; i++) {
+        struct field_ray ray = ray_of(&d, &middle, i & 1 ? camera->width : 0, i & 2 ? camera->height : 0);
+        outside = outside || !is_in_grid(&d, &ray);
+    }
+    double half_width = middle_of(d.count[X]) * d.spacing, half_height = middle_of(d.count[Y]) * d.spacing;
+    if (camera->z == 0) {
+        camera->x = fmin(fmax(camera->x, -half_width), half_width);
+        camera->y = fmin(fmax(camera->y, -half_height), half_height);
+    }
+    return outside;
+}
+
+/* Points of a lens, as evenly as the seeds of a sunflower, more where the far background is a larger disc. It is a line
+ * in a grid of one row or column. */
+static bool make_lens(struct drawing *d) {
+    double across = d->spacing > 0 ? d->camera.aperture / d->spacing : 0;
+    double blur = d->camera.aperture * d->disparity / d->pixel;
+    d->point_count = 1;
+    if (across > 0)
+        d->point_count = (uint32_t)fmin(fmax(ceil(PI / 2 * blur * blur), LENS_FEWEST), LENS_LIMIT);
+    d->points = mem_alloc_zero(d->point_count, sizeof *d->points);
+    for (uint32_t i = 0; d->points && i < d->point_count && across > 0; i++) {
+        double radius = d->camera.aperture * sqrt((i + 0.5) / d->point_count), sine, cosine;
+        el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
+        d->points[i] =
+            (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
+    }
+    return d->points != NULL;
+}
+
+/* On the plane of the cameras, and without depths, all pixels have the same weights of cameras. */
+static bool make_weights(struct drawing *d) {
+    const struct light_field_head *head = &d->field->head;
+    if (head->depth || d->camera.z != 0)
+        return true;
+    d->weights = mem_alloc_zero((size_t)head->columns * head->rows, sizeof *d->weights);
+    for (uint32_t i = 0; d->weights && i < d->point_count; i++) {
+        struct near_camera cameras[4];
+        struct field_ray ray = ray_of(d, &d->points[i], 0, 0);
+        int count = is_in_grid(d, &ray) ? find_cameras(d, &ray, cameras) : 0;
+        for (int k = 0; k < count; k++) {
+            double column = among_cameras(d, X, cameras[k].at[X]), row = among_cameras(d, Y, cameras[k].at[Y]);
+            d->weights[(size_t)row * head->columns + (size_t)column] += cameras[k].weight;
+        }
+    }
+    return d->weights != NULL;
+}
+
+/* A row of one view, added to the sums of a row of the picture. */
+static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double *sums) {
+    const struct light_field_head *head = &d->field->head;
+    const struct lens_point middle = {{0, 0}};
+    const double camera[AXES] = {camera_at(d, X, view % head->columns), camera_at(d, Y, view / head->columns)};
+    for (uint32_t x = 0; x < d->camera.width; x++) {
+        struct field_ray ray = ray_of(d, &middle, x + 0.5, y + 0.5);
+        const double at[AXES] = {pixel_of(d, &ray, X, camera[X], d->disparity),
+                                 pixel_of(d, &ray, Y, camera[Y], d->disparity)};
+        add_pixels(d, d->field->views[view], at, d->weights[view], sums + (size_t)4 * x);
+    }
+}
+
+static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, double sum[4]) {
+    for (uint32_t i = 0; i < d->point_count && !d->weights; i++) {
+        struct field_ray ray = ray_of(d, &d->points[i], x + 0.5, y + 0.5);
+        if (is_in_grid(d, &ray))
+            add_ray(d, &ray, sum);
+    }
+    struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
+    if (!(sum[3] > 0)) /* all of the lens is outside */
+        add_ray(d, &ray, sum);
+}
+
+static void draw_row(void *context, uint32_t y, int worker) {
+    struct drawing *d = context;
+    const struct light_field_head *head = &d->field->head;
+    uint32_t width = d->camera.width;
+    double *sums = d->sums + (size_t)worker * width * 4;
+    for (size_t i = 0; i < (size_t)width * 4; i++)
+        sums[i] = 0;
+    for (uint32_t view = 0; d->weights && view < head->columns * head->rows; view++)
+        if (d->weights[view] > 0)
+            add_view(d, view, y, sums);
+    for (uint32_t x = 0; x < width; x++) {
+        double *sum = sums + (size_t)4 * x;
+        draw_pixel(d, x, y, sum);
+        for (int c = 0; c < 3; c++)
+            d->out[(size_t)y * width + x][c] = (float)(sum[c] / sum[3]);
+    }
+}
+
+/* The views that it needs. */
+static bool load_views(const struct drawing *d, struct light_field *field, struct pool *pool, struct error *error) {
+    double low[AXES] = {INFINITY, INFINITY}, high[AXES] = {0, 0};
+    for (int i = 0; i < 4; i++) {
+        const struct lens_point middle = {{0, 0}};
+        struct field_ray ray = ray_of(d, &middle, i & 1 ? d->camera.width : 0, i & 2 ? d->camera.height : 0);
+        double extent = d->spacing > 0 ? d->camera.aperture * fabs(1 + d->camera.z / d->camera.focus) / d->spacing : 0;
+        for (int k = 0; k < AXES; k++) {
+            double u = among_cameras(d, k, ray.crossing[k]);
+            low[k] = fmin(low[k], u - extent);
+            high[k] = fmax(high[k], u + extent);
+        }
+    }
+    uint32_t first[AXES], last[AXES];
+    for (int k = 0; k < AXES; k++) {
+        first[k] = (uint32_t)floor(fmin(fmax(low[k], 0), d->count[k] - 1));
+        last[k] = (uint32_t)ceil(fmin(fmax(high[k], 0), d->count[k] - 1));
+    }
+    const struct light_field_part part = {first[X], first[Y], last[X] - first[X] + 1, last[Y] - first[Y] + 1};
+    return light_field_load_part(field, &part, pool, error);
+}
+
+bool light_field_draw(struct light_field *field, const struct light_field_camera *camera, struct pool *pool,
+                      float (*out)[3], struct error *error) {
+    struct drawing d;
+    prepare(&d, &field->head, camera);
+    double wide = middle_of(d.count[X]), high = middle_of(d.count[Y]);
+    d.camera.aperture = fmin(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
+    d.field = field;
+    d.out = out;
+    d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, 4 * sizeof *d.sums);
+    bool ok = (d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path);
+    ok = ok && load_views(&d, field, pool, error) &&
+         (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
+    mem_free(d.sums);
+    mem_free(d.points);
+    mem_free(d.weights);
+    return ok;
+}

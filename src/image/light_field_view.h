@@ -1,0 +1,25 @@
+/* New views of a light field, without its scene: M. Levoy, P. Hanrahan, "Light field rendering", SIGGRAPH 1996;
+ * refocused by a synthetic aperture: A. Isaksen, L. McMillan, S. Gortler, "Dynamically reparameterized light fields",
+ * SIGGRAPH 2000. */
+#ifndef GRAY_IMAGE_LIGHT_FIELD_VIEW_H
+#define GRAY_IMAGE_LIGHT_FIELD_VIEW_H
+
+#include "image/light_field.h"
+
+/* A camera in the field, with the direction of its cameras. It shows what they show, as far as a picture of its
+ * proportions has room for it. */
+struct light_field_camera {
+    double x, y, z;  /* from the middle of the grid to the right, upwards and along the view, world units */
+    double focus;    /* distance of the plane in focus from the eye */
+    double aperture; /* radius of the lens, world units */
+    uint32_t width, height;
+};
+
+/* Moves an eye on the plane of the cameras into the grid. True: it is outside, or its rays come from outside. */
+bool light_field_clamp(const struct light_field_head *head, struct light_field_camera *camera);
+/* Draws its picture, light without limits. Loads the views that it needs. An eye at a camera, without aperture and with
+ * its size, gives the numbers of that view. Errors: those of light_field_load_part. */
+bool light_field_draw(struct light_field *field, const struct light_field_camera *camera, struct pool *pool,
+                      float (*out)[3], struct error *error);
+
+#endif
