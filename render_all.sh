@@ -15,7 +15,7 @@ failed=""
 # The plan: lines "[title]" and "SCRIPT SECONDS". Scenes that data/gallery.txt does not name come before its last part.
 plan() {
     unlisted=""
-    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua \
+    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua data/teaching/*.lua \
         data/library/show_*.lua data/print/*.lua \
         data/classic/*.lua; do
         case $script in */make_*) continue ;; esac # writes models, is not a scene
@@ -81,7 +81,7 @@ render() { # render SCRIPT NAME COST
     10demo | 14demo) options="${options:+$options }--size 1280x960 -ss 3 -al-samples 8" ;;
     esac
     output="$gallery/$name-%02d.png"
-    case $script in data/animation/*) output="$gallery/$name.apng" ;; esac
+    case $script in data/animation/* | data/teaching/radiosity.lua) output="$gallery/$name.apng" ;; esac
     # shellcheck disable=SC2086
     echo "scene $number of $scenes: $script" $options
     options="${options:+$options }-o $output"

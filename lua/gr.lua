@@ -2132,7 +2132,7 @@ function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, am
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
 ---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, 'gradient' for {0, 0, (1 + y)/2}, or 'transparent': the picture has alpha, and only mirrors, glass and light see sky or the default. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
+---@field integrator? 'whitted'|'path'|'radiosity' integrator ('whitted'|'path'|'radiosity'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces; radiosity has whitted's mirrors and glass, and stored light that diffuse surfaces exchange.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): N x N samples for every pixel, not only for marked ones.
 ---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): A pixel is marked when the squared RGB distance to a side neighbour exceeds X.
@@ -2147,12 +2147,14 @@ function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, am
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
+---@field radiosity_error? number radiosity_error (a number, 1e-09 to 1; default --radiosity-error): Stop when the share X of light is not yet shot, with integrator radiosity.
+---@field radiosity_patches? integer radiosity_patches (a whole number, 1 to 10000000; default --radiosity-patches): At most N patches, with integrator radiosity.
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field resolve? 'mean'|'bright' resolve ('mean'|'bright'; default --resolve): How samples become a pixel, with integrator path; bright: by a mean with the weights 1 / (1 + luminance), after exposure: edges of lamps are smooth, but pixels whose samples differ are darker than their mean (bias).
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
 ---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
 ---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrator path.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrators path and radiosity.
 ---@field deep? boolean deep (true or false; default --deep): 16 bits per channel in PNG files.
 ---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of light; gooch: cool to warm colours.
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.

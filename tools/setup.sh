@@ -90,6 +90,7 @@ if [ "$mode" = --tests ]; then
         want window dbus command -v dbus-run-session
         want window at-spi2-core test -e /usr/libexec/at-spi-bus-launcher
         want window python3-pyatspi /usr/bin/python3 -c 'import pyatspi'
+        want window gir1.2-gtk-4.0 /usr/bin/python3 -c "import gi; gi.require_version('Gtk', '4.0')"
     fi
     want machines libopenmpi-dev have_mpi
     want machines openmpi-bin command -v mpirun

@@ -9,7 +9,7 @@
 
 enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
-static const double first_contrast = 0.1;
+static const double first_contrast = 0.1, border_contrast = 0.3;
 
 void radiosity_drop_factors(struct radiosity *radiosity) {
     mem_free(radiosity->first);
@@ -40,6 +40,7 @@ struct preparation {
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
+    double *until;
 };
 
 static void direct_batch(void *context, uint32_t batch, int worker) {
@@ -99,6 +100,9 @@ static double contrast(const struct radiosity *radiosity, uint32_t a, uint32_t b
     double largest = 0;
     for (uint32_t back = 0; back < 2; back++) {
         const struct side_light *x = &radiosity->sides[2 * a + back], *y = &radiosity->sides[2 * b + back];
+        /* Patches at the border of another solid are partly inside of it. */
+        if ((x->buried > 0) != (y->buried > 0) || (x->buried > 0 && x->buried < 1 && y->buried < 1))
+            largest = fmax(largest, border_contrast);
         double level = colour_max_abs(x->light) + colour_max_abs(y->light) + mean;
         if (x->area > 0 && y->area > 0 && level > 0)
             largest = fmax(largest, colour_max_abs(colour_sub(x->light, y->light)) / level);
@@ -166,8 +170,29 @@ static bool find_receivers(struct preparation *p, struct error *error) {
     return true;
 }
 
+/* What bright patches reflect is sampled like light of lights: the shares of both sides of each. */
+static bool find_bright_patches(struct preparation *p) {
+    const struct patches *patches = &p->out->patches;
+    double sum = 0;
+    p->until = mem_alloc(2 * patches->all.count * sizeof *p->until);
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, i / 2, c);
+        double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]))) / 2;
+        sum += area * receive_brightness(p->out, i / 2, i % 2);
+        p->until[i] = sum;
+    }
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++)
+        p->until[i] /= sum;
+    p->receivers.until = p->until;
+    p->receivers.power = sum;
+    return p->until != NULL;
+}
+
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
+    for (uint32_t i = 0; i < side_count(out); i++)
+        out->sides[i].unshot = out->sides[i].light;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
     for (uint32_t i = 0; p->sides && i < side_count(out); i++)
         if (out->sides[i].area > 0)
@@ -176,7 +201,7 @@ static bool find_rays(struct preparation *p, struct error *error) {
         return error_set(error, ERROR_SCENE,
                          "--integrator radiosity needs diffuse surfaces, and nothing in the scene is diffuse");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    return ((p->sides && p->targets) || error_no_memory(error, "radiosity")) &&
+    return ((p->sides && p->targets && find_bright_patches(p)) || error_no_memory(error, "radiosity")) &&
            patches_index_space(&out->patches, p->input->pool, error) && run(p, p->count, ray_batch, error) &&
            find_receivers(p, error);
 }
@@ -249,7 +274,7 @@ static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
     bool ok = find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
     for (uint32_t i = 0; ok && i < p->count; i++)
-        out->sides[p->sides[i]].unshot = out->sides[p->sides[i]].light;
+        out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
     return ok;
 }
 
@@ -275,6 +300,7 @@ static bool prepare(struct radiosity *radiosity, const struct radiosity_input *i
     mem_free(p.emissive);
     mem_free(p.sides);
     mem_free(p.targets);
+    mem_free(p.until);
     if (!ok)
         radiosity_destroy(radiosity);
     return ok;
@@ -395,7 +421,7 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
     bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
     for (uint32_t i = 0; ok && i < count; i++)
-        direct[i] = radiosity->sides[i].light;
+        direct[i] = colour_sub(radiosity->sides[i].light, radiosity->sides[i].unshot);
     if (ok && !radiosity_shoot(radiosity, error_share, pool))
         ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
     for (uint32_t i = 0; ok && i < count; i++)

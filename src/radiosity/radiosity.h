@@ -17,6 +17,7 @@
 /* The front (number 2 v) or the back (2 v + 1) of vertex v. */
 struct side_light {
     struct colour reflectance, light, unshot;
+    double buried; /* share of its positions that are inside of other solids */
     double area;   /* 0: it reflects nothing, or there is no surface */
     double weight; /* 1 / number of its rays */
 };

@@ -132,11 +132,12 @@ static struct vec3 position_of(const struct receiver *receiver, uint32_t positio
     return at;
 }
 
-/* The surface at a position, seen from the side. False: there is none, or it is inside of another solid. */
-static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit) {
+/* The surface at a position, seen from the side. False: there is none, or *buried: it is inside of another solid. */
+static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit, bool *buried) {
     const struct patches *patches = &receiver->input->radiosity->patches;
     uint32_t patch, inside;
     struct vec3 point = position_of(receiver, position, &patch), c[3];
+    *buried = false;
     patch_corners(patches, patch, c);
     struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
     double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
@@ -149,7 +150,8 @@ static bool hit_of(const struct receiver *receiver, uint32_t position, struct hi
         return true;
     const struct inside_query query = {vec3_add_scaled(hit->point, hit->view, hit->offset), 0, receiver->burying,
                                        receiver->burying_count};
-    return world_containing(patches->world, &query, receiver->scratch, &inside, 1) == 0;
+    *buried = world_containing(patches->world, &query, receiver->scratch, &inside, 1) > 0;
+    return !*buried;
 }
 
 static struct light_receiver light_receiver_of(const struct hit *hit) {
@@ -207,11 +209,13 @@ void receive_direct(const struct receiver_input *input, uint32_t side, struct wo
     const struct world *world = input->radiosity->patches.world;
     const struct receiver receiver = receiver_make(input, side, scratch);
     struct colour light = {0, 0, 0}, reflectance = {0, 0, 0};
-    uint32_t count = 0;
+    uint32_t count = 0, buried = 0;
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit hit;
         struct bsdf bsdf;
-        if (!hit_of(&receiver, i, &hit))
+        bool inside, found = hit_of(&receiver, i, &hit, &inside);
+        buried += inside;
+        if (!found)
             continue;
         material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
         if (bsdf.opacity < 0.5)
@@ -222,7 +226,7 @@ void receive_direct(const struct receiver_input *input, uint32_t side, struct wo
             light = colour_add(light, light_of_sample(&receiver, &hit, i));
         count++;
     }
-    *out = (struct side_light){0};
+    *out = (struct side_light){.buried = buried / (double)RECEIVE_POSITIONS};
     if (count == 0 || colour_is_black(reflectance))
         return;
     out->reflectance = colour_min(colour_scale(reflectance, 1.0 / count), colour_all(1));
@@ -303,14 +307,95 @@ static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
     return false;
 }
 
-/* The side of a vertex of a hit, by the shares of those that reflect light. */
-static uint32_t target_of(const struct radiosity *radiosity, const struct hit *hit, double choice) {
+/* --- light that bright patches reflect --- */
+
+/* The light of samples of lights that a side of a vertex reflects. */
+static struct colour reflected_of(const struct side_light *side) {
+    return side->area > 0 ? colour_mul(side->reflectance, side->unshot) : colour_all(0);
+}
+
+double receive_brightness(const struct radiosity *radiosity, uint32_t patch, bool back) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum +=
+            colour_max_abs(reflected_of(&radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back]));
+    return sum / 3;
+}
+
+/* The same at a point of a patch. */
+static struct colour reflected_at(const struct radiosity *radiosity, uint32_t patch, const double shares[3],
+                                  bool back) {
+    struct colour light = {0, 0, 0};
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const struct side_light *side = &radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back];
+        light = colour_add_scaled(light, reflected_of(side), shares[k]);
+        sum += side->area > 0 ? shares[k] : 0;
+    }
+    return sum > 0 ? colour_scale(light, 1 / sum) : light;
+}
+
+/* Of positions on patches, by solid angle. */
+static double density_of(const struct receiver_input *input, uint32_t patch, bool back, double distance,
+                         double cosine) {
+    return receive_brightness(input->radiosity, patch, back) / input->power * distance * distance / cosine;
+}
+
+/* The intensity that arrives from a position on a patch, which is chosen by brightness and area. */
+static struct colour light_of_patch(const struct receiver *receiver, const struct hit *hit, uint32_t position) {
+    const struct receiver_input *input = receiver->input;
+    const struct patches *patches = &input->radiosity->patches;
+    uint32_t chosen =
+        (uint32_t)sample_entry(input->until, 2 * patches->all.count, stratified_number(receiver, position, 5));
+    const uint32_t patch = chosen / 2;
+    const bool back = chosen & 1;
+    const struct sample2 xi = stratified(receiver, position, 6);
+    const double root = sqrt(xi.x), shares[3] = {1 - root, root * (1 - xi.y), root * xi.y};
+    struct vec3 c[3], point = {0, 0, 0};
+    struct hit there;
+    patch_corners(patches, patch, c);
+    for (int k = 0; k < 3; k++)
+        point = vec3_add_scaled(point, c[k], shares[k]);
+    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+    double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
+    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, normal, size, receiver->scratch,
+                     &there))
+        return colour_all(0);
+    normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
+    const struct light_receiver from = light_receiver_of(hit);
+    struct vec3 to = vec3_sub(there.point, hit->point), direction = vec3_normalize(to);
+    double distance = vec3_length(to), cosine = vec3_dot(direction, hit->view),
+           cosine_there = -vec3_dot(direction, normal);
+    if (!(distance > 0) || !(cosine > 0) || !(cosine_there > 0))
+        return colour_all(0);
+    struct ray ray = {.origin = from.from,
+                      .direction = vec3_sub(vec3_add_scaled(there.point, normal, there.offset), from.from),
+                      .t_max = 1};
+    struct hit_skip skip = hit_skip_from(hit, hit->front ? 1 : -1, ray.direction);
+    ray.skip_primitive = skip.primitive;
+    ray.skip_part = skip.part;
+    double seen = world_lights_visible(input->lights, &ray, receiver->scratch);
+    double pdf = density_of(input, patch, back, distance, cosine_there);
+    double weight = power_weight(pdf, intensity_of(cosine) * rays_per_sample(input));
+    return colour_scale(reflected_at(input->radiosity, patch, shares, back),
+                        seen * intensity_of(cosine) * weight / pdf);
+}
+
+/* The side of a vertex of a hit, by the shares of those that reflect light; the ray meets what its patch reflects. */
+static uint32_t find_target(struct receiver_ray *r, const struct hit *hit, double choice) {
+    const struct radiosity *radiosity = r->receiver->input->radiosity;
     uint32_t patch;
     double shares[3], sum = 0;
     uint32_t side = SIDE_NONE;
     if (!patches_find(&radiosity->patches, hit, &patch, shares))
         return SIDE_NONE;
     const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
+    double cosine = fabs(vec3_dot(r->direction, hit->normal_geometric));
+    struct colour reflected = reflected_at(radiosity, patch, shares, !hit->front);
+    if (!colour_is_black(reflected))
+        meet(r, reflected,
+             density_of(r->receiver->input, patch, !hit->front, vec3_length(vec3_sub(hit->point, r->from.point)),
+                        cosine));
     for (int k = 0; k < 3; k++)
         sum += radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
     choice *= sum;
@@ -347,13 +432,16 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit from, hit;
         struct bsdf bsdf;
-        if (!hit_of(&receiver, i, &from))
+        bool buried;
+        if (!hit_of(&receiver, i, &from, &buried))
             continue;
         if (primitive_prototype(world, from.primitive)->holes) {
             material_eval(&world->surfaces, &from, NULL, &context, &bsdf);
             if (bsdf.opacity < 0.5)
                 continue;
         }
+        if (input->power > 0)
+            sum = colour_add_scaled(sum, light_of_patch(&receiver, &from, i), each);
         for (uint32_t k = 0; k < each; k++) {
             uint32_t cell = sample_permute(i * each + k, input->rays, key);
             uint64_t own = random_combine(key, input->rays + cell);
@@ -363,7 +451,7 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
             const struct ray start = {.origin = r.from.from};
             r.ray = hit_ray(&from, &start, r.direction, NULL);
             if (follow_ray(&r, own, &hit))
-                targets[i * each + k] = target_of(input->radiosity, &hit, random_unit(own));
+                targets[i * each + k] = find_target(&r, &hit, random_unit(own));
             sum = colour_add(sum, r.light);
         }
     }

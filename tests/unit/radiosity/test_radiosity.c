@@ -5,6 +5,7 @@
 #include "tests/stage.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -184,8 +185,8 @@ static void begin_room(struct stage *s, int threads) {
     struct node *box = stage_cube(s, s->root, stage_phong(s, colour_make(0.8, 0.2, 0.1), colour_all(0), 1));
     stage_move(s, box, 1, 0, 1);
     struct node *ball = stage_sphere(s, s->root, lamp);
-    stage_move(s, ball, 2, 2.2, 3);
     stage_scale(s, ball, 0.2, 0.2, 0.2);
+    stage_move(s, ball, 2, 2.2, 3);
     stage_point_light(s, vec3_make(0.5, 2.5, 0.5), colour_all(0.5));
 }
 
@@ -330,5 +331,91 @@ TEST(radiosity_refuses_emitters_without_end_scenes_without_diffuse_surfaces_and_
     plane->material = matt(&s, 0.5);
     (void)stage_sphere(&s, s.root, matt(&s, 0.5));
     CHECK(strstr(refusal_of(&s, 40), "more than 40 triangles, the limit of --radiosity-patches"));
+    stage_end(&s);
+}
+
+/* --- two rooms --- */
+
+static void add_block(struct stage *s, const struct material *material, struct vec3 from, struct vec3 to) {
+    struct node *node = stage_cube(s, s->root, material);
+    node->shape.box = (struct box){from, to};
+}
+
+/* The lamp is in the left room, and a door in the wall. */
+static void begin_two_rooms(struct stage *s) {
+    stage_begin(s, 2);
+    struct material *wall = stage_phong(s, colour_make(0.75, 0.7, 0.6), colour_all(0), 1), *lamp = matt(s, 0);
+    lamp->phong.emission = colour_make(10, 9, 8);
+    const struct vec3 x = {8, 0, 0}, y = {0, 3, 0}, z = {0, 0, 4};
+    (void)add_planar(s, rectangle(0, 0, 0, z, x), wall);
+    (void)add_planar(s, rectangle(0, 3, 0, x, z), wall);
+    (void)add_planar(s, rectangle(0, 0, 0, x, y), wall);
+    (void)add_planar(s, rectangle(0, 0, 4, y, x), wall);
+    (void)add_planar(s, rectangle(0, 0, 0, y, z), wall);
+    (void)add_planar(s, rectangle(8, 0, 0, z, y), wall);
+    add_block(s, wall, vec3_make(4, 0, 0), vec3_make(4.2, 3, 1));
+    add_block(s, wall, vec3_make(4, 0, 3), vec3_make(4.2, 3, 4));
+    add_block(s, wall, vec3_make(4, 2.4, 1), vec3_make(4.2, 3, 3));
+    add_block(s, stage_phong(s, colour_make(0.7, 0.2, 0.1), colour_all(0), 1), vec3_make(1, 0, 2.5),
+              vec3_make(2.2, 0.9, 3.2));
+    add_block(s, stage_phong(s, colour_make(0.2, 0.4, 0.6), colour_all(0), 1), vec3_make(5.5, 0, 0.6),
+              vec3_make(6.3, 1.2, 1.4));
+    struct node *ball = stage_sphere(s, s->root, lamp);
+    stage_scale(s, ball, 0.25, 0.25, 0.25);
+    stage_move(s, ball, 2.2, 2, 1.8);
+}
+
+/* At random vertices, a little inside of one of their patches: the picture of a path tracer that looks at the point
+ * from nearby, over the reflectance. */
+static void compare_with_paths(struct stage *s, const struct radiosity *radiosity, int count, int samples) {
+    double squares = 0, all = 0;
+    int far = 0, done = 0;
+    uint64_t key = 1;
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.path_samples = samples;
+    s->settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s->settings.lens.view_height = 1e-3;
+    while (done < count) {
+        key = random_mix(key + 1);
+        uint32_t index = (uint32_t)(key % radiosity->patches.all.count);
+        const uint32_t vertex = patch_at(&radiosity->patches, index)->vertex[0];
+        const struct side_light *side = &radiosity->sides[2 * vertex];
+        struct vec3 c[3];
+        patch_corners(&radiosity->patches, index, c);
+        struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
+        struct vec3 point = vec3_add_scaled(vec3_scale(c[0], 0.9), middle, 0.1);
+        struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+        bool is_outside = point.x < 0 || point.x > 8 || point.y < 0 || point.y > 3 || point.z < 0 || point.z > 4;
+        if (!(side->area > 0) || is_outside)
+            continue;
+        s->camera = (struct camera){vec3_add_scaled(point, normal, 1e-3), vec3_negate(normal),
+                                    fabs(normal.y) > 0.5 ? to_x : to_y, 50};
+        CHECK(stage_render(s, 1, 1));
+        struct hit hit = {.point = point, .normal_geometric = normal, .front = true};
+        hit.primitive = patch_at(&radiosity->patches, index)->primitive;
+        struct colour light;
+        CHECK(radiosity_light(radiosity, &hit, &light));
+        double paths = stage_pixel(s, 0, 0).g / side->reflectance.g, own = light.g;
+        if (!(paths > 0)) /* inside of a solid */
+            continue;
+        squares += (own - paths) * (own - paths);
+        all += paths * paths;
+        far += fabs(own - paths) > 0.08 * paths;
+        done++;
+    }
+    fprintf(stderr, "rms %.4f, beyond 8 %%: %d of %d\n", sqrt(squares / all), far, count);
+    CHECK(sqrt(squares / all) <= 0.03);
+    CHECK(far <= 0.05 * count);
+}
+
+TEST_TIMES(two_rooms_are_lit_as_by_paths, 4) {
+    struct stage s;
+    struct radiosity radiosity = {0};
+    begin_two_rooms(&s);
+    if (prepare(&s, &radiosity, 10000, 0)) {
+        CHECK(radiosity_finish(&radiosity, 0.001, s.pool, &s.error));
+        compare_with_paths(&s, &radiosity, 50 * times, 4096 * times);
+    }
+    radiosity_destroy(&radiosity);
     stage_end(&s);
 }

@@ -402,6 +402,62 @@ TEST(gtk_window_moves_by_typed_numbers) {
     gives("grep -q \"gr.change_node('ball', 2, {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0})\" out-changes1.lua", 0);
 }
 
+/* Another program's window in the corner, from which files are dragged. */
+static const char dragged[] = "import gi, sys\n"
+                              "gi.require_version('Gdk', '4.0')\n"
+                              "gi.require_version('Gtk', '4.0')\n"
+                              "from gi.repository import Gdk, Gio, GObject, Gtk\n"
+                              "def show(app):\n"
+                              "    files = Gdk.FileList.new_from_list([Gio.File.new_for_path(sys.argv[1])])\n"
+                              "    source = Gtk.DragSource()\n"
+                              "    source.connect('prepare', lambda *_: Gdk.ContentProvider.new_for_value("
+                              "GObject.Value(Gdk.FileList, files)))\n"
+                              "    window = Gtk.ApplicationWindow(application=app, title='files', default_width=100, "
+                              "default_height=100)\n"
+                              "    window.set_child(Gtk.Label(label='files'))\n"
+                              "    window.get_child().add_controller(source)\n"
+                              "    window.present()\n"
+                              "app = Gtk.Application()\n"
+                              "app.connect('activate', show)\n"
+                              "app.run([])\n";
+
+/* Until the window has the title, since a drag may come too early. */
+static void drag(const char *path, const char *title, const char *then) {
+    char commands[4096];
+    if (test_run_shell("/usr/bin/python3 -c \"import gi; gi.require_version('Gtk', '4.0')\"", ">/dev/null 2>&1") != 0)
+        test_lacks("there is no gir1.2-gtk-4.0 with python3-gi");
+    test_write_text(test_path("files.py"), dragged);
+    (void)snprintf(
+        commands, sizeof commands,
+        "titled 'out.png - ready'; window=$(xdotool getactivewindow)\n"
+        "/usr/bin/python3 files.py %s & source=$!; titled '^files$'; files=$(xdotool getactivewindow)\n"
+        "xdotool windowmove --sync $files 1200 700\n"
+        "drag() { xdotool windowactivate --sync $files mousemove 1250 760 sleep 0.3 mousedown 1\n"
+        "    for i in 1 2 3 4 5 6 7 8 9 10; do xdotool mousemove_relative -- -60 -30 sleep 0.05; done\n"
+        "    xdotool mousemove 602 462 sleep 0.5 mousemove 600 460 sleep 0.5 mouseup 1 sleep 0.2\n"
+        "    xdotool windowactivate --sync $window; }\n"
+        "until_dragged() { for try in 1 2 3 4 5; do drag; for i in $(seq 150); do is '%s' && return 0; sleep "
+        "0.05; done; done; kill $pid; exit 95; }\n"
+        "until_dragged; kill $source\n%s",
+        path, title, then);
+    drive("scene.lua", commands, 0);
+}
+
+TEST(gtk_window_opens_a_scene_that_is_dropped) {
+    need_display();
+    gives("sed 's/out.png/other.png/' scene.lua >other.lua", 0);
+    drag("other.lua", "other.png - ready", "xdotool key ctrl+q");
+    gives("test -s out.png && $gray other.lua -o same.png && cmp other.png same.png", 0);
+}
+
+TEST(gtk_window_paints_a_shape_with_a_picture_that_is_dropped_on_it) {
+    need_display();
+    gives("$gray -q scene.lua -o dots.png", 0);
+    drag("dots.png", "[*] - ready",
+         "xdotool key ctrl+s; until_file out-changes1.lua; titled 'out.png - '; xdotool key ctrl+q");
+    gives("grep -q 'gr.change_texture(1, .*gr.texture(.*dots.png' out-changes1.lua", 0);
+}
+
 /* The sizes of the panels and the keys of one run are those of the next. */
 TEST(gtk_window_keeps_its_choices) {
     need_display();
