@@ -45,6 +45,17 @@ void integrator_warn(const struct render_job *job, world_warning *warn, void *co
     }
 }
 
+bool integrator_prepare(const struct render_job *job, struct pool *pool, struct error *error) {
+    switch (job->settings.integrator) {
+    case INTEGRATOR_WHITTED:
+    case INTEGRATOR_PATH:
+        return true;
+    case INTEGRATOR_RADIOSITY:
+        return !job->radiosity || stored_light_prepare(job->radiosity, job, pool, error);
+    }
+    UNREACHABLE(no_kind);
+}
+
 bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
                        struct error *error) {
     struct integrator *integrator = renderer->integrator = mem_alloc_zero(1, sizeof *integrator);
@@ -57,7 +68,7 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
     case INTEGRATOR_PATH:
         return path_tracer_create(&integrator->path, renderer, statistics, error);
     case INTEGRATOR_RADIOSITY:
-        return stored_light_begin(&integrator->radiosity, renderer, workers, statistics, error) &&
+        return stored_light_begin(&integrator->radiosity, renderer, workers, error) &&
                whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     }
     UNREACHABLE(no_kind);
