@@ -12,6 +12,7 @@
 #include "math/elementary.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS = 6 };
 #define GOLDEN_ANGLE 2.39996322972865332
@@ -21,18 +22,20 @@ struct lens_point {
     double offset[AXES];
 };
 
+struct pixel_sum;
 struct drawing {
     const struct light_field *field;
     struct light_field_camera camera;
-    double count[AXES], size[AXES]; /* of cameras, and of the pixels of a view */
-    double spacing, screen, pixel;  /* pixel: its side at distance 1 */
+    double count[AXES], size[AXES];                       /* of cameras, and of the pixels of a view */
+    double spacing, pixel;                                /* pixel: its side at distance 1 */
+    double per_spacing, per_screen, per_focus, per_pixel; /* reciprocals; of spacing 0: 0 */
     double eye[AXES];
     double ratio;                   /* of a pixel of the picture to one of a view */
     double disparity, shares[AXES]; /* of the plane in focus; half of the picture, pixels of a view */
     struct lens_point *points;
     uint32_t point_count;
-    double *weights; /* of all cameras for the whole picture; NULL: they differ by pixel */
-    double *sums;    /* for each worker a row of it */
+    double *weights;        /* of all cameras for the whole picture; NULL: they differ by pixel */
+    struct pixel_sum *sums; /* for each worker a row of it */
     float (*out)[3];
 };
 
@@ -43,9 +46,19 @@ struct field_ray {
     double crossing[AXES], picture[AXES], lens[AXES];
 };
 
+static double limited(double x, double low, double high) {
+    return x > low ? (x < high ? x : high) : low;
+}
+
+/* Below 2^31: a call of floor would take longer than all the rest. */
+static double floor_of(double x) {
+    double whole = (double)(int64_t)x;
+    return whole > x ? whole - 1 : whole;
+}
+
 /* Within a millionth of a camera, it is at the camera. */
 static double snapped(double u) {
-    double near = floor(u + 0.5);
+    double near = floor_of(limited(u, -0x1p31, 0x1p31) + 0.5);
     return fabs(u - near) < 1e-6 ? near : u;
 }
 
@@ -55,7 +68,7 @@ static double middle_of(double count) {
 
 /* The place of a point among the cameras: 0 is the first one. */
 static double among_cameras(const struct drawing *d, int axis, double x) {
-    return d->spacing > 0 ? snapped(x / d->spacing + middle_of(d->count[axis])) : 0;
+    return d->spacing > 0 ? snapped(x * d->per_spacing + middle_of(d->count[axis])) : 0;
 }
 
 static double camera_at(const struct drawing *d, int axis, double index) {
@@ -67,7 +80,7 @@ static struct field_ray ray_of(const struct drawing *d, const struct lens_point 
     struct field_ray ray;
     for (int k = 0; k < AXES; k++) {
         ray.picture[k] = at[k] * d->ratio - d->shares[k];
-        ray.lens[k] = -d->eye[k] / d->screen - point->offset[k] / d->camera.focus;
+        ray.lens[k] = -d->eye[k] * d->per_screen - point->offset[k] * d->per_focus;
         double slope = ray.picture[k] * d->pixel + ray.lens[k];
         ray.crossing[k] = d->eye[k] + point->offset[k] - d->camera.z * slope;
     }
@@ -78,50 +91,56 @@ static struct field_ray ray_of(const struct drawing *d, const struct lens_point 
  * view. */
 static double pixel_of(const struct drawing *d, const struct field_ray *ray, int axis, double camera,
                        double disparity) {
-    double shift = (ray->crossing[axis] - camera) * disparity + (camera / d->screen + ray->lens[axis]);
-    return d->size[axis] / 2 + ray->picture[axis] + shift / d->pixel;
+    double shift = (ray->crossing[axis] - camera) * disparity + (camera * d->per_screen + ray->lens[axis]);
+    return d->size[axis] / 2 + ray->picture[axis] + shift * d->per_pixel;
 }
 
 /* --- pixels of a view --- */
 
-static uint32_t index_in(double x, double size) {
-    return (uint32_t)fmin(fmax(x, 0), size - 1);
+/* Two neighbours on an axis, linear between their middles; beyond the border, the last one, which hardly counts. */
+struct tap {
+    uint32_t first, second;
+    double part, weight; /* part: of the second one */
+};
+
+static struct tap tap_of(double at, double size) {
+    double low = at - 0.5;
+    low = low > 0 ? low : 0; /* NaN too */
+    low = low < size - 1 ? low : size - 1;
+    struct tap tap = {.first = (uint32_t)low, .weight = at >= 0 && at <= size ? 1 : 1e-9};
+    tap.part = low - tap.first;
+    tap.second = tap.first + (tap.part > 0);
+    return tap;
 }
 
-/* Adds the pixels around a place, linear between their middles. What is beyond the border hardly counts. */
-static void add_pixels(const struct drawing *d, const float *view, const double at[AXES], double weight,
-                       double sum[4]) {
-    uint32_t first[AXES], second[AXES];
-    double part[AXES];
-    for (int k = 0; k < AXES; k++) {
-        double low = at[k] - 0.5, whole = floor(low);
-        if (!(at[k] >= 0 && at[k] <= d->size[k]))
-            weight *= 1e-9;
-        first[k] = index_in(whole, d->size[k]);
-        second[k] = index_in(whole + 1, d->size[k]);
-        part[k] = low - whole;
+/* A weighted sum of pixels: all numbers of a pixel of a view. */
+struct pixel_sum {
+    double numbers[LIGHT_FIELD_NUMBERS], weight;
+};
+
+static void add_pixels(const struct drawing *d, const float *view, const struct tap taps[AXES], double weight,
+                       struct pixel_sum *sum) {
+    const struct tap *x = &taps[X], *y = &taps[Y];
+    size_t line = (size_t)d->size[X] * LIGHT_FIELD_NUMBERS;
+    const float *left = view + (size_t)x->first * LIGHT_FIELD_NUMBERS;
+    const float *right = view + (size_t)x->second * LIGHT_FIELD_NUMBERS;
+    const float *upper_left = left + y->first * line, *upper_right = right + y->first * line;
+    const float *lower_left = left + y->second * line, *lower_right = right + y->second * line;
+    weight *= x->weight * y->weight;
+    for (int c = 0; c < LIGHT_FIELD_NUMBERS; c++) {
+        double upper = (1 - x->part) * (double)upper_left[c] + x->part * (double)upper_right[c];
+        double lower = (1 - x->part) * (double)lower_left[c] + x->part * (double)lower_right[c];
+        sum->numbers[c] += weight * ((1 - y->part) * upper + y->part * lower);
     }
-    size_t width = (size_t)d->size[X];
-    const float *rows[2] = {view + first[Y] * width * LIGHT_FIELD_NUMBERS,
-                            view + second[Y] * width * LIGHT_FIELD_NUMBERS};
-    for (int c = 0; c < 3; c++) {
-        double value = 0;
-        for (int j = 0; j < 2; j++) {
-            double share = j == 0 ? 1 - part[Y] : part[Y];
-            double left = (double)rows[j][first[X] * LIGHT_FIELD_NUMBERS + (uint32_t)c];
-            double right = (double)rows[j][second[X] * LIGHT_FIELD_NUMBERS + (uint32_t)c];
-            value += share * ((1 - part[X]) * left + part[X] * right);
-        }
-        sum[c] += weight * value;
-    }
-    sum[3] += weight;
+    sum->weight += weight;
 }
 
 /* The disparity of the pixel there; false: it is beyond the border. */
 static bool disparity_there(const struct drawing *d, const float *view, const double at[AXES], double *out) {
     if (!(at[X] >= 0 && at[X] <= d->size[X] && at[Y] >= 0 && at[Y] <= d->size[Y]))
         return false;
-    size_t x = index_in(at[X], d->size[X]), y = index_in(at[Y], d->size[Y]);
+    size_t x = (size_t)(at[X] < d->size[X] ? at[X] : d->size[X] - 1),
+           y = (size_t)(at[Y] < d->size[Y] ? at[Y] : d->size[Y] - 1);
     double depth = (double)view[(y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS + 3];
     *out = depth > 0 ? 1 / depth : 0;
     return true;
@@ -136,7 +155,7 @@ struct near_camera {
 };
 
 static void find_pixel(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
-                        double disparity, double out[AXES]) {
+                       double disparity, double out[AXES]) {
     for (int k = 0; k < AXES; k++)
         out[k] = pixel_of(d, ray, k, camera->at[k], disparity);
 }
@@ -146,8 +165,8 @@ static int find_cameras(const struct drawing *d, const struct field_ray *ray, st
     double low[AXES], part[AXES];
     int count = 0;
     for (int k = 0; k < AXES; k++) {
-        double u = fmin(fmax(among_cameras(d, k, ray->crossing[k]), 0), d->count[k] - 1);
-        low[k] = floor(u);
+        double u = limited(among_cameras(d, k, ray->crossing[k]), 0, d->count[k] - 1);
+        low[k] = floor_of(u);
         part[k] = u - low[k];
     }
     for (int i = 0; i < 4; i++) {
@@ -165,8 +184,8 @@ static int find_cameras(const struct drawing *d, const struct field_ray *ray, st
 /* By how many pixels a camera shows points of two disparities apart. */
 static double pixels_apart(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
                            double a, double b) {
-    double off = fmax(fabs(ray->crossing[X] - camera->at[X]), fabs(ray->crossing[Y] - camera->at[Y]));
-    return fabs(a - b) * off / d->pixel;
+    double off[AXES] = {fabs(ray->crossing[X] - camera->at[X]), fabs(ray->crossing[Y] - camera->at[Y])};
+    return fabs(a - b) * (off[X] > off[Y] ? off[X] : off[Y]) * d->per_pixel;
 }
 
 /* Follows the ray in the picture of a camera from the plane in focus to the depths that it finds. False: it finds no
@@ -200,7 +219,7 @@ static double disparity_of(const struct drawing *d, const struct field_ray *ray,
     return d->disparity;
 }
 
-static void add_ray(const struct drawing *d, const struct field_ray *ray, double sum[4]) {
+static void add_ray(const struct drawing *d, const struct field_ray *ray, struct pixel_sum *sum) {
     struct near_camera cameras[4];
     int count = find_cameras(d, ray, cameras);
     bool has_depth = d->field->head.depth;
@@ -209,8 +228,9 @@ static void add_ray(const struct drawing *d, const struct field_ray *ray, double
         double at[AXES], seen, weight = cameras[i].weight;
         find_pixel(d, ray, &cameras[i], disparity, at);
         bool hidden = has_depth && disparity_there(d, cameras[i].view, at, &seen) &&
-                      fabs(seen - disparity) * d->spacing / d->pixel > 1;
-        add_pixels(d, cameras[i].view, at, hidden ? weight * 1e-6 : weight, sum);
+                      fabs(seen - disparity) * d->spacing * d->per_pixel > 1;
+        const struct tap taps[AXES] = {tap_of(at[X], d->size[X]), tap_of(at[Y], d->size[Y])};
+        add_pixels(d, cameras[i].view, taps, hidden ? weight * 1e-6 : weight, sum);
     }
 }
 
@@ -230,8 +250,11 @@ static void prepare(struct drawing *d, const struct light_field_head *head, cons
                           .count = {head->columns, head->rows},
                           .size = {head->width, head->height},
                           .spacing = head->spacing,
-                          .screen = head->screen,
+                          .per_screen = 1 / head->screen,
+                          .per_focus = 1 / camera->focus,
+                          .per_spacing = head->spacing > 0 ? 1 / head->spacing : 0,
                           .pixel = 2 * el_tan(head->fov * (PI / 360)) / head->height};
+    d->per_pixel = 1 / d->pixel;
     d->ratio = fmin((double)head->width / camera->width, (double)head->height / camera->height);
     d->shares[X] = camera->width / 2.0 * d->ratio;
     d->shares[Y] = camera->height / 2.0 * d->ratio;
@@ -263,8 +286,8 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
 /* Points of a lens, as evenly as the seeds of a sunflower, more where the far background is a larger disc. It is a line
  * in a grid of one row or column. */
 static bool make_lens(struct drawing *d) {
-    double across = d->spacing > 0 ? d->camera.aperture / d->spacing : 0;
-    double blur = d->camera.aperture * d->disparity / d->pixel;
+    double across = d->camera.aperture * d->per_spacing;
+    double blur = d->camera.aperture * d->disparity * d->per_pixel;
     d->point_count = 1;
     if (across > 0)
         d->point_count = (uint32_t)fmin(fmax(ceil(PI / 2 * blur * blur), LENS_FEWEST), LENS_LIMIT);
@@ -296,27 +319,28 @@ static bool make_weights(struct drawing *d) {
     return d->weights != NULL;
 }
 
-/* A row of one view, added to the sums of a row of the picture. */
-static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double *sums) {
+/* A row of one view, added to the sums of a row of the picture: all of it is at one height. */
+static void add_view(const struct drawing *d, uint32_t view, uint32_t y, struct pixel_sum *sums) {
     const struct light_field_head *head = &d->field->head;
     const struct lens_point middle = {{0, 0}};
     const double camera[AXES] = {camera_at(d, X, view % head->columns), camera_at(d, Y, view / head->columns)};
+    struct field_ray ray = ray_of(d, &middle, 0, y + 0.5);
+    struct tap taps[AXES] = {[Y] = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y])};
     for (uint32_t x = 0; x < d->camera.width; x++) {
-        struct field_ray ray = ray_of(d, &middle, x + 0.5, y + 0.5);
-        const double at[AXES] = {pixel_of(d, &ray, X, camera[X], d->disparity),
-                                 pixel_of(d, &ray, Y, camera[Y], d->disparity)};
-        add_pixels(d, d->field->views[view], at, d->weights[view], sums + (size_t)4 * x);
+        ray.picture[X] = (x + 0.5) * d->ratio - d->shares[X];
+        taps[X] = tap_of(pixel_of(d, &ray, X, camera[X], d->disparity), d->size[X]);
+        add_pixels(d, d->field->views[view], taps, d->weights[view], &sums[x]);
     }
 }
 
-static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, double sum[4]) {
+static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, struct pixel_sum *sum) {
     for (uint32_t i = 0; i < d->point_count && !d->weights; i++) {
         struct field_ray ray = ray_of(d, &d->points[i], x + 0.5, y + 0.5);
         if (is_in_grid(d, &ray))
             add_ray(d, &ray, sum);
     }
     struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
-    if (!(sum[3] > 0)) /* all of the lens is outside */
+    if (!(sum->weight > 0)) /* all of the lens is outside */
         add_ray(d, &ray, sum);
 }
 
@@ -324,17 +348,16 @@ static void draw_row(void *context, uint32_t y, int worker) {
     struct drawing *d = context;
     const struct light_field_head *head = &d->field->head;
     uint32_t width = d->camera.width;
-    double *sums = d->sums + (size_t)worker * width * 4;
-    for (size_t i = 0; i < (size_t)width * 4; i++)
-        sums[i] = 0;
+    struct pixel_sum *sums = d->sums + (size_t)worker * width;
+    memset(sums, 0, width * sizeof *sums);
     for (uint32_t view = 0; d->weights && view < head->columns * head->rows; view++)
         if (d->weights[view] > 0)
             add_view(d, view, y, sums);
     for (uint32_t x = 0; x < width; x++) {
-        double *sum = sums + (size_t)4 * x;
-        draw_pixel(d, x, y, sum);
+        if (!d->weights || !(sums[x].weight > 0))
+            draw_pixel(d, x, y, &sums[x]);
         for (int c = 0; c < 3; c++)
-            d->out[(size_t)y * width + x][c] = (float)(sum[c] / sum[3]);
+            d->out[(size_t)y * width + x][c] = (float)(sums[x].numbers[c] / sums[x].weight);
     }
 }
 
@@ -344,7 +367,7 @@ static bool load_views(const struct drawing *d, struct light_field *field, struc
     for (int i = 0; i < 4; i++) {
         const struct lens_point middle = {{0, 0}};
         struct field_ray ray = ray_of(d, &middle, i & 1 ? d->camera.width : 0, i & 2 ? d->camera.height : 0);
-        double extent = d->spacing > 0 ? d->camera.aperture * fabs(1 + d->camera.z / d->camera.focus) / d->spacing : 0;
+        double extent = d->camera.aperture * fabs(1 + d->camera.z * d->per_focus) * d->per_spacing;
         for (int k = 0; k < AXES; k++) {
             double u = among_cameras(d, k, ray.crossing[k]);
             low[k] = fmin(low[k], u - extent);
@@ -368,7 +391,7 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     d.camera.aperture = fmin(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
     d.field = field;
     d.out = out;
-    d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, 4 * sizeof *d.sums);
+    d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
     bool ok = (d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path);
     ok = ok && load_views(&d, field, pool, error) &&
          (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));

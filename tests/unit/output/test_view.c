@@ -13,7 +13,8 @@ static const char scene[] =
     "r:add_child(gr.plane{distance = -1, normal = {0, 1, 0}, material = gr.material{kd = gr.wood_texture(2, "
     "3)}})\n"
     "gr.light_field{node = r, rows = 2, columns = 3, size = {75, 50}, spacing = 0.2, eye = {0, 0.5, 5},\n"
-    "  target = {0, 0, 0}, fov = 40, lights = {gr.light{position = {3, 4, 5}, colour = {0.9, 0.9, 0.9}, falloff = {1, 0, 0}}}, background = {0.2, 0.3, 0.4}, ";
+    "  target = {0, 0, 0}, fov = 40, lights = {gr.light{position = {3, 4, 5}, colour = {0.9, 0.9, 0.9}, falloff = {1, "
+    "0, 0}}}, background = {0.2, 0.3, 0.4}, ";
 
 static void put_scene(const char *fields) {
     char text[2048];
@@ -39,12 +40,13 @@ TEST(a_light_field_of_paths_divided_over_eight_runs_equals_the_whole) {
 
 TEST(a_light_field_that_is_interrupted_goes_on_to_the_bytes_of_one_run) {
     put_scene("depth = true, full = true");
-    test_shell_errors("$gray -q scene.lua -o whole.lf; for m in 0.1 0.3 0.5; do rm -f scene.lf; "
-                      "$gray -q scene.lua --checkpoint c.tiles --checkpoint-every 0 2>said.txt & p=$!; sleep $m; "
-                      "kill -KILL $p 2>kill.txt; wait $p 2>kill.txt; test -e scene.lf && ! cmp scene.lf whole.lf && exit 1; "
-                      "$gray -q scene.lua --checkpoint c.tiles $(test -e c.tiles && echo --resume) && "
-                      "cmp scene.lf whole.lf || exit 2; rm -f c.tiles; done",
-                      0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua -o whole.lf; for m in 0.1 0.3 0.5; do rm -f scene.lf; "
+        "$gray -q scene.lua --checkpoint c.tiles --checkpoint-every 0 2>said.txt & p=$!; sleep $m; "
+        "kill -KILL $p 2>kill.txt; wait $p 2>kill.txt; test -e scene.lf && ! cmp scene.lf whole.lf && exit 1; "
+        "$gray -q scene.lua --checkpoint c.tiles $(test -e c.tiles && echo --resume) && "
+        "cmp scene.lf whole.lf || exit 2; rm -f c.tiles; done",
+        0, NULL);
 }
 
 /* The numbers of a view in the picture of all views. */
@@ -161,6 +163,23 @@ TEST(fields_that_a_light_field_cannot_have_are_one_line) {
                       "a light field of 1500000 x 18 pixels; its grid has at most 1048576 on a side");
 }
 
+/* Denoising and finishing treat a view as the picture that it is. */
+TEST(a_light_field_of_one_view_is_the_picture_of_its_camera) {
+    static const char *const fields[] = {"samples = 3, line_width = 2, bloom = 0.4, fxaa = true",
+                                         "integrator = 'path', spp = 8, denoise = true, vignette = 0.5"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        (void)snprintf(
+            text, sizeof text,
+            "local s = gr.sphere{material = gr.material{kd = {0.8, 0.3, 0.2}, ks = {0.3, 0.3, 0.3}}}\n"
+            "for _, file in ipairs{'a.png', 'b.png'} do gr.render{node = s, file = file, width = 90, height = 70,\n"
+            "  eye = {1, 2, 5}, target = {0, 0, 0}, %s, rows = file == 'b.png' and 1 or nil} end\n",
+            fields[i]);
+        test_write_text(test_path("scene.lua"), text);
+        test_shell_errors("$gray -q scene.lua && cmp a.png b.png", 0, NULL);
+    }
+}
+
 /* A panorama of a scene, and a perspective picture of it from the same place. */
 TEST(a_view_of_a_panorama_is_the_perspective_picture_there) {
     test_write_text(test_path("scene.lua"),
@@ -175,5 +194,20 @@ TEST(a_view_of_a_panorama_is_the_perspective_picture_there) {
                       "$gray view pano.png -o v.png --size 64x48 --fov 60 --direction=$d && "
                       "$gray compare --threshold 3 v.png one$i.png || exit; done; "
                       "$gray view pano.png -o turn.gif --size 32x24 --direction 0,0:360,0 --frames 4 --loop",
+                      0, NULL);
+}
+
+TEST(a_view_of_six_faces_is_the_picture_with_that_sky) {
+    size_t size;
+    char *bytes = test_read_file("textures/sky_letters.png", &size);
+    test_write_file(test_path("cross.png"), bytes, size);
+    free(bytes);
+    test_write_text(test_path("scene.lua"),
+                    "for i, v in ipairs{{0, 0, 1}, {-1, 0, 0}, {0.5, 0, -0.75 ^ 0.5}, {0, 1, 0.01}} do\n"
+                    "  gr.render{node = gr.node('nothing'), file = 'one' .. i .. '.png', sky = 'cross.png', view = v,\n"
+                    "    eye = {0, 0, 0}, width = 64, height = 48, fov = 60, samples = 1} end\n");
+    test_shell_errors("$gray -q scene.lua && i=0; for d in 0,0 90,0 -150,0 0,89.4271; do i=$((i + 1)); "
+                      "$gray view cross.png -o v.png --size 64x48 --fov 60 --direction=$d && "
+                      "$gray compare --threshold 2 v.png one$i.png || exit; done",
                       0, NULL);
 }
