@@ -40,6 +40,8 @@ void integrator_warn(const struct render_job *job, world_warning *warn, void *co
         path_tracer_warn(job, warn, context);
         break;
     case INTEGRATOR_RADIOSITY:
+        if (colour_max_abs(job->ambient) > 0)
+            warn(context, "--integrator radiosity ignores ambient: it computes indirect light instead");
         radiosity_warn(job->world, warn, context);
         break;
     }
