@@ -180,6 +180,26 @@ static void write_ply(struct writer *w) {
     }
 }
 
+bool coloured_mesh_write(const struct coloured_mesh *mesh, struct list *out) {
+    struct writer w = {.out = out};
+    print(&w,
+          "ply\nformat binary_little_endian 1.0\ncomment written by gray\nelement vertex %zu\n"
+          "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+          "property uchar blue\nelement face %zu\nproperty list uchar int vertex_indices\nend_header\n",
+          mesh->point_count, mesh->triangle_count);
+    for (size_t i = 0; i < mesh->point_count; i++) {
+        for (int k = 0; k < 3; k++)
+            put_float(&w, vec3_get(mesh->points[i], k));
+        put(&w, mesh->colours[i], 3);
+    }
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        put_number(&w, 3, 1);
+        for (int k = 0; k < 3; k++)
+            put_number(&w, mesh->triangles[i][k], 4);
+    }
+    return !w.failed;
+}
+
 /* --- 3MF --- */
 
 static void print_escaped(struct writer *w, const char *text) {

@@ -273,6 +273,22 @@ bool model_export_node(void *context, const struct export_request *request, stru
     return process->skips || process->options->model || process->options->check_print || run(&work, NULL, error);
 }
 
+bool model_export_bake(struct render_process *process, const struct tone *tone, struct error *error) {
+    const struct host_services *services = process->services;
+    struct model_request request = {.by_user = 2};
+    struct list bytes = {0};
+    if (process->radiosity.patches.all.count == 0)
+        return true;
+    (void)snprintf(request.file, sizeof request.file, "%.4000s", process->options->bake);
+    bool ok = radiosity_bake(&process->radiosity, tone, &bytes) || error_no_memory(error, "the light of patches");
+    request.size = bytes.count;
+    ok = ok && services->model(services->context, &request, bytes.items, error);
+    services->model_end(services->context);
+    list_destroy(&bytes);
+    process->baked = ok;
+    return ok;
+}
+
 /* The first node of that name. */
 static const struct node *find_node(const struct node *root, const char *name, struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};

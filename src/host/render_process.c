@@ -242,6 +242,13 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
     } else if (!process->options->check) {
+        process->building = true;
+        process->runs_before = pool_progress(process->pool).runs;
+        ok = !job->world || in_window || integrator_prepare(job, process->pool, error);
+        process->building = false;
+        atomic_store(&process->services->control->build_step, 0);
+    }
+    if (ok && !is_asked(process->options) && !process->options->check) {
         if (!in_window)
             atomic_store(&process->services->control->tiles, film_tile_count(job->film));
         ok = in_window
@@ -483,7 +490,8 @@ static bool render_job_run(struct render_process *process, const struct render_r
     process->rendered = (struct digest){0};
     bool ok = make_picture(&work, error);
     ok = ok && (work.picture_request.check || model_export_show(process, &work.film, &work.job.settings.tone, error));
-    bool early = ok && is_written_early(&work);
+    bool bakes = options->bake && !process->baked && !work.picture_request.check;
+    bool early = ok && !bakes && is_written_early(&work);
     if (ok && is_frame(&work))
         effects_count_frame(&work);
     if (!early)
@@ -492,6 +500,8 @@ static bool render_job_run(struct render_process *process, const struct render_r
         ok = services->done(services->context, &work.report, early, error);
     else
         services->abandon(services->context);
+    if (ok && bakes)
+        ok = model_export_bake(process, &work.job.settings.tone, error);
     if (early)
         clear_picture(&work);
     if (ok)
@@ -729,6 +739,7 @@ static int run_script(struct render_process *process, const char *path) {
     (void)mem_charge(process->account);
     world_cache_destroy(&process->world_cache);
     radiosity_destroy(&process->radiosity);
+    process->baked = false;
     (void)mem_charge(NULL);
     uint64_t first = process->pictures, before = first;
     int status = run_once(process, path, &frame, false);

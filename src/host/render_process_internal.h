@@ -41,6 +41,7 @@ struct render_process {
     struct assets assets;
     struct world_cache world_cache;  /* of the frame before, in an animation */
     struct radiosity radiosity;      /* of the picture before */
+    bool baked;                      /* its light is written */
     struct digest rendered;          /* picture_work.shows of the last picture that was rendered */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */

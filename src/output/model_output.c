@@ -7,7 +7,8 @@
 static bool choose_name(struct model_output *model, const struct picture_files *files,
                         const struct model_request *request, struct error *error) {
     const struct options *options = files->options;
-    const char *file = request->by_user && options->model ? options->model : request->file;
+    const char *own = request->by_user == 2 ? options->bake : request->by_user ? options->model : NULL;
+    const char *file = own ? own : request->file;
     size_t length = strlen(file);
     model->by_user = file != request->file;
     if (model_format_written(file) == FORMAT_OTHER)

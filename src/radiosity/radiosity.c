@@ -1,11 +1,14 @@
 #include "radiosity/radiosity.h"
 
 #include "base/mem.h"
+#include "export/model_write.h"
+#include "image/png_write.h"
 #include "radiosity/receive_internal.h"
 #include "world/world_lights.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
@@ -434,6 +437,31 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     mem_free(direct);
     mem_free(indirect);
     mem_free(smoothed);
+    return ok;
+}
+
+bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out) {
+    const struct patches *patches = &radiosity->patches;
+    struct vec3 *points = mem_alloc(patches->vertices.count * sizeof *points);
+    uint8_t(*colours)[3] = mem_alloc(patches->vertices.count * sizeof *colours);
+    uint32_t(*triangles)[3] = mem_alloc(patches->all.count * sizeof *triangles);
+    bool ok = points && colours && triangles;
+    for (uint32_t i = 0; ok && i < patches->vertices.count; i++) {
+        const struct side_light *side = &radiosity->sides[2 * i];
+        side += !(side->area > 0);
+        const struct colour light = colour_mul(side->reflectance, side->light);
+        points[i] = patch_vertex_at(patches, i)->point;
+        for (int k = 0; k < 3; k++)
+            colours[i][k] = png_write_byte(tone_apply(tone, colour_get(light, k)));
+    }
+    for (uint32_t i = 0; ok && i < patches->all.count; i++)
+        memcpy(triangles[i], patch_at(patches, i)->vertex, sizeof triangles[i]);
+    const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, (const uint32_t(*)[3])triangles,
+                                       patches->vertices.count, patches->all.count};
+    ok = ok && coloured_mesh_write(&mesh, out);
+    mem_free(points);
+    mem_free(colours);
+    mem_free(triangles);
     return ok;
 }
 

@@ -9,6 +9,7 @@
 #define GRAY_RADIOSITY_RADIOSITY_H
 
 #include "base/hash.h"
+#include "image/tone.h"
 #include "math/colour.h"
 #include "radiosity/patches.h"
 
@@ -56,6 +57,9 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error);
 /* Names the primitives that reflect light but have no patches. */
 void radiosity_warn(const struct world *world, world_warning *warn, void *context);
+/* The patches as a PLY file: colours of vertices are the light that their fronts reflect, or else their backs, for a
+ * display. False: no memory. */
+bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out);
 /* Frees what only radiosity_shoot needs. */
 void radiosity_drop_factors(struct radiosity *radiosity);
 void radiosity_destroy(struct radiosity *radiosity);

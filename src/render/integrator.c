@@ -40,9 +40,22 @@ void integrator_warn(const struct render_job *job, world_warning *warn, void *co
         path_tracer_warn(job, warn, context);
         break;
     case INTEGRATOR_RADIOSITY:
+        if (colour_max_abs(job->ambient) > 0)
+            warn(context, "--integrator radiosity ignores ambient: it computes indirect light instead");
         radiosity_warn(job->world, warn, context);
         break;
     }
+}
+
+bool integrator_prepare(const struct render_job *job, struct pool *pool, struct error *error) {
+    switch (job->settings.integrator) {
+    case INTEGRATOR_WHITTED:
+    case INTEGRATOR_PATH:
+        return true;
+    case INTEGRATOR_RADIOSITY:
+        return !job->radiosity || stored_light_prepare(job->radiosity, job, pool, error);
+    }
+    UNREACHABLE(no_kind);
 }
 
 bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
@@ -57,7 +70,7 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
     case INTEGRATOR_PATH:
         return path_tracer_create(&integrator->path, renderer, statistics, error);
     case INTEGRATOR_RADIOSITY:
-        return stored_light_begin(&integrator->radiosity, renderer, workers, statistics, error) &&
+        return stored_light_begin(&integrator->radiosity, renderer, workers, error) &&
                whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     }
     UNREACHABLE(no_kind);

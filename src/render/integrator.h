@@ -9,4 +9,7 @@ struct film_record render_record(const struct settings *settings);
 /* Warnings about parts of the scene that the integrator interprets differently; the world is built. */
 void integrator_warn(const struct render_job *job, world_warning *warn, void *context);
 
+/* What the integrator keeps for later pictures (job->radiosity), so that render_run finds it. Errors: those of it. */
+bool integrator_prepare(const struct render_job *job, struct pool *pool, struct error *error);
+
 #endif

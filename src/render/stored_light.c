@@ -3,22 +3,24 @@
 #include "material/bsdf_select.h"
 #include "render/direct_internal.h"
 
-bool stored_light_begin(struct radiosity *own, struct renderer *renderer, int workers,
-                        struct render_statistics *statistics, struct error *error) {
-    const struct render_job *job = renderer->job;
+bool stored_light_prepare(struct radiosity *radiosity, const struct render_job *job, struct pool *pool,
+                          struct error *error) {
     const struct settings *settings = &job->settings;
-    struct radiosity *radiosity = job->radiosity ? job->radiosity : own;
     const struct radiosity_input input = {.world = job->world,
                                           .background = job->background_lights,
                                           .limit = (uint32_t)settings->radiosity_patches,
                                           .error_share = settings->radiosity_error,
                                           .seed = settings->seed,
-                                          .pool = renderer->pool};
-    if (!radiosity_update(radiosity, &input, error))
+                                          .pool = pool};
+    return radiosity_update(radiosity, &input, error);
+}
+
+bool stored_light_begin(struct radiosity *own, struct renderer *renderer, int workers, struct error *error) {
+    struct radiosity *radiosity = renderer->job->radiosity ? renderer->job->radiosity : own;
+    if (!stored_light_prepare(radiosity, renderer->job, renderer->pool, error))
         return false;
     for (int i = 0; i < workers; i++)
         renderer->workers[i].state.radiosity = radiosity;
-    (void)statistics;
     return true;
 }
 

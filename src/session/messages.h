@@ -78,7 +78,7 @@ struct picture_request {
 /* A file of a model. */
 struct model_request {
     uint64_t size;    /* bytes; 0: a question before the work begins: can this file be written? */
-    uint32_t by_user; /* not 0: the file of -o */
+    uint32_t by_user; /* 1: the file of -o; 2: that of --bake */
     uint32_t beside;  /* not 0: the file of its materials, .mtl in place of .obj */
     char file[4096];  /* as the script wrote it */
 };

@@ -70,6 +70,7 @@ struct options {
     const char *output;              /* -o, or NULL: the names that the scripts choose */
     enum animation_format animation; /* of `output` */
     const char *model;               /* -o with the ending of a model, or NULL */
+    const char *bake;                /* --bake, or NULL */
     const char *other_model;         /* the same, given before that one */
     double tolerance;                /* --tolerance, of models; 0: a thousandth of their size */
     int unit;                        /* --unit: an enum model_unit */

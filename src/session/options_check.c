@@ -3,6 +3,7 @@
 #include "session/options_internal.h"
 
 #include "formats/model.h"
+#include "formats/model_format.h"
 #include "image/picture_file.h"
 
 #include <string.h>
@@ -70,6 +71,14 @@ static bool check_questions(const struct options *options, struct error *error) 
                          "or --resume",
                          asked);
     return true;
+}
+
+static bool check_bake(const struct options *options, struct error *error) {
+    if (!options->bake)
+        return true;
+    if (model_format_written(options->bake) != FORMAT_PLY)
+        return error_set(error, ERROR_USAGE, "--bake %.400s: the name must end in .ply", options->bake);
+    return options->script_count == 1 || error_set(error, ERROR_USAGE, "--bake writes the light of one script");
 }
 
 /* -o MODEL and --check-print: no picture is rendered, unless another -o names one. */
@@ -265,8 +274,8 @@ static void choose_kept(struct options *options) {
 
 bool options_check(struct options *options, struct error *error) {
     bool ok = check_together(options, error) && check_questions(options, error) && check_model(options, error) &&
-              check_parts(options, error) && check_time(options, error) && check_name(options, error) &&
-              check_animation(options, error);
+              check_bake(options, error) && check_parts(options, error) && check_time(options, error) &&
+              check_name(options, error) && check_animation(options, error);
     if (ok)
         choose_kept(options);
     return ok;

@@ -70,6 +70,10 @@ static const struct setting options_table[] = {
      0, "mm", "Unit of the numbers in a written model, for files that name it (3MF)."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--node", "NAME", "", NULL, FIELD(node), 0, 0, 0, "all",
      "Write only the node of this name as a model."},
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--bake", "FILE.ply", "", NULL, FIELD(bake), 0, 0, 0, NULL,
+     "Write the patches of the first picture, with the light that integrator radiosity has stored as colours of their "
+     "vertices.",
+     EFFECT_RADIOSITY},
     {SETTING_WHOLE, CHANGES_RUN, OPTION_GROUP_MODELS, "--picture", "N", "", NULL, FIELD(picture), 0, 1, INT_MAX,
      "the only one", "The picture of a script whose scene is written as a model, counted from 1."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MODELS, "--check-print", NULL, "", NULL, FIELD(check_print), 0, 0, 0, NULL,

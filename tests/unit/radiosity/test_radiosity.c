@@ -255,6 +255,88 @@ TEST(what_is_inside_of_a_solid_has_no_area) {
     stage_end(&s);
 }
 
+/* --- solutions that are kept --- */
+
+static bool update(struct stage *s, struct radiosity *radiosity) {
+    const struct side_light *before = radiosity->sides;
+    struct radiosity_input input = input_of(s, 300, 0);
+    input.error_share = 0.01;
+    CHECK(stage_build(s, s->root, ACCEL_AUTO) && radiosity_update(radiosity, &input, &s->error));
+    return radiosity->sides != before;
+}
+
+TEST(a_solution_is_kept_until_something_that_it_depends_on_changes) {
+    struct stage s;
+    struct radiosity radiosity = {0};
+    begin_room(&s, 1);
+    struct material *kd = matt(&s, 0.4), *glow = matt(&s, 0);
+    struct node *box = stage_cube(&s, s.root, kd), *lamp = stage_cube(&s, s.root, glow);
+    stage_move(&s, box, 3, 0, 3);
+    stage_scale(&s, lamp, 0.1, 0.1, 0.1);
+    stage_move(&s, lamp, 3, 2, 1);
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    s.camera.eye.x += 1;
+    CHECK(!update(&s, &radiosity));
+    kd->phong.kd.g = 0.41;
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    stage_move(&s, box, 0.01, 0, 0);
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    s.lights[0].colour.b = 0.51;
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    s.lights[0].position.x += 0.01;
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    glow->phong.emission = colour_all(1);
+    CHECK(update(&s, &radiosity) && !update(&s, &radiosity));
+    radiosity_destroy(&radiosity);
+    stage_end(&s);
+}
+
+/* A floor of kd .5 below a white sky, encoded with the sRGB function. */
+TEST(baked_light_is_the_colour_of_vertices) {
+    struct stage s;
+    struct radiosity radiosity = {0};
+    struct list ply = {0};
+    stage_begin(&s, 1);
+    (void)add_planar(&s, rectangle(0, 0, 0, to_x, to_y), matt(&s, 0.5));
+    s.sky.colour = colour_all(1);
+    if (prepare(&s, &radiosity, 300, 0)) {
+        CHECK(radiosity_finish(&radiosity, 0.01, s.pool, &s.error));
+        CHECK(radiosity_bake(&radiosity, &(struct tone){.srgb = true}, &ply));
+        uint32_t vertices = 0, faces = 0;
+        CHECK(list_add_bytes(&ply, "", 1));
+        const char *head = ply.items, *body = strstr(head, "end_header\n");
+        CHECK(body && sscanf(strstr(head, "element vertex"), "element vertex %u", &vertices) == 1);
+        CHECK(body && sscanf(strstr(head, "element face"), "element face %u", &faces) == 1);
+        CHECK_EQ_INT(vertices, radiosity.patches.vertices.count);
+        CHECK_EQ_INT(faces, radiosity.patches.all.count);
+        body += strlen("end_header\n");
+        CHECK_EQ_INT(body - head + 15 * vertices + 13 * faces + 1, ply.count);
+        for (uint32_t i = 0; i < vertices; i++)
+            CHECK_NEAR((double)(uint8_t)body[15 * i + 13], 188, 2);
+    }
+    list_destroy(&ply);
+    radiosity_destroy(&radiosity);
+    stage_end(&s);
+}
+
+TEST(bake_writes_a_file_beside_the_picture) {
+    static const char scene[] = "local s = gr.node('s')\n"
+                                "s:add_child(gr.sphere(gr.material{kd = {.5, .5, .5}}))\n"
+                                "gr.render{node = s, file = 'x.png', width = 8, height = 6, eye = {0, 0, 8}, "
+                                "background = {1, 1, 1}}\n";
+    struct test_result result = test_gray_scene(scene, "-q --integrator radiosity --bake b.ply scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    test_free_result(&result);
+    result = test_gray_scene("local b = gr.mesh('b', 'b.ply')\nprint(b ~= nil)\n", "-q scene.lua", NULL);
+    CHECK_TEXT(result.out, "true\n");
+    test_free_result(&result);
+    result = test_gray_scene(scene, "--bake b.stl scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 2);
+    CHECK(strstr(result.err, "gray: --bake b.stl: the name must end in .ply"));
+    test_free_result(&result);
+}
+
 /* --- patches --- */
 
 static uint64_t edge_number(uint32_t a, uint32_t b) {
