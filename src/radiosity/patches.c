@@ -182,7 +182,7 @@ static void find_normals(struct patch_builder *b, uint32_t primitive, bool plain
         (void)longest_edge(c, &size);
         normals[i] = vec3_normalize(normal_of(c));
         if (!plain && patches_hit(b->out->world, primitive, vec3_add_scaled(vec3_scale(corners[i], 0.95), middle, 0.05),
-                                  normals[i], size, &b->scratch, &hit))
+                                  vec3_scale(normals[i], size), &b->scratch, &hit))
             normals[i] = hit.normal;
     }
 }
@@ -337,7 +337,8 @@ static bool find_middle(struct patches *patches, uint32_t index, int k, uint32_t
     struct patch_vertex own = {vec3_scale(vec3_add(a, b), 0.5), primitive};
     double length = vec3_length(vec3_sub(b, a));
     if (patches->curved[primitive] &&
-        patches_hit(patches->world, primitive, own.point, vec3_normalize(normal_of(c)), length, scratch, &hit) &&
+        patches_hit(patches->world, primitive, own.point, vec3_scale(vec3_normalize(normal_of(c)), length), scratch,
+                    &hit) &&
         vec3_length(vec3_sub(hit.point, own.point)) < curved_part * length)
         own.point = hit.point;
     *middle = (uint32_t)patches->vertices.count;
@@ -562,17 +563,19 @@ bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t
     return false;
 }
 
-bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal, double size,
+bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal,
                  struct world_scratch *scratch, struct hit *hit) {
+    const struct vec3 unit = vec3_normalize(normal);
     /* From nearby first: another surface of the primitive may be above. */
-    for (double height = 0x1p-10 * size; height <= size; height *= 32) {
+    for (double share = 0x1p-10; share <= 1; share *= 32) {
+        const double height = share * vec3_length(normal);
         const struct ray ray = {
-            .origin = vec3_add_scaled(point, normal, height), .direction = vec3_negate(normal), .t_max = 2 * height};
+            .origin = vec3_add_scaled(point, unit, height), .direction = vec3_negate(unit), .t_max = 2 * height};
         struct crossing crossing;
         if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
             continue;
         world_describe(world, &ray, primitive, &crossing, hit);
-        if (hit->front && vec3_dot(hit->normal_geometric, normal) > 0.5)
+        if (hit->front && vec3_dot(hit->normal_geometric, unit) > 0.5)
             return true;
     }
     return false;

@@ -63,9 +63,9 @@ bool patches_index_space(struct patches *patches, struct pool *pool, struct erro
 /* The patch of a hit, and the shares of its vertices there. False: there is none near it. */
 bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t *patch, double shares[3]);
 
-/* The point of the true surface near a point of a patch with that unit normal and size, seen from the front. False: the
- * shape is not there. */
-bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal, double size,
+/* The point of the true surface near a point of a patch, seen from the front. normal: of the patch, as long as the
+ * patch is large. False: the shape is not there. */
+bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal,
                  struct world_scratch *scratch, struct hit *hit);
 
 #endif

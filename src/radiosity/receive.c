@@ -141,8 +141,8 @@ static bool hit_of(const struct receiver *receiver, uint32_t position, struct hi
     patch_corners(patches, patch, c);
     struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
     double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
-    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, vec3_normalize(normal), size,
-                     receiver->scratch, hit))
+    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point,
+                     vec3_scale(vec3_normalize(normal), size), receiver->scratch, hit))
         return false;
     hit->view = receiver->back ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     hit->front = !receiver->back;
@@ -358,8 +358,8 @@ static struct colour light_of_patch(const struct receiver *receiver, const struc
         point = vec3_add_scaled(point, c[k], shares[k]);
     struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
     double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
-    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, normal, size, receiver->scratch,
-                     &there))
+    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, vec3_scale(normal, size),
+                     receiver->scratch, &there))
         return colour_all(0);
     normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
     const struct light_receiver from = light_receiver_of(hit);
@@ -473,8 +473,8 @@ void receive_probe(const struct receiver_input *input, uint32_t patch, struct wo
     patch_corners(patches, patch, c);
     struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
     struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-    if (!patches_hit(world, patch_at(patches, patch)->primitive, middle, normal, vec3_length(vec3_sub(c[1], c[0])),
-                     scratch, &hit))
+    if (!patches_hit(world, patch_at(patches, patch)->primitive, middle,
+                     vec3_scale(normal, vec3_length(vec3_sub(c[1], c[0]))), scratch, &hit))
         return;
     material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
     out->diffuse = bsdf_diffuse(&bsdf);

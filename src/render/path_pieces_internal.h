@@ -287,8 +287,8 @@ static __attribute__((noinline)) void blend_features(const struct integrator_sta
     const struct medium *medium = mix.media[0];
     for (uint32_t i = 0; !medium->scatters; i++)
         medium = mix.media[i];
-    const struct colour veil = colour_mul(medium_albedo(medium), colour_sub(colour_all(1), left));
-    set_features(state, path, colour_add(veil, colour_mul(left, behind)),
+    const struct colour from_medium = colour_mul(medium_albedo(medium), colour_sub(colour_all(1), left));
+    set_features(state, path, colour_add(from_medium, colour_mul(left, behind)),
                  vec3_scale(normal, (left.r + left.g + left.b) / 3),
                  depth_in_medium(medium, parts->travelled, distance));
 }

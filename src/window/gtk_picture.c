@@ -29,15 +29,16 @@ void gui_picture_attach(struct gui *gui, const struct window_order *order, int d
 
 /* Where the tile is in a picture that is shown with so many pixels. Tiles begin and end at whole pixels, so that no
  * line shows between them. */
-struct tile_place {
+struct tile_rectangle {
     uint32_t left, top, right, bottom;
 };
-static struct tile_place tile_place(const struct picture_tiles *tiles, uint32_t tile, uint32_t width, uint32_t height) {
+static struct tile_rectangle tile_rectangle(const struct picture_tiles *tiles, uint32_t tile, uint32_t width,
+                                            uint32_t height) {
     const uint32_t full_width = tiles->shared.width, full_height = tiles->shared.height;
     uint32_t columns = (full_width + WINDOW_TILE - 1) / WINDOW_TILE;
     uint32_t x = tile % columns * WINDOW_TILE, y = tile / columns * WINDOW_TILE;
     uint32_t right = MIN(x + WINDOW_TILE, full_width), bottom = MIN(y + WINDOW_TILE, full_height);
-    return (struct tile_place){
+    return (struct tile_rectangle){
         (uint32_t)((uint64_t)x * width / full_width), (uint32_t)((uint64_t)y * height / full_height),
         (uint32_t)((uint64_t)right * width / full_width), (uint32_t)((uint64_t)bottom * height / full_height)};
 }
@@ -58,8 +59,8 @@ static uint64_t cover_weight(const struct cover *cover, uint32_t pixel) {
 
 /* A part of the picture that is shown smaller, with whole pixels: means by area. GTK would take several times as long.
  */
-static void shrink(const struct window_picture *picture, const struct tile_place *to, uint32_t width, uint32_t height,
-                   uint8_t *out) {
+static void shrink(const struct window_picture *picture, const struct tile_rectangle *to, uint32_t width,
+                   uint32_t height, uint8_t *out) {
     const uint8_t *pixels = window_picture_pixels(picture);
     float *sums = g_new(float, 3 * (size_t)picture->width);
     const uint32_t begin = cover_of(to->left, picture->width, width).first,
@@ -90,7 +91,7 @@ static void shrink(const struct window_picture *picture, const struct tile_place
     g_free(sums);
 }
 
-static void copy(const struct window_picture *picture, const struct tile_place *to, uint8_t *out) {
+static void copy(const struct window_picture *picture, const struct tile_rectangle *to, uint8_t *out) {
     const size_t row = 3 * (size_t)(to->right - to->left);
     for (uint32_t y = to->top; y < to->bottom; y++)
         memcpy(out + (y - to->top) * row, window_picture_pixels(picture) + 3 * ((size_t)y * picture->width + to->left),
@@ -99,7 +100,7 @@ static void copy(const struct window_picture *picture, const struct tile_place *
 
 static void make_texture(struct picture_tiles *tiles, uint32_t tile) {
     const struct window_picture *picture = &tiles->shared;
-    const struct tile_place to = tile_place(tiles, tile, tiles->width, tiles->height);
+    const struct tile_rectangle to = tile_rectangle(tiles, tile, tiles->width, tiles->height);
     const uint32_t width = to.right - to.left, height = to.bottom - to.top;
     g_clear_object(&tiles->textures[tile]);
     if (width == 0 || height == 0)
@@ -144,14 +145,14 @@ G_DEFINE_FINAL_TYPE(GrayPicture, gray_picture, GTK_TYPE_WIDGET)
 static void draw_tiles(GtkSnapshot *snapshot, const struct gui *gui, double scale) {
     const struct window_state *state = &gui->state;
     for (uint32_t tile = 0; tile < gui->tiles.count; tile++) {
-        struct tile_place to =
-            tile_place(&gui->tiles, tile, (uint32_t)MAX(state->shown_width, 0), (uint32_t)MAX(state->shown_height, 0));
+        struct tile_rectangle to = tile_rectangle(&gui->tiles, tile, (uint32_t)MAX(state->shown_width, 0),
+                                                  (uint32_t)MAX(state->shown_height, 0));
         if (!gui->tiles.textures[tile] || to.left == to.right || to.top == to.bottom)
             continue;
-        graphene_rect_t place = GRAPHENE_RECT_INIT(
+        graphene_rect_t bounds = GRAPHENE_RECT_INIT(
             (float)((state->left + (double)to.left) / scale), (float)((state->top + (double)to.top) / scale),
             (float)((to.right - to.left) / scale), (float)((to.bottom - to.top) / scale));
-        gtk_snapshot_append_texture(snapshot, gui->tiles.textures[tile], &place);
+        gtk_snapshot_append_texture(snapshot, gui->tiles.textures[tile], &bounds);
     }
 }
 

@@ -624,7 +624,7 @@ TEST(solids_that_touch_in_an_edge_are_separated_there) {
 }
 
 /* An octahedron whose top is two vertices at one place, with two triangles between them. */
-TEST(vertices_at_one_place_are_joined_although_they_are_kept) {
+TEST(vertices_at_one_position_are_joined_although_they_are_kept) {
     static const double at[7][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
     static const uint32_t faces[10][3] = {{0, 1, 2}, {0, 4, 1}, {0, 2, 6}, {0, 6, 4}, {6, 2, 3},
                                           {6, 3, 4}, {5, 2, 1}, {5, 3, 2}, {5, 4, 3}, {5, 1, 4}};
