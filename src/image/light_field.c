@@ -388,7 +388,7 @@ static bool unpack(const uint8_t *packed, size_t size, uint8_t *raw, size_t want
 
 static bool load_view(struct light_field *field, uint32_t view, struct error *error) {
     const struct light_field_head *head = &field->head;
-    const struct light_field_entry *entry = &field->entries[view];
+    struct light_field_entry *entry = &field->entries[view];
     size_t plane = (size_t)head->width * head->height, raw_bytes = raw_size(head);
     if (field->views[view])
         return true;
@@ -409,6 +409,13 @@ static bool load_view(struct light_field *field, uint32_t view, struct error *er
         ok = isfinite(values[i]) || wrong(field, "a view has a number that is not finite", error);
     mem_free(packed);
     mem_free(raw);
+    entry->nearest = 0;
+    entry->farthest = INFINITY;
+    for (size_t i = 0; ok && i < plane; i++) {
+        double disparity = light_field_disparity(values + i * LIGHT_FIELD_NUMBERS);
+        entry->nearest = disparity > entry->nearest ? disparity : entry->nearest;
+        entry->farthest = disparity < entry->farthest ? disparity : entry->farthest;
+    }
     if (ok)
         field->views[view] = values;
     else

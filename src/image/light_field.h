@@ -30,9 +30,10 @@ struct light_field_head {
 bool light_field_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
                        struct error *error);
 
-/* Where a view lies in the file. */
+/* Where a view lies in the file; once it is loaded, the reciprocals of its smallest and of its largest depth. */
 struct light_field_entry {
     uint64_t at, size;
+    double nearest, farthest;
 };
 /* A file that is open: its head and table are checked; views are read when they are needed. Zero value: closed. */
 struct light_field {
@@ -51,6 +52,10 @@ void light_field_close(struct light_field *field);
 /* Reads the views of a part of the grid that are not there yet: LIGHT_FIELD_NUMBERS for each pixel, red, green, blue
  * and depth, rows from the top. Errors: the file is damaged, no memory, cancelled. */
 enum { LIGHT_FIELD_NUMBERS = 4 };
+/* The reciprocal of the depth of a pixel; 0: nothing is there. */
+static inline double light_field_disparity(const float pixel[LIGHT_FIELD_NUMBERS]) {
+    return pixel[3] > 0 ? 1 / (double)pixel[3] : 0;
+}
 struct light_field_part {
     uint32_t column, row, columns, rows;
 };

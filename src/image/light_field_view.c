@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS = 6 };
+enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS_LIMIT = 64 };
 #define GOLDEN_ANGLE 2.39996322972865332
 
 /* A point of the lens: its share of the picture is the same for all. */
@@ -141,8 +141,7 @@ static bool disparity_there(const struct drawing *d, const float *view, const do
         return false;
     size_t x = (size_t)(at[X] < d->size[X] ? at[X] : d->size[X] - 1),
            y = (size_t)(at[Y] < d->size[Y] ? at[Y] : d->size[Y] - 1);
-    double depth = (double)view[(y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS + 3];
-    *out = depth > 0 ? 1 / depth : 0;
+    *out = light_field_disparity(view + (y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS);
     return true;
 }
 
@@ -151,6 +150,7 @@ static bool disparity_there(const struct drawing *d, const float *view, const do
 /* A camera near a ray. */
 struct near_camera {
     const float *view;
+    const struct light_field_entry *entry;
     double at[AXES], weight;
 };
 
@@ -175,8 +175,10 @@ static int find_cameras(const struct drawing *d, const struct field_ray *ray, st
         if (!(weight > 0))
             continue;
         size_t view = (size_t)index[Y] * d->field->head.columns + (size_t)index[X];
-        out[count++] =
-            (struct near_camera){d->field->views[view], {camera_at(d, X, index[X]), camera_at(d, Y, index[Y])}, weight};
+        out[count++] = (struct near_camera){d->field->views[view],
+                                            &d->field->entries[view],
+                                            {camera_at(d, X, index[X]), camera_at(d, Y, index[Y])},
+                                            weight};
     }
     return count;
 }
@@ -188,19 +190,18 @@ static double pixels_apart(const struct drawing *d, const struct field_ray *ray,
     return fabs(a - b) * (off[X] > off[Y] ? off[X] : off[Y]) * d->per_pixel;
 }
 
-/* Follows the ray in the picture of a camera from the plane in focus to the depths that it finds. False: it finds no
- * surface on the ray. */
+/* Follows the ray in the picture of a camera from the nearest depth to the farthest, by about a pixel each time, to the
+ * first surface. False: it finds none. */
 static bool find_surface(const struct drawing *d, const struct field_ray *ray, const struct near_camera *camera,
                          double *disparity) {
-    double at[AXES], found;
-    *disparity = d->disparity;
-    for (int step = 0; step < STEPS; step++) {
-        find_pixel(d, ray, camera, *disparity, at);
-        if (!disparity_there(d, camera->view, at, &found))
-            return false;
-        bool is_there = pixels_apart(d, ray, camera, found, *disparity) < 0.5;
-        *disparity = found;
-        if (is_there)
+    double near = camera->entry->nearest, far = camera->entry->farthest, at[AXES];
+    int steps = 1 + (int)limited(pixels_apart(d, ray, camera, near, far), 0, STEPS_LIMIT);
+    double step = (near - far) / steps;
+    for (int i = 0; i <= steps; i++) {
+        double here = near - i * step;
+        find_pixel(d, ray, camera, here, at);
+        if (disparity_there(d, camera->view, at, disparity) && *disparity >= here - step / 2 &&
+            *disparity <= here + step)
             return true;
     }
     return false;
@@ -283,14 +284,25 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
     return outside;
 }
 
-/* Points of a lens, as evenly as the seeds of a sunflower, more where the far background is a larger disc. It is a line
- * in a grid of one row or column. */
+/* How far the nearest surface of the loaded views, or the farthest one, is from the plane in focus. */
+static double largest_disparity(const struct drawing *d) {
+    double largest = d->field->head.depth ? 0 : d->disparity;
+    for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->field->head.depth; i++) {
+        const struct light_field_entry *entry = &d->field->entries[i];
+        if (d->field->views[i])
+            largest = fmax(largest, fmax(entry->nearest - d->disparity, d->disparity - entry->farthest));
+    }
+    return largest;
+}
+
+/* Points of a lens, as evenly as the seeds of a sunflower: one for each pixel of the largest disc of the views. It is a
+ * line in a grid of one row or column. */
 static bool make_lens(struct drawing *d) {
     double across = d->camera.aperture * d->per_spacing;
-    double blur = d->camera.aperture * d->disparity * d->per_pixel;
+    double blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
     d->point_count = 1;
     if (across > 0)
-        d->point_count = (uint32_t)fmin(fmax(ceil(PI / 2 * blur * blur), LENS_FEWEST), LENS_LIMIT);
+        d->point_count = (uint32_t)fmin(fmax(ceil(PI * blur * blur), LENS_FEWEST), LENS_LIMIT);
     d->points = mem_alloc_zero(d->point_count, sizeof *d->points);
     for (uint32_t i = 0; d->points && i < d->point_count && across > 0; i++) {
         double radius = d->camera.aperture * sqrt((i + 0.5) / d->point_count), sine, cosine;
@@ -392,9 +404,9 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     d.field = field;
     d.out = out;
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
-    bool ok = (d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path);
-    ok = ok && load_views(&d, field, pool, error) &&
-         (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
+    bool ok = load_views(&d, field, pool, error) &&
+              ((d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
+    ok = ok && (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
     mem_free(d.sums);
     mem_free(d.points);
     mem_free(d.weights);

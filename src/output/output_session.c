@@ -369,9 +369,12 @@ bool output_begin(struct output_session *output, const struct picture_request *r
                          written);
     if (request->settings.transparent &&
         (picture_format(written) == PICTURE_PFM || picture_format(written) == PICTURE_HDR ||
-         picture_format(written) == PICTURE_LIGHT_FIELD ||
-         output->options->animation != ANIMATION_NONE))
+         picture_format(written) == PICTURE_LIGHT_FIELD || output->options->animation != ANIMATION_NONE))
         return error_set(error, ERROR_SCENE, "%s: background 'transparent' needs a file with alpha: .png or .exr",
+                         written);
+    if (request->settings.lens.depth &&
+        (output->options->animation != ANIMATION_NONE || animation_streams(&output->animation, request)))
+        return error_set(error, ERROR_SCENE, "%s: a light field with depths cannot be a frame of an animation",
                          written);
     if (!animation_begin(&output->animation, request, number_of(output, request), error))
         return false;

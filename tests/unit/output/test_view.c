@@ -159,6 +159,11 @@ TEST(fields_that_a_light_field_cannot_have_are_one_line) {
     test_shell_errors("$gray scene.lua", 1, "overlay");
     put_scene("");
     test_shell_errors("$gray scene.lua --crop 0,0,9,9", 1, "a light field cannot be combined with --crop or --overlay");
+    test_shell_errors("$gray -q scene.lua --turntable 2 -o x.gif", 0, NULL);
+    put_scene("depth = true");
+    test_shell_errors("$gray scene.lua --turntable 2 -o x.gif", 1,
+                      "a light field with depths cannot be a frame of an animation");
+    put_scene("");
     test_shell_errors("$gray scene.lua --size 500000x9", 1,
                       "a light field of 1500000 x 18 pixels; its grid has at most 1048576 on a side");
 }
