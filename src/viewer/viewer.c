@@ -10,7 +10,8 @@
 #include <string.h>
 
 enum { FIRST_DIVIDE = 16, MIDDLE_DIVIDE = 4, DIVIDE_LIMIT = 32 };
-static const double pass_goal = 1 / 30.0, margin = 1.02;
+/* In seconds, and where that would leave less than a quarter of the pixels in each direction. */
+static const double pass_goal = 1 / 30.0, pass_limit = 1 / 22.0, margin = 1.02;
 
 static bool is_different(double a, double b) {
     return a < b || a > b;
@@ -275,11 +276,12 @@ static void note_motion(struct viewer *viewer, double now) {
     motion->began = 0;
 }
 
-void viewer_fit_resolution(struct viewer *viewer, double now, double seconds) {
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds, double limit) {
     uint32_t divide = viewer->pass.divide;
     if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
         return;
-    double needed = fmin(divide * sqrt((now - viewer->pass.began) / seconds), 1.5 * divide);
+    double side = divide * sqrt(now - viewer->pass.began);
+    double needed = fmin(fmax(fmin(side / sqrt(seconds), MIDDLE_DIVIDE), side / sqrt(limit)), 1.5 * divide);
     if (needed > divide)
         divide = needed < DIVIDE_LIMIT ? (uint32_t)ceil(needed) : DIVIDE_LIMIT;
     else if (ceil(margin * needed) < divide)
@@ -307,7 +309,7 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     viewer_draw_tiles(viewer);
     note_motion(viewer, now);
     if (known)
-        viewer_fit_resolution(viewer, now, pass_goal);
+        viewer_fit_resolution(viewer, now, pass_goal, pass_limit);
 }
 
 void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
@@ -456,8 +458,8 @@ static void command_overlay(struct viewer *viewer) {
 }
 
 /* Between the preview and the picture of a progressive integrator: denoised pictures, of 2 and 4 samples at a third of
- * the pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part of.
- * Where the noise or the time decides, there are at most 16. */
+ * the pixels in each direction, of 8 at a half, then of twice as many samples each time, which those before are a part
+ * of. Where the noise or the time decides, there are at most 16. */
 static void begin_finer_pass(struct viewer *viewer, double now) {
     enum { FIRST = 2, HALF = 8, ADAPTIVE_LIMIT = 16 };
     const struct settings *settings = &viewer->request.settings;

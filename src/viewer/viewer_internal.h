@@ -14,9 +14,10 @@ bool viewer_is_enlarging(const struct viewer *viewer); /* the same, but for the 
 /* Samples of paths are shown when they are denoised. */
 bool viewer_shows_denoised(const struct viewer *viewer);
 void viewer_choose_mode(struct viewer *viewer, struct view_mode mode);
-/* After a coarse pass: the resolution of the next one, which is to take that long. One slow pass may be the fault of
- * another program, so it changes slowly; a margin prevents that it changes to and fro. */
-void viewer_fit_resolution(struct viewer *viewer, double now, double seconds);
+/* After a coarse pass: the resolution of the next one, which is to take that long, or up to the limit where it would
+ * have less than a quarter of the pixels in each direction. One slow pass may be the fault of another program, so it
+ * changes slowly; a margin prevents that it changes to and fro. */
+void viewer_fit_resolution(struct viewer *viewer, double now, double seconds, double limit);
 /* The view has changed: it is rendered again. */
 void viewer_outdate(struct viewer *viewer);
 void viewer_note_stop(struct viewer *viewer, double seconds);

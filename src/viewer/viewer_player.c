@@ -155,7 +155,8 @@ void viewer_player_end_pass(struct viewer *viewer, double now) {
     if (player->requested_at <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != viewer->pass.divide)
         return;
     double beside = fmax(0, whole - took);
-    viewer_fit_resolution(viewer, now, fmax(pass_min, period_of(viewer) - beside - clock_step));
+    const double seconds = fmax(pass_min, period_of(viewer) - beside - clock_step);
+    viewer_fit_resolution(viewer, now, seconds, seconds);
     player->requested_at = 0;
 }
 

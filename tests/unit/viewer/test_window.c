@@ -422,7 +422,7 @@ static const uint8_t *middle_of(const struct table *t) {
 TEST(window_shows_samples_of_paths_only_denoised_and_doubles_them) {
     static const struct {
         uint32_t divide, samples, kept;
-    } want[] = {{3, 4, 0}, {2, 8, 0}, {1, 16, 0}, {1, 32, 16}, {1, 0, 32}};
+    } want[] = {{3, 2, 0}, {3, 4, 0}, {2, 8, 0}, {1, 16, 0}, {1, 32, 16}, {1, 0, 32}};
     struct table t;
     const struct settings settings = {.integrator = INTEGRATOR_PATH, .denoise = DENOISER_GRAY};
     begin_with(&t, render_record(&settings), 64);
