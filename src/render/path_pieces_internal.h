@@ -260,39 +260,6 @@ static double depth_in_medium(const struct medium *medium, double before, double
     return depth < INFINITY ? before + depth : 0;
 }
 
-/* The features of a line of sight through media that scatter: the mean of theirs and of what is behind, since those of
- * single events would be noise. Not of clear surfaces, and of holes: the path decides what is seen there. */
-static __attribute__((noinline)) void blend_features(const struct integrator_state *state, const struct path *path,
-                                                     const struct hit *hit, const struct bsdf *bsdf) {
-    const struct path_parts *parts = parts_of(state);
-    struct medium_mix mix;
-    medium_stack_mix(path->ray.media, &mix);
-    if (!parts || parts->surface_known || !medium_mix_scatters(&mix))
-        return;
-    struct vec3 direction = vec3_normalize(path->ray.direction), normal = hit ? bsdf->lit : vec3_all(0);
-    double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
-    struct colour behind;
-    if (hit) {
-        const struct bsdf_guide guide = bsdf_guide(bsdf, light_albedo(bsdf->emission));
-        if (bsdf->opacity < 1 || !(guide.scatters || colour_max_abs(bsdf->emission) > 0))
-            return;
-        behind = guide.albedo;
-    } else {
-        behind = state->job->settings.transparent && path->depth == 0
-                     ? colour_all(0)
-                     : light_albedo(sky_colour(&state->job->world->sky, direction, path->ray.footprint.spread));
-    }
-    const struct medium_line line = {path->ray.origin, direction, distance, path->ray.time};
-    const struct colour left = medium_mix_left(&mix, &line, random_combine(medium_key(path), 1));
-    const struct medium *medium = mix.media[0];
-    for (uint32_t i = 0; !medium->scatters; i++)
-        medium = mix.media[i];
-    const struct colour from_medium = colour_mul(medium_albedo(medium), colour_sub(colour_all(1), left));
-    set_features(state, path, colour_add(from_medium, colour_mul(left, behind)),
-                 vec3_scale(normal, (left.r + left.g + left.b) / 3),
-                 depth_in_medium(medium, parts->travelled, distance));
-}
-
 /* Adds everything between the origin of the ray and its end: area lights, media. out: set unless it ends at
  * its hit without a medium. */
 static enum travelled travel(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
@@ -598,6 +565,42 @@ struct path_hit {
     struct joint joint;
 };
 
+/* The features of a line of sight through media that scatter: the mean of theirs and of what is behind, since those of
+ * single events would be noise. Not of clear surfaces and of holes: the path decides what is seen there. */
+static __attribute__((noinline)) void blend_features(const struct integrator_state *state, const struct path *path,
+                                                     const struct path_hit *at) {
+    const struct path_parts *parts = parts_of(state);
+    struct medium_mix mix;
+    medium_stack_mix(path->ray.media, &mix);
+    if (!parts || parts->surface_known || !medium_mix_scatters(&mix))
+        return;
+    struct vec3 direction = vec3_normalize(path->ray.direction), normal = {0, 0, 0};
+    double distance = at ? at->hit.t * vec3_length(path->ray.direction) : INFINITY;
+    struct colour behind;
+    if (at) {
+        struct bsdf bsdf;
+        evaluate(state, path, &at->hit, &at->joint, &bsdf);
+        const struct bsdf_guide guide = bsdf_guide(&bsdf, light_albedo(bsdf.emission));
+        if (bsdf.opacity < 1 || !(guide.scatters || colour_max_abs(bsdf.emission) > 0))
+            return;
+        behind = guide.albedo;
+        normal = bsdf.lit;
+    } else {
+        behind = state->job->settings.transparent && path->depth == 0
+                     ? colour_all(0)
+                     : light_albedo(sky_colour(&state->job->world->sky, direction, path->ray.footprint.spread));
+    }
+    const struct medium_line line = {path->ray.origin, direction, distance, path->ray.time};
+    const struct colour left = medium_mix_left(&mix, &line, random_combine(medium_key(path), 1));
+    const struct medium *medium = mix.media[0];
+    for (uint32_t i = 0; !medium->scatters; i++)
+        medium = mix.media[i];
+    const struct colour from_medium = colour_mul(medium_albedo(medium), colour_sub(colour_all(1), left));
+    set_features(state, path, colour_add(from_medium, colour_mul(left, behind)),
+                 vec3_scale(normal, (left.r + left.g + left.b) / 3),
+                 depth_in_medium(medium, parts->travelled, distance));
+}
+
 /* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                          const struct path_hit *at, struct path_shadow *shadow, struct path_watch *watch) {
@@ -702,12 +705,8 @@ static bool shade(const struct path_tracer *tracer, struct integrator_state *sta
 #if OBSERVED
     watch_ray(watch, state->observer, path, met ? &at.hit : NULL);
 #endif
-    if (MATTER && LAYERS && path->sight && !travelled && (path->media.count > 0 || tracer->in_medium)) {
-        struct bsdf bsdf;
-        if (met)
-            evaluate(state, path, &at.hit, &at.joint, &bsdf);
-        blend_features(state, path, met ? &at.hit : NULL, &bsdf);
-    }
+    if (MATTER && LAYERS && !OBSERVED && path->sight && !travelled && (path->media.count > 0 || tracer->in_medium))
+        blend_features(state, path, met ? &at : NULL);
     /* The way to it, then the surface or the sky there. */
     enum travelled to = travelled ? ENDS_AT_HIT : travel(tracer, state, path, met ? &at.hit : NULL, watch, &end);
     if (to == ENDS_AT_LIGHT)

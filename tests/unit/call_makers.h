@@ -43,7 +43,7 @@ static inline bool function_is_square(const char *help) {
 /* A right argument, as Lua text. */
 static inline void right_text(const struct script_parameter *p, char *out, size_t size) {
     bool bounded = p->low != 0 || p->high != 0;
-    double middle = !bounded ? 1 : isfinite(p->high) ? floor(p->low / 2 + p->high / 2) : p->low + 1;
+    double middle = !bounded ? 1 : isfinite(p->high) ? fmax(p->low, floor(p->low / 2 + p->high / 2)) : p->low + 1;
     const char *text = "nil";
     switch (p->kind) {
     case KIND_NUMBER:

@@ -33,7 +33,7 @@ TEST(a_topic_is_answered_with_its_entries_and_nothing_else) {
     check_topic("node:rotate", "node:rotate(axis, angle)", "node:rotate_quat(");
     check_topic("--spp", "--spp N", "Of gr.render");
     check_topic("spp", "--spp N", "gr.sphere");
-    check_topic("Spp", "Of gr.render, gr.render_skybox, node:render\n", NULL);
+    check_topic("Spp", "Of gr.render, gr.render_skybox, gr.light_field, node:render\n", NULL);
     check_topic("shininess", "Exponent of the highlight. Of gr.material", "gr.sphere");
     check_topic("srgb", "gr.srgb(colour)", NULL);
     check_topic("knot", "require 'knot'", NULL);

@@ -312,8 +312,8 @@ TEST(every_argument_of_pictures_lights_fogs_and_skies_is_a_change) {
         "  local show = {node = root, file = name .. '.png', width = 4, height = 3, eye = {0, 0, 9}}\n"
         "  if pcall(make, show) then pcall(gr.render, show) end\n"
         "end\n";
-    /* They need a sky, absorption, a plain file. */
-    static const char *const with_others[] = {"render mirror", "medium temperature", "medium type"};
+    /* They need a sky, columns, absorption, a plain file. */
+    static const char *const with_others[] = {"render mirror", "render depth", "medium temperature", "medium type"};
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
