@@ -201,8 +201,9 @@ static bool find_rays(struct preparation *p, struct error *error) {
         if (out->sides[i].area > 0)
             p->sides[p->count++] = i;
     if (p->sides && p->count == 0)
-        return error_set(error, ERROR_SCENE,
-                         "--integrator radiosity needs diffuse surfaces, and nothing in the scene is diffuse");
+        return error_set(
+            error, ERROR_SCENE,
+            "--integrator radiosity needs a diffuse surface with an end and an area, and the scene has none");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
     return ((p->sides && p->targets && find_bright_patches(p)) || error_no_memory(error, "radiosity")) &&
            patches_index_space(&out->patches, p->input->pool, error) && run(p, p->count, ray_batch, error) &&

@@ -406,7 +406,7 @@ TEST(radiosity_refuses_emitters_without_end_scenes_without_diffuse_surfaces_and_
     struct node *plane = add_planar(&s, planar_plane(to_y, 0), matt(&s, 0));
     struct material *bright = matt(&s, 0.5);
     bright->phong.emission = colour_all(1);
-    CHECK(strstr(refusal_of(&s, 100), "nothing in the scene is diffuse"));
+    CHECK(strstr(refusal_of(&s, 100), "needs a diffuse surface with an end and an area, and the scene has none"));
     plane->material = bright;
     scene_note_change(&s.scene);
     CHECK(strstr(refusal_of(&s, 100), "'cube' emits light and has no end"));
