@@ -13,6 +13,7 @@
 #include "radiosity/radiosity.h"
 #include "render/render.h"
 #include "script/script.h"
+#include "session/options_table.h"
 #include "world/world.h"
 
 enum { WARNINGS_LIMIT = 256 };
@@ -61,7 +62,7 @@ struct render_process {
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
     struct replaced_fields replaced[LIST_COUNT(SETTINGS_WITH_FIELD)]; /* by setting, of its option */
-    uint64_t vain[2]; /* options of this run without effect: the notice was printed; settings, and the other options */
+    bool vain[OPTIONS_LIMIT]; /* by option, of this run: the notice that it has no effect was printed */
     struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
     bool frames_differ;
     uint64_t frames_shown;

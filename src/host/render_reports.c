@@ -316,15 +316,15 @@ void effects_note(struct picture_work *work) {
         const struct setting *row = option_at(i);
         bool set = i < setting_count, by_integrator = given && given[SETTING_INDEX(integrator)];
         bool option = set ? given && given[i] : row->effect != EFFECT_ALWAYS;
-        bool field = set && !option && !by_integrator && work->request->fields >> i & 1;
+        bool field = i < setting_field_count && !option && !by_integrator && work->request->fields >> i & 1;
         if ((!option && !field) || is_off(row, set ? (const void *)&work->job.settings : (const void *)options) ||
             has_effect(row->effect, work, file))
             continue;
         /* An option is reported once in a run, a field once for each line of the script. */
-        uint64_t bit = UINT64_C(1) << (set ? i : i - setting_count), *vain = &process->vain[!set];
-        if (option && *vain & bit)
+        bool *vain = &process->vain[i];
+        if (option && *vain)
             continue;
-        *vain |= option ? bit : 0;
+        *vain = *vain || option;
         (void)snprintf(key, sizeof key, "%.1400s: %.*s", work->request->where,
                        option ? (int)strcspn(row->option, "|") : 64, option ? row->option : row->field);
         (void)snprintf(line, sizeof line, "%s has no effect: it is for %s", key, words[row->effect]);

@@ -241,6 +241,8 @@ static const struct setting options_table[] = {
      0, NULL, "Print the versions of the program and of its libraries."},
 };
 
+_Static_assert(LIST_COUNT(SETTINGS) + sizeof options_table / sizeof *options_table < OPTIONS_LIMIT,
+               "the limit of all options");
 int option_count(void) {
     return setting_count + (int)(sizeof options_table / sizeof *options_table);
 }

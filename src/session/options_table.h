@@ -7,7 +7,8 @@
 
 struct document;
 /* All options in one row: the settings, some of which have no option, and then the others. */
-int option_count(void);
+enum { OPTIONS_LIMIT = 256 };
+int option_count(void); /* below it */
 const struct setting *option_at(int index);
 const char *option_group_title(enum option_group group);
 /* One option; and all in groups, with their defaults, the exit status and the environment. */

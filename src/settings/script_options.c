@@ -2,6 +2,7 @@
 #include "settings/script_options.h"
 
 #include "base/error.h"
+#include "settings/setting.h"
 
 static const double usual_time = 60;
 static const uint64_t usual_memory = 4 * GIBIBYTE, usual_output = 64 * MEBIBYTE;
@@ -11,7 +12,8 @@ bool script_option_given(const struct script_options *options, int setting) {
 }
 
 bool script_option_chosen(const struct script_options *options, int setting) {
-    return script_option_given(options, setting) || (options->defaults >> setting & 1);
+    return script_option_given(options, setting) ||
+           (setting < setting_field_count && (options->defaults >> setting & 1));
 }
 
 double script_time_limit(const struct script_options *options) {

@@ -151,7 +151,7 @@ TEST(a_signal_ends_denoising_at_once) {
         static const char *const names[] = {"TERM", "HUP"};
         char line[512];
         (void)snprintf(line, sizeof line,
-                       "$gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; "
+                       "rm -f said; $gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; "
                        "await 'grep -q \"per pixel\" said'; kill -%s $p; wait "
                        "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
                        names[i]);
