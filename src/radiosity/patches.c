@@ -15,10 +15,6 @@ void patch_corners(const struct patches *patches, uint32_t index, struct vec3 ou
         out[k] = patch_vertex_at(patches, patch_at(patches, index)->vertex[k])->point;
 }
 
-static struct vec3 normal_of(const struct vec3 c[3]) {
-    return vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
-}
-
 /* The edge from corner k to the next one that is longest. */
 static int longest_edge(const struct vec3 c[3], double *length) {
     double squares[3];
@@ -29,6 +25,33 @@ static int longest_edge(const struct vec3 c[3], double *length) {
     }
     *length = sqrt(squares[longest]);
     return longest;
+}
+
+/* The surface of a primitive near a point of a triangle, seen from its front. */
+static bool find_surface(const struct world *world, uint32_t primitive, const struct vec3 c[3], struct vec3 point,
+                         struct world_scratch *scratch, struct hit *hit) {
+    const struct vec3 normal = vec3_normalize(patch_normal(c));
+    double size;
+    (void)longest_edge(c, &size);
+    /* From nearby first: another surface of the primitive may be above. */
+    for (double height = 0x1p-10 * size; height <= size; height *= 32) {
+        const struct ray ray = {
+            .origin = vec3_add_scaled(point, normal, height), .direction = vec3_negate(normal), .t_max = 2 * height};
+        struct crossing crossing;
+        if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
+            continue;
+        world_describe(world, &ray, primitive, &crossing, hit);
+        if (hit->front && vec3_dot(hit->normal_geometric, normal) > 0.5)
+            return true;
+    }
+    return false;
+}
+
+bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
+                 struct hit *hit) {
+    struct vec3 c[3];
+    patch_corners(patches, patch, c);
+    return find_surface(patches->world, patch_at(patches, patch)->primitive, c, point, scratch, hit);
 }
 
 /* --- kinds --- */
@@ -178,11 +201,9 @@ static void find_normals(struct patch_builder *b, uint32_t primitive, bool plain
         const struct vec3 *c = &corners[i / 3 * 3];
         struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
         struct hit hit;
-        double size;
-        (void)longest_edge(c, &size);
-        normals[i] = vec3_normalize(normal_of(c));
-        if (!plain && patches_hit(b->out->world, primitive, vec3_add_scaled(vec3_scale(corners[i], 0.95), middle, 0.05),
-                                  vec3_scale(normals[i], size), &b->scratch, &hit))
+        normals[i] = vec3_normalize(patch_normal(c));
+        if (!plain && find_surface(b->out->world, primitive, c,
+                                   vec3_add_scaled(vec3_scale(corners[i], 0.95), middle, 0.05), &b->scratch, &hit))
             normals[i] = hit.normal;
     }
 }
@@ -237,7 +258,7 @@ static void drop_degenerate(struct list *corners) {
     for (size_t i = 0; i < corners->count; i += 3) {
         double length;
         (void)longest_edge(&c[i], &length);
-        if (vec3_length(normal_of(&c[i])) > 0x1p-40 * length * length) {
+        if (vec3_length(patch_normal(&c[i])) > 0x1p-40 * length * length) {
             memmove(&c[kept], &c[i], 3 * sizeof *c);
             kept += 3;
         }
@@ -336,9 +357,7 @@ static bool find_middle(struct patches *patches, uint32_t index, int k, uint32_t
     struct vec3 a = c[k], b = c[(k + 1) % 3];
     struct patch_vertex own = {vec3_scale(vec3_add(a, b), 0.5), primitive};
     double length = vec3_length(vec3_sub(b, a));
-    if (patches->curved[primitive] &&
-        patches_hit(patches->world, primitive, own.point, vec3_scale(vec3_normalize(normal_of(c)), length), scratch,
-                    &hit) &&
+    if (patches->curved[primitive] && patches_hit(patches, index, own.point, scratch, &hit) &&
         vec3_length(vec3_sub(hit.point, own.point)) < curved_part * length)
         own.point = hit.point;
     *middle = (uint32_t)patches->vertices.count;
@@ -444,7 +463,7 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
     for (uint32_t i = 0; ok && i < patches->all.count; i++) {
         struct vec3 c[3];
         patch_corners(patches, i, c);
-        area += vec3_length(normal_of(c)) / 2;
+        area += vec3_length(patch_normal(c)) / 2;
     }
     /* A quarter of the limit, as right isosceles triangles with edges from .7 to 1 of the longest. */
     patches->edge = sqrt(6 * area / (0.25 * limit));
@@ -537,7 +556,7 @@ static bool find_within(const struct patches *patches, const struct hit *hit, do
         if (patch_at(patches, item)->primitive != hit->primitive)
             continue;
         patch_corners(patches, item, c);
-        struct vec3 normal = normal_of(c);
+        struct vec3 normal = patch_normal(c);
         if (!(vec3_dot(normal, hit->normal_geometric) > 0))
             continue;
         double distance = shares_of(c, normal, hit->point, own);
@@ -560,23 +579,5 @@ bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t
     for (double margin = patches->edge / 8; patches->curved[hit->primitive] && margin <= patches->edge; margin *= 2)
         if (find_within(patches, hit, margin, patch, shares))
             return true;
-    return false;
-}
-
-bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal,
-                 struct world_scratch *scratch, struct hit *hit) {
-    const struct vec3 unit = vec3_normalize(normal);
-    /* From nearby first: another surface of the primitive may be above. */
-    for (double share = 0x1p-10; share <= 1; share *= 32) {
-        const double height = share * vec3_length(normal);
-        const struct ray ray = {
-            .origin = vec3_add_scaled(point, unit, height), .direction = vec3_negate(unit), .t_max = 2 * height};
-        struct crossing crossing;
-        if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
-            continue;
-        world_describe(world, &ray, primitive, &crossing, hit);
-        if (hit->front && vec3_dot(hit->normal_geometric, unit) > 0.5)
-            return true;
-    }
     return false;
 }

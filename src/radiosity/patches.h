@@ -38,6 +38,10 @@ static inline struct patch_vertex *patch_vertex_at(const struct patches *patches
     return (struct patch_vertex *)patches->vertices.items + index;
 }
 void patch_corners(const struct patches *patches, uint32_t index, struct vec3 out[3]);
+/* The normal of its front, as long as twice its area. */
+static inline struct vec3 patch_normal(const struct vec3 corners[3]) {
+    return vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+}
 
 /* What a primitive is to radiosity. BLACK: no light that arrives there is reflected diffusely. */
 enum patch_kind { PATCHES_BLACK, PATCHES_PLANAR, PATCHES_BOX, PATCHES_BALL, PATCHES_MESH, PATCHES_SOLID, PATCHES_BARE };
@@ -63,9 +67,8 @@ bool patches_index_space(struct patches *patches, struct pool *pool, struct erro
 /* The patch of a hit, and the shares of its vertices there. False: there is none near it. */
 bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t *patch, double shares[3]);
 
-/* The point of the true surface near a point of a patch, seen from the front. normal: of the patch, as long as the
- * patch is large. False: the shape is not there. */
-bool patches_hit(const struct world *world, uint32_t primitive, struct vec3 point, struct vec3 normal,
-                 struct world_scratch *scratch, struct hit *hit);
+/* The point of the true surface near a point of a patch, seen from the front. False: the shape is not there. */
+bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
+                 struct hit *hit);
 
 #endif

@@ -77,7 +77,7 @@ static double stratified_number(const struct receiver *receiver, uint32_t positi
 }
 
 static double patch_area(const struct vec3 c[3]) {
-    return vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]))) / 2;
+    return vec3_length(patch_normal(c)) / 2;
 }
 
 static struct receiver receiver_make(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch) {
@@ -136,13 +136,9 @@ static struct vec3 position_of(const struct receiver *receiver, uint32_t positio
 static bool hit_of(const struct receiver *receiver, uint32_t position, struct hit *hit, bool *buried) {
     const struct patches *patches = &receiver->input->radiosity->patches;
     uint32_t patch, inside;
-    struct vec3 point = position_of(receiver, position, &patch), c[3];
+    struct vec3 point = position_of(receiver, position, &patch);
     *buried = false;
-    patch_corners(patches, patch, c);
-    struct vec3 normal = vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]));
-    double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
-    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point,
-                     vec3_scale(vec3_normalize(normal), size), receiver->scratch, hit))
+    if (!patches_hit(patches, patch, point, receiver->scratch, hit))
         return false;
     hit->view = receiver->back ? vec3_negate(hit->normal_geometric) : hit->normal_geometric;
     hit->front = !receiver->back;
@@ -356,12 +352,9 @@ static struct colour light_of_patch(const struct receiver *receiver, const struc
     patch_corners(patches, patch, c);
     for (int k = 0; k < 3; k++)
         point = vec3_add_scaled(point, c[k], shares[k]);
-    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
-    double size = fmax(vec3_length(vec3_sub(c[1], c[0])), vec3_length(vec3_sub(c[2], c[0])));
-    if (!patches_hit(patches->world, patch_at(patches, patch)->primitive, point, vec3_scale(normal, size),
-                     receiver->scratch, &there))
+    if (!patches_hit(patches, patch, point, receiver->scratch, &there))
         return colour_all(0);
-    normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
+    struct vec3 normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
     const struct light_receiver from = light_receiver_of(hit);
     struct vec3 to = vec3_sub(there.point, hit->point), direction = vec3_normalize(to);
     double distance = vec3_length(to), cosine = vec3_dot(direction, hit->view),
@@ -471,10 +464,8 @@ void receive_probe(const struct receiver_input *input, uint32_t patch, struct wo
     double pmf;
     *out = (struct receiver_probe){0};
     patch_corners(patches, patch, c);
-    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
     struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-    if (!patches_hit(world, patch_at(patches, patch)->primitive, middle,
-                     vec3_scale(normal, vec3_length(vec3_sub(c[1], c[0]))), scratch, &hit))
+    if (!patches_hit(patches, patch, middle, scratch, &hit))
         return;
     material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
     out->diffuse = bsdf_diffuse(&bsdf);
