@@ -14,7 +14,7 @@ enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
 static const double first_contrast = 0.1, border_contrast = 0.3;
 
-void radiosity_drop_factors(struct radiosity *radiosity) {
+static void drop_factors(struct radiosity *radiosity) {
     mem_free(radiosity->first);
     mem_free(radiosity->receivers);
     radiosity->first = NULL;
@@ -22,7 +22,7 @@ void radiosity_drop_factors(struct radiosity *radiosity) {
 }
 
 void radiosity_destroy(struct radiosity *radiosity) {
-    radiosity_drop_factors(radiosity);
+    drop_factors(radiosity);
     patches_destroy(&radiosity->patches);
     mem_free(radiosity->sides);
     *radiosity = (struct radiosity){0};
@@ -181,7 +181,7 @@ static bool find_bright_patches(struct preparation *p) {
     for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
         struct vec3 c[3];
         patch_corners(patches, i / 2, c);
-        double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0]))) / 2;
+        double area = vec3_length(patch_normal(c)) / 2;
         sum += area * receive_brightness(p->out, i / 2, i % 2);
         p->until[i] = sum;
     }
@@ -315,24 +315,6 @@ bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input
     return prepare(radiosity, input, (struct digest){0}, &same, error);
 }
 
-bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
-    struct radiosity next;
-    bool same = false;
-    if (!prepare(&next, input, radiosity->digest, &same, error))
-        return false;
-    if (same) {
-        radiosity_destroy(&next);
-        radiosity->patches.world = input->world;
-        return true;
-    }
-    radiosity_destroy(radiosity);
-    *radiosity = next;
-    if (radiosity_finish(radiosity, input->error_share, input->pool, error))
-        return true;
-    radiosity_destroy(radiosity);
-    return false;
-}
-
 void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
     uint32_t count = 0, first = 0;
     char text[512];
@@ -368,7 +350,6 @@ static void shoot(struct radiosity *radiosity, uint32_t from) {
         to->light = colour_add(to->light, add);
         to->unshot = colour_add(to->unshot, add);
     }
-    radiosity->shots++;
 }
 
 bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct pool *pool) {
@@ -407,7 +388,7 @@ static void smooth(const struct radiosity *radiosity, uint32_t back, const struc
             const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
             struct vec3 c[3];
             patch_corners(patches, patches->of_vertex[i], c);
-            double area = vec3_length(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+            double area = vec3_length(patch_normal(c));
             for (int k = 0; k < 3; k++) {
                 const uint32_t side = 2 * vertex[k] + back;
                 double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
@@ -434,11 +415,29 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
         smooth(radiosity, step % 2, step / 2 % 2 ? smoothed : indirect, step / 2 % 2 ? indirect : smoothed);
     for (uint32_t i = 0; ok && i < count; i++)
         radiosity->sides[i].light = colour_add(direct[i], (SMOOTH_STEPS % 2 ? smoothed : indirect)[i]);
-    radiosity_drop_factors(radiosity);
+    drop_factors(radiosity);
     mem_free(direct);
     mem_free(indirect);
     mem_free(smoothed);
     return ok;
+}
+
+bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
+    struct radiosity next;
+    bool same = false;
+    if (!prepare(&next, input, radiosity->digest, &same, error))
+        return false;
+    if (same) {
+        radiosity_destroy(&next);
+        radiosity->patches.world = input->world;
+        return true;
+    }
+    radiosity_destroy(radiosity);
+    *radiosity = next;
+    if (radiosity_finish(radiosity, input->error_share, input->pool, error))
+        return true;
+    radiosity_destroy(radiosity);
+    return false;
 }
 
 bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out) {

@@ -29,9 +29,10 @@ struct radiosity {
     struct side_light *sides; /* two for each vertex */
     size_t *first;            /* by side, one more at the end: its receivers; dropped when it is solved */
     uint32_t *receivers;      /* the sides whose rays meet it, as often as they do */
-    uint64_t rays, shots;
+    uint64_t rays;
     double left;          /* share of light that is not shot */
     struct digest digest; /* of all that the solution depends on; zero: there is none */
+    bool ready;           /* it is that of the next picture, which resets this */
 };
 
 struct radiosity_input {
@@ -60,8 +61,6 @@ void radiosity_warn(const struct world *world, world_warning *warn, void *contex
 /* The patches as a PLY file: colours of vertices are the light that their fronts reflect, or else their backs, for a
  * display. False: no memory. */
 bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out);
-/* Frees what only radiosity_shoot needs. */
-void radiosity_drop_factors(struct radiosity *radiosity);
 void radiosity_destroy(struct radiosity *radiosity);
 
 /* The light that arrives at a hit, on the side of its view. False: there is no patch. */

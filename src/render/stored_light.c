@@ -12,13 +12,14 @@ bool stored_light_prepare(struct radiosity *radiosity, const struct render_job *
                                           .error_share = settings->radiosity_error,
                                           .seed = settings->seed,
                                           .pool = pool};
-    return radiosity_update(radiosity, &input, error);
+    return radiosity->ready = radiosity_update(radiosity, &input, error);
 }
 
 bool stored_light_begin(struct radiosity *own, struct renderer *renderer, int workers, struct error *error) {
     struct radiosity *radiosity = renderer->job->radiosity ? renderer->job->radiosity : own;
-    if (!stored_light_prepare(radiosity, renderer->job, renderer->pool, error))
+    if (!radiosity->ready && !stored_light_prepare(radiosity, renderer->job, renderer->pool, error))
         return false;
+    radiosity->ready = false;
     for (int i = 0; i < workers; i++)
         renderer->workers[i].state.radiosity = radiosity;
     return true;
