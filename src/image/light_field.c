@@ -232,9 +232,8 @@ static void free_packing(struct packing *p, int workers) {
 
 bool light_field_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
                        struct error *error) {
-    enum { USUAL_FOV = 50 }; /* of pictures without a camera, such as layers */
     const struct light_field_head single = {
-        .columns = 1, .rows = 1, .width = source->width, .height = source->height, .screen = 1, .fov = USUAL_FOV};
+        .columns = 1, .rows = 1, .width = source->width, .height = source->height, .screen = 1, .fov = LIGHT_FIELD_FOV};
     struct packing p = {.head = source->field ? source->field : &single};
     struct file_output file;
     int workers = pool ? pool_workers(pool) : 1;

@@ -15,6 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Of pictures without a camera, such as layers; degrees. */
+enum { LIGHT_FIELD_FOV = 50 };
 /* A writer has one of its own; the file has all of it. */
 struct light_field_head {
     uint32_t columns, rows, width, height; /* of the grid, and of a view in pixels */

@@ -90,7 +90,7 @@ static struct light_field_head field_of(const struct picture_request *request, c
                                     .width = request->width,
                                     .height = request->height,
                                     .screen = lens->screen > 0 ? lens->screen : 1,
-                                    .fov = lens->fov > 0 ? lens->fov : 50,
+                                    .fov = lens->fov > 0 ? lens->fov : LIGHT_FIELD_FOV,
                                     .tone = *tone};
     if (lens_fits(lens, request->width, request->height)) {
         head.columns = (uint32_t)lens->columns;
