@@ -89,8 +89,7 @@ static struct planar rectangle(double x, double y, double z, struct vec3 along, 
 static const struct vec3 to_x = {1, 0, 0}, to_y = {0, 1, 0}, to_z = {0, 0, 1};
 
 TEST(form_factors_of_faces_of_a_cube_are_their_closed_forms) {
-    struct planar floor = rectangle(0, 0, 0, to_y, to_x);
-    floor = rectangle(0, 0, 0, to_x, to_y); /* normal +z */
+    const struct planar floor = rectangle(0, 0, 0, to_x, to_y); /* normal +z */
     check_factor(floor, rectangle(0, 0, 1, to_y, to_x), 0.199825);
     check_factor(floor, rectangle(0, 0, 0, to_y, to_z), 0.200044);
 }
@@ -466,7 +465,7 @@ static void compare_with_paths(struct stage *s, const struct radiosity *radiosit
         patch_corners(&radiosity->patches, index, c);
         struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
         struct vec3 point = vec3_add_scaled(vec3_scale(c[0], 0.9), middle, 0.1);
-        struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+        struct vec3 normal = vec3_normalize(patch_normal(c));
         bool is_outside = point.x < 0 || point.x > 8 || point.y < 0 || point.y > 3 || point.z < 0 || point.z > 4;
         if (!(side->area > 0) || is_outside)
             continue;
