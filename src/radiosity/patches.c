@@ -56,29 +56,16 @@ bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 poin
 
 /* --- kinds --- */
 
-static bool is_diffuse_from(const struct world *world, uint32_t first, uint32_t slots) {
-    bool diffuse = false;
-    for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
-        const struct surface_material *material = &world->surfaces.materials[i];
-        diffuse = diffuse || material->has_layers || surface_has_texture(material, INPUT_KD) ||
-                  (!material->phong.unlit && colour_max_abs(surface_diffuse(&world->surfaces, material)) > 0);
-    }
-    return diffuse;
-}
-
-static bool is_diffuse(const struct world *world, const struct prototype *prototype) {
-    const struct csg *csg = prototype->geometry.csg;
-    bool diffuse = !csg && is_diffuse_from(world, prototype->material, prototype->slot_count);
-    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
-        diffuse = diffuse || is_diffuse_from(world, csg->leaves[i].material, csg->leaves[i].slot_count);
-    return diffuse;
+static bool is_diffuse(const struct world *world, uint32_t material) {
+    const struct surface_material *surface = &world->surfaces.materials[material];
+    return surface->has_layers || surface_has_texture(surface, INPUT_KD) ||
+           (!surface->phong.unlit && colour_max_abs(surface_diffuse(&world->surfaces, surface)) > 0);
 }
 
 enum patch_kind patches_kind(const struct world *world, uint32_t primitive) {
-    const struct prototype *prototype = primitive_prototype(world, primitive);
-    const struct geometry *geometry = &prototype->geometry;
+    const struct geometry *geometry = primitive_geometry(world, primitive);
     const struct box *box = &world->boxes[primitive];
-    if (box_is_empty(box) || !is_diffuse(world, prototype))
+    if (box_is_empty(box) || !primitive_has_material(world, primitive, is_diffuse))
         return PATCHES_BLACK;
     if (!vec3_finite(box->min) || !vec3_finite(box->max))
         return PATCHES_BARE;

@@ -213,14 +213,11 @@ static bool find_rays(struct preparation *p, struct error *error) {
 /* --- preparation --- */
 
 /* Lights are sampled, and rays meet emitters: neither can be done with one that has no end. */
-static bool check_emitters(const struct world *world, const uint8_t *emissive, struct error *error) {
+static bool check_emitters(const struct world *world, struct error *error) {
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const struct geometry *geometry = primitive_geometry(world, i);
         const struct box *box = &world->boxes[i];
-        bool shines = !geometry->csg && emissive[primitive_prototype(world, i)->material];
-        for (uint32_t k = 0; geometry->csg && k < geometry->csg->leaf_count; k++)
-            shines = shines || emissive[geometry->csg->leaves[k].material];
-        if (shines && !box_is_empty(box) && !(vec3_finite(box->min) && vec3_finite(box->max)))
+        if (!box_is_empty(box) && !(vec3_finite(box->min) && vec3_finite(box->max)) &&
+            primitive_has_material(world, i, receive_is_emissive))
             return error_set(error, ERROR_SCENE,
                              "--integrator radiosity: '%.100s' emits light and has no end; emitters have to be finite",
                              primitive_node(world, i)->name);
@@ -241,15 +238,15 @@ static bool begin_preparation(struct preparation *p, struct arena *arena, struct
     if (!ok)
         return error_no_memory(error, "radiosity");
     receive_find_buries(world, p->buries);
-    receive_find_emissive(world, p->emissive);
+    for (uint32_t i = 0; i < world->material_count; i++)
+        p->emissive[i] = receive_is_emissive(world, i);
     p->receivers = (struct receiver_input){.radiosity = p->out,
                                            .lights = &p->lights,
                                            .buries = p->buries,
                                            .emissive = p->emissive,
                                            .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
                                            .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
-    return check_emitters(world, p->emissive, error) &&
-           world_lights_build(&p->lights, world, options, arena, p->input->pool, error);
+    return check_emitters(world, error) && world_lights_build(&p->lights, world, options, arena, p->input->pool, error);
 }
 
 /* What the solution depends on, as a sample of a light and the material in the middle of every patch show it. */

@@ -18,34 +18,23 @@ static const struct material_context context;
 
 /* --- primitives and materials --- */
 
-static bool hides_inside(const struct world *world, uint32_t first, uint32_t slots) {
-    bool hides = true;
-    for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
-        const struct surface_material *material = &world->surfaces.materials[i];
-        hides = hides && !world->material_has_medium[i] && !surface_has_holes(material) && !material->phong.two_sided &&
-                !material->phong.unlit && colour_is_black(surface_emission_bound(&world->surfaces, material));
-    }
-    return hides;
+bool receive_is_emissive(const struct world *world, uint32_t material) {
+    const struct surface_material *surface = &world->surfaces.materials[material];
+    return surface->phong.unlit || colour_max_abs(surface_emission_bound(&world->surfaces, surface)) > 0;
+}
+
+static bool shows_inside(const struct world *world, uint32_t material) {
+    const struct surface_material *surface = &world->surfaces.materials[material];
+    return world->material_has_medium[material] || surface_has_holes(surface) || surface->phong.two_sided ||
+           receive_is_emissive(world, material);
 }
 
 void receive_find_buries(const struct world *world, uint8_t *buries) {
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const struct prototype *prototype = primitive_prototype(world, i);
-        const struct geometry *geometry = &prototype->geometry;
+        const struct geometry *geometry = primitive_geometry(world, i);
         const struct mesh *mesh = geometry_mesh(geometry);
-        bool hides = geometry_is_closed(geometry) && (!mesh || mesh_is_outward(mesh));
-        hides = hides && (geometry->csg || hides_inside(world, prototype->material, prototype->slot_count));
-        for (uint32_t k = 0; hides && geometry->csg && k < geometry->csg->leaf_count; k++)
-            hides = hides_inside(world, geometry->csg->leaves[k].material, geometry->csg->leaves[k].slot_count);
-        buries[i] = hides;
-    }
-}
-
-void receive_find_emissive(const struct world *world, uint8_t *emissive) {
-    for (uint32_t i = 0; i < world->material_count; i++) {
-        const struct surface_material *material = &world->surfaces.materials[i];
-        emissive[i] = material->phong.unlit || material->has_layers ||
-                      colour_max_abs(surface_emission_bound(&world->surfaces, material)) > 0;
+        buries[i] = geometry_is_closed(geometry) && (!mesh || mesh_is_outward(mesh)) &&
+                    !primitive_has_material(world, i, shows_inside);
     }
 }
 

@@ -13,7 +13,7 @@ struct receiver_input {
     const struct radiosity *radiosity;
     const struct world_lights *lights;
     const uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
-    const uint8_t *emissive; /* by material */
+    const uint8_t *emissive; /* by material: receive_is_emissive */
     uint64_t seed;
     uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
     /* For receive_rays: the light of samples of lights that patches reflect, by area, and the rising shares of the
@@ -41,8 +41,8 @@ struct receiver_probe {
 void receive_probe(const struct receiver_input *input, uint32_t patch, struct world_scratch *scratch,
                    struct receiver_probe *out);
 
-/* Fill these flags. */
+/* Fills these flags. */
 void receive_find_buries(const struct world *world, uint8_t *buries);
-void receive_find_emissive(const struct world *world, uint8_t *emissive);
+bool receive_is_emissive(const struct world *world, uint32_t material);
 
 #endif

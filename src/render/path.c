@@ -426,20 +426,10 @@ static const char *user_of(const struct world *world, uint32_t material) {
     return "CSG";
 }
 
-static bool has_emission(const struct world *world, uint32_t material, uint32_t slots) {
-    bool any = false;
-    for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
-        any = any || colour_max_abs(surface_emission(&world->surfaces, &world->surfaces.materials[i])) > 0 ||
-              colour_max_abs(surface_emission_bound(&world->surfaces, &world->surfaces.materials[i])) > 0;
-    return any;
-}
-
-static bool is_emissive_prototype(const struct world *world, const struct prototype *prototype) {
-    const struct csg *csg = prototype->geometry.csg;
-    bool any = !csg && has_emission(world, prototype->material, prototype->slot_count);
-    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
-        any = any || has_emission(world, csg->leaves[i].material, csg->leaves[i].slot_count);
-    return any;
+static bool has_emission(const struct world *world, uint32_t material) {
+    const struct surface_material *surface = &world->surfaces.materials[material];
+    return colour_max_abs(surface_emission(&world->surfaces, surface)) > 0 ||
+           colour_max_abs(surface_emission_bound(&world->surfaces, surface)) > 0;
 }
 
 /* Next-event estimation needs bounds. */
@@ -447,8 +437,7 @@ static void warn_of_infinite_emitter(const struct world *world, world_warning *w
     char text[256];
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         const struct box *box = &world->boxes[i];
-        if ((vec3_finite(box->min) && vec3_finite(box->max)) ||
-            !is_emissive_prototype(world, primitive_prototype(world, i)))
+        if ((vec3_finite(box->min) && vec3_finite(box->max)) || !primitive_has_material(world, i, has_emission))
             continue;
         (void)snprintf(text, sizeof text,
                        "--integrator path: '%.100s' emits light and has no bounds: only scattered rays find its light, "

@@ -188,20 +188,8 @@ static void check_materials(const struct check *check) {
 
 /* --- insides --- */
 
-static bool is_opaque_from(const struct world *world, uint32_t first, uint32_t slots) {
-    bool opaque = true;
-    for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++)
-        opaque = opaque && !world->material_has_medium[i] && !surface_has_holes(&world->surfaces.materials[i]);
-    return opaque;
-}
-
-static bool is_opaque(const struct world *world, uint32_t primitive) {
-    const struct prototype *prototype = primitive_prototype(world, primitive);
-    const struct csg *csg = prototype->geometry.csg;
-    bool opaque = csg || is_opaque_from(world, prototype->material, prototype->slot_count);
-    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
-        opaque = opaque && is_opaque_from(world, csg->leaves[i].material, csg->leaves[i].slot_count);
-    return opaque;
+static bool passes_light(const struct world *world, uint32_t material) {
+    return world->material_has_medium[material] || surface_has_holes(&world->surfaces.materials[material]);
 }
 
 /* The innermost opaque solid that contains the point, or WORLD_NOTHING. */
@@ -213,7 +201,7 @@ static uint32_t enclosing_solid(struct check *check, struct vec3 point) {
         return WORLD_NOTHING;
     const struct inside_query query = {point, 0, closed, count};
     count = world_containing(check->world, &query, &check->scratch, enclosing, WORLD_NESTING);
-    while (count > 0 && !is_opaque(check->world, enclosing[count - 1]))
+    while (count > 0 && primitive_has_material(check->world, enclosing[count - 1], passes_light))
         count--;
     return count > 0 ? enclosing[count - 1] : WORLD_NOTHING;
 }

@@ -426,6 +426,22 @@ struct box world_finite_bounds(const struct world *world) {
     return bounds;
 }
 
+static bool any_slot(const struct world *world, uint32_t first, uint32_t slots, material_test *test) {
+    bool any = false;
+    for (uint32_t i = first; !any && i < first + (slots > 1 ? slots : 1); i++)
+        any = test(world, i);
+    return any;
+}
+
+bool primitive_has_material(const struct world *world, uint32_t primitive, material_test *test) {
+    const struct prototype *prototype = primitive_prototype(world, primitive);
+    const struct csg *csg = prototype->geometry.csg;
+    bool any = !csg && any_slot(world, prototype->material, prototype->slot_count, test);
+    for (uint32_t i = 0; csg && !any && i < csg->leaf_count; i++)
+        any = any_slot(world, csg->leaves[i].material, csg->leaves[i].slot_count, test);
+    return any;
+}
+
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < world->primitive_count; i++) {

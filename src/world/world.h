@@ -171,6 +171,9 @@ static inline const struct prototype *primitive_prototype(const struct world *wo
 static inline const struct geometry *primitive_geometry(const struct world *world, uint32_t primitive) {
     return &primitive_prototype(world, primitive)->geometry;
 }
+/* Whether that holds for a material of it: of any slot, and of any operand of a combined solid. */
+typedef bool material_test(const struct world *world, uint32_t material);
+bool primitive_has_material(const struct world *world, uint32_t primitive, material_test *test);
 /* Its pose depends on time. */
 static inline bool primitive_moves(const struct world *world, uint32_t primitive) {
     uint32_t linear = world->primitives[primitive].linear;

@@ -415,6 +415,18 @@ TEST(radiosity_refuses_emitters_without_end_scenes_without_diffuse_surfaces_and_
     stage_end(&s);
 }
 
+/* What a material with layers emits is known before it is evaluated: nothing. */
+TEST(a_ground_of_a_layered_material_without_end_is_no_emitter_of_radiosity) {
+    struct test_result result = test_gray_scene(
+        "local r = gr.node('r'); r:add_child(gr.sphere{centre = {0, 1, 0}, material = gr.openpbr_material{}})\n"
+        "r:add_child(gr.plane{normal = {0, 1, 0}, material = gr.openpbr_material{}})\n"
+        "gr.render{node = r, width = 8, height = 8, eye = {0, 2, 6}, target = {0, 1, 0},\n"
+        "  lights = {gr.light{position = {2, 4, 2}, colour = {1, 1, 1}}}}",
+        "-q scene.lua --integrator radiosity --radiosity-patches 200 -o out.png", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+}
+
 /* --- two rooms --- */
 
 static void add_block(struct stage *s, const struct material *material, struct vec3 from, struct vec3 to) {
