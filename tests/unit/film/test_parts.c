@@ -516,9 +516,10 @@ TEST(a_farm_that_was_killed_goes_on_from_its_checkpoint) {
           0, "");
 }
 
+/* The picture takes long enough for the other rank to begin. */
 TEST(ranks_with_other_options_are_refused_and_the_picture_is_made_without_them) {
     need_mpi();
-    put("scene.lua", SCENE "picture('out.png', 100, 70)\n");
+    put("scene.lua", SCENE "picture('out.png', 800, 560)\n");
     gives("$gray scene.lua -o whole.png; export gray; sed -i 's/ -q / /' farm.sh; "
           "sh farm.sh 1 scene.lua : -n 1 $gray --mpi -ss 2 scene.lua; cmp out.png whole.png",
           0, "gray: rank 1: ");
