@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "image/zlib_memory.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -362,8 +363,10 @@ bool light_field_open(struct light_field *field, const char *path, struct error 
 
 void light_field_close(struct light_field *field) {
     size_t count = (size_t)field->head.columns * field->head.rows;
-    for (size_t i = 0; field->views && i < count; i++)
+    for (size_t i = 0; field->views && i < count; i++) {
         mem_free(field->views[i]);
+        mem_free(field->entries[i].blocks);
+    }
     mem_free(field->views);
     mem_free(field->entries);
     mem_free(field->table);
@@ -383,6 +386,27 @@ static bool unpack(const uint8_t *packed, size_t size, uint8_t *raw, size_t want
     bool ok = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == wanted && stream.avail_in == 0;
     (void)inflateEnd(&stream);
     return ok;
+}
+
+/* Depths become their reciprocals. */
+static bool find_disparities(const struct light_field_head *head, float *values, struct light_field_entry *entry) {
+    const uint32_t across = light_field_across(head), down = (head->height - 1) / LIGHT_FIELD_BLOCK + 1;
+    entry->blocks = mem_alloc((size_t)across * down * sizeof *entry->blocks);
+    entry->nearest = 0;
+    entry->farthest = INFINITY;
+    for (uint32_t i = 0; entry->blocks && i < across * down; i++)
+        entry->blocks[i] = (struct light_field_block){0, INFINITY};
+    for (uint32_t i = 0; entry->blocks && i < head->width * head->height; i++) {
+        struct light_field_block *block =
+            &entry->blocks[i / head->width / LIGHT_FIELD_BLOCK * across + i % head->width / LIGHT_FIELD_BLOCK];
+        float *last = values + (size_t)i * LIGHT_FIELD_NUMBERS + COLOURS;
+        *last = *last > 0 ? fminf(1 / *last, FLT_MAX) : 0;
+        block->nearest = fmaxf(block->nearest, *last);
+        block->farthest = fminf(block->farthest, *last);
+        entry->nearest = fmax(entry->nearest, (double)*last);
+        entry->farthest = fmin(entry->farthest, (double)*last);
+    }
+    return entry->blocks != NULL;
 }
 
 static bool load_view(struct light_field *field, uint32_t view, struct error *error) {
@@ -408,13 +432,7 @@ static bool load_view(struct light_field *field, uint32_t view, struct error *er
         ok = isfinite(values[i]) || wrong(field, "a view has a number that is not finite", error);
     mem_free(packed);
     mem_free(raw);
-    entry->nearest = 0;
-    entry->farthest = INFINITY;
-    for (size_t i = 0; ok && i < plane; i++) {
-        double disparity = light_field_disparity(values + i * LIGHT_FIELD_NUMBERS);
-        entry->nearest = disparity > entry->nearest ? disparity : entry->nearest;
-        entry->farthest = disparity < entry->farthest ? disparity : entry->farthest;
-    }
+    ok = ok && (find_disparities(head, values, entry) || error_no_memory(error, field->path));
     if (ok)
         field->views[view] = values;
     else

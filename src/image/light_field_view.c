@@ -32,10 +32,11 @@ struct drawing {
     double eye[AXES];
     double ratio;                   /* of a pixel of the picture to one of a view */
     double disparity, shares[AXES]; /* of the plane in focus; half of the picture, pixels of a view */
-    struct lens_point *points;
-    uint32_t point_count;
-    double *weights;        /* of all cameras for the whole picture; NULL: they differ by pixel */
-    struct pixel_sum *sums; /* for each worker a row of it */
+    struct lens_point *points;      /* LENS_FEWEST of them, then twice as many, and so on */
+    uint32_t point_count;           /* of the largest disc: 1, or a power of two */
+    double blur;                    /* its radius, pixels of a view */
+    double *weights;                /* of all cameras for the whole picture; NULL: they differ by pixel */
+    struct pixel_sum *sums;         /* for each worker a row of it */
     float (*out)[3];
 };
 
@@ -141,7 +142,7 @@ static bool disparity_there(const struct drawing *d, const float *view, const do
         return false;
     size_t x = (size_t)(at[X] < d->size[X] ? at[X] : d->size[X] - 1),
            y = (size_t)(at[Y] < d->size[Y] ? at[Y] : d->size[Y] - 1);
-    *out = light_field_disparity(view + (y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS);
+    *out = (double)view[(y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS + 3];
     return true;
 }
 
@@ -160,12 +161,14 @@ static void find_pixel(const struct drawing *d, const struct field_ray *ray, con
         out[k] = pixel_of(d, ray, k, camera->at[k], disparity);
 }
 
-/* At most four, with the sum of weights 1. */
-static int find_cameras(const struct drawing *d, const struct field_ray *ray, struct near_camera out[4]) {
+/* At most four, with the sum of weights 1. None: the ray comes from outside of the grid, and `inside` asks for it. */
+static int find_cameras(const struct drawing *d, const struct field_ray *ray, bool inside, struct near_camera out[4]) {
     double low[AXES], part[AXES];
     int count = 0;
     for (int k = 0; k < AXES; k++) {
-        double u = limited(among_cameras(d, k, ray->crossing[k]), 0, d->count[k] - 1);
+        double whole = among_cameras(d, k, ray->crossing[k]), u = limited(whole, 0, d->count[k] - 1);
+        if (inside && u != whole)
+            return 0;
         low[k] = floor_of(u);
         part[k] = u - low[k];
     }
@@ -207,23 +210,28 @@ static bool find_surface(const struct drawing *d, const struct field_ray *ray, c
     return false;
 }
 
+static int first_camera(const struct near_camera *cameras, int count) {
+    int first = 0;
+    for (int i = 1; i < count; i++)
+        first = cameras[i].weight > cameras[first].weight ? i : first;
+    return first;
+}
+
 /* The surface that the nearest camera sees, else another one, else the plane in focus. */
 static double disparity_of(const struct drawing *d, const struct field_ray *ray, const struct near_camera *cameras,
                            int count) {
-    int first = 0;
+    int first = first_camera(cameras, count);
     double disparity;
-    for (int i = 1; i < count; i++)
-        first = cameras[i].weight > cameras[first].weight ? i : first;
     for (int i = 0; i < count; i++)
         if (find_surface(d, ray, &cameras[(first + i) % count], &disparity))
             return disparity;
     return d->disparity;
 }
 
-static void add_ray(const struct drawing *d, const struct field_ray *ray, struct pixel_sum *sum) {
+static void add_ray(const struct drawing *d, const struct field_ray *ray, bool inside, struct pixel_sum *sum) {
     struct near_camera cameras[4];
-    int count = find_cameras(d, ray, cameras);
-    bool has_depth = d->field->head.depth;
+    int count = find_cameras(d, ray, inside, cameras);
+    bool has_depth = d->field->head.depth && count > 0;
     double disparity = has_depth ? disparity_of(d, ray, cameras, count) : d->disparity;
     for (int i = 0; i < count; i++) {
         double at[AXES], seen, weight = cameras[i].weight;
@@ -295,22 +303,64 @@ static double largest_disparity(const struct drawing *d) {
     return largest;
 }
 
-/* Points of a lens, as evenly as the seeds of a sunflower: one for each pixel of the largest disc of the views. It is a
- * line in a grid of one row or column. */
+/* One for each pixel of a disc. */
+static uint32_t points_of_disc(double radius) {
+    uint32_t count = LENS_FEWEST;
+    while (count < LENS_LIMIT && count < PI * radius * radius)
+        count *= 2;
+    return count;
+}
+
+static const struct lens_point *points_at(const struct drawing *d, uint32_t count) {
+    return d->points + (count < LENS_FEWEST ? 0 : count - LENS_FEWEST);
+}
+
+/* Points of a lens, as evenly as the seeds of a sunflower, for discs of all sizes. It is a line in a grid of one row or
+ * column. */
 static bool make_lens(struct drawing *d) {
-    double across = d->camera.aperture * d->per_spacing;
-    double blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
-    d->point_count = 1;
-    if (across > 0)
-        d->point_count = (uint32_t)fmin(fmax(ceil(PI * blur * blur), LENS_FEWEST), LENS_LIMIT);
-    d->points = mem_alloc_zero(d->point_count, sizeof *d->points);
-    for (uint32_t i = 0; d->points && i < d->point_count && across > 0; i++) {
-        double radius = d->camera.aperture * sqrt((i + 0.5) / d->point_count), sine, cosine;
-        el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
-        d->points[i] =
-            (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
+    bool has_lens = d->camera.aperture * d->per_spacing > 0;
+    d->blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
+    d->point_count = has_lens ? points_of_disc(d->blur) : 1;
+    d->points = mem_alloc_zero(2 * LENS_LIMIT, sizeof *d->points);
+    for (uint32_t count = LENS_FEWEST; d->points && has_lens && count <= d->point_count; count *= 2) {
+        for (uint32_t i = 0; i < count; i++) {
+            double radius = d->camera.aperture * sqrt((i + 0.5) / count), sine, cosine;
+            el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
+            d->points[count - LENS_FEWEST + i] =
+                (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
+        }
     }
     return d->points != NULL;
+}
+
+/* Those for a pixel: of the largest disc of a surface that reaches it, by the depths that the nearest camera sees. */
+static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
+    struct near_camera cameras[4];
+    struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
+    int count = d->field->head.depth && d->point_count > LENS_FEWEST ? find_cameras(d, &ray, false, cameras) : 0;
+    if (count == 0)
+        return d->point_count;
+    const struct near_camera *camera = &cameras[first_camera(cameras, count)];
+    const uint32_t across = light_field_across(&d->field->head);
+    double at[AXES], low[AXES], high[AXES], largest = 0;
+    find_pixel(d, &ray, camera, d->disparity, at);
+    double moved = fmax(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
+    double scale = d->camera.aperture + moved, reach = d->blur * (scale / d->camera.aperture) + 1;
+    for (int k = 0; k < AXES; k++) {
+        low[k] = floor(limited(at[k] - reach, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+        high[k] = floor(limited(at[k] + reach, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+    }
+    for (double row = low[Y]; row <= high[Y]; row++) {
+        for (double column = low[X]; column <= high[X]; column++) {
+            const struct light_field_block *block = &camera->entry->blocks[(size_t)row * across + (size_t)column];
+            double apart = fmax((double)block->nearest - d->disparity, d->disparity - (double)block->farthest);
+            double beside_x = fabs(at[X] - (column + 0.5) * LIGHT_FIELD_BLOCK),
+                   beside_y = fabs(at[Y] - (row + 0.5) * LIGHT_FIELD_BLOCK);
+            if (apart * scale * d->per_pixel + 1 + LIGHT_FIELD_BLOCK / 2.0 >= fmax(beside_x, beside_y))
+                largest = fmax(largest, apart);
+        }
+    }
+    return points_of_disc(largest * d->camera.aperture * d->per_pixel);
 }
 
 /* On the plane of the cameras, and without depths, all pixels have the same weights of cameras. */
@@ -321,8 +371,8 @@ static bool make_weights(struct drawing *d) {
     d->weights = mem_alloc_zero((size_t)head->columns * head->rows, sizeof *d->weights);
     for (uint32_t i = 0; d->weights && i < d->point_count; i++) {
         struct near_camera cameras[4];
-        struct field_ray ray = ray_of(d, &d->points[i], 0, 0);
-        int count = is_in_grid(d, &ray) ? find_cameras(d, &ray, cameras) : 0;
+        struct field_ray ray = ray_of(d, &points_at(d, d->point_count)[i], 0, 0);
+        int count = find_cameras(d, &ray, true, cameras);
         for (int k = 0; k < count; k++) {
             double column = among_cameras(d, X, cameras[k].at[X]), row = among_cameras(d, Y, cameras[k].at[Y]);
             d->weights[(size_t)row * head->columns + (size_t)column] += cameras[k].weight;
@@ -346,14 +396,14 @@ static void add_view(const struct drawing *d, uint32_t view, uint32_t y, struct 
 }
 
 static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, struct pixel_sum *sum) {
-    for (uint32_t i = 0; i < d->point_count && !d->weights; i++) {
-        struct field_ray ray = ray_of(d, &d->points[i], x + 0.5, y + 0.5);
-        if (is_in_grid(d, &ray))
-            add_ray(d, &ray, sum);
+    const uint32_t count = d->weights ? 0 : points_for(d, x, y);
+    for (uint32_t i = 0; i < count; i++) {
+        struct field_ray ray = ray_of(d, &points_at(d, count)[i], x + 0.5, y + 0.5);
+        add_ray(d, &ray, true, sum);
     }
     struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
     if (!(sum->weight > 0)) /* all of the lens is outside */
-        add_ray(d, &ray, sum);
+        add_ray(d, &ray, false, sum);
 }
 
 static void draw_row(void *context, uint32_t y, int worker) {
