@@ -37,6 +37,7 @@ struct drawing {
     double blur;                    /* its radius, pixels of a view */
     double *weights;                /* of all cameras for the whole picture; NULL: they differ by pixel */
     struct pixel_sum *sums;         /* for each worker a row of it */
+    double *lines;                  /* for each worker a row of a view */
     float (*out)[3];
 };
 
@@ -381,17 +382,28 @@ static bool make_weights(struct drawing *d) {
     return d->weights != NULL;
 }
 
-/* A row of one view, added to the sums of a row of the picture: all of it is at one height. */
-static void add_view(const struct drawing *d, uint32_t view, uint32_t y, struct pixel_sum *sums) {
+/* A row of one view, added to the sums of a row of the picture: all of it is at one height. line: the row of the view
+ * at that height, linear between two. */
+static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double *line, struct pixel_sum *sums) {
     const struct light_field_head *head = &d->field->head;
     const struct lens_point middle = {{0, 0}};
     const double camera[AXES] = {camera_at(d, X, view % head->columns), camera_at(d, Y, view / head->columns)};
+    const size_t numbers = (size_t)head->width * LIGHT_FIELD_NUMBERS;
     struct field_ray ray = ray_of(d, &middle, 0, y + 0.5);
-    struct tap taps[AXES] = {[Y] = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y])};
+    const struct tap across = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y]);
+    const float *upper = d->field->views[view] + across.first * numbers;
+    const float *lower = d->field->views[view] + across.second * numbers;
+    for (size_t i = 0; i < numbers; i++)
+        line[i] = (1 - across.part) * (double)upper[i] + across.part * (double)lower[i];
     for (uint32_t x = 0; x < d->camera.width; x++) {
         ray.picture[X] = (x + 0.5) * d->ratio - d->shares[X];
-        taps[X] = tap_of(pixel_of(d, &ray, X, camera[X], d->disparity), d->size[X]);
-        add_pixels(d, d->field->views[view], taps, d->weights[view], &sums[x]);
+        const struct tap tap = tap_of(pixel_of(d, &ray, X, camera[X], d->disparity), d->size[X]);
+        const double *left = line + (size_t)tap.first * LIGHT_FIELD_NUMBERS;
+        const double *right = line + (size_t)tap.second * LIGHT_FIELD_NUMBERS;
+        const double weight = d->weights[view] * tap.weight * across.weight;
+        for (int c = 0; c < LIGHT_FIELD_NUMBERS; c++)
+            sums[x].numbers[c] += weight * ((1 - tap.part) * left[c] + tap.part * right[c]);
+        sums[x].weight += weight;
     }
 }
 
@@ -414,7 +426,7 @@ static void draw_row(void *context, uint32_t y, int worker) {
     memset(sums, 0, width * sizeof *sums);
     for (uint32_t view = 0; d->weights && view < head->columns * head->rows; view++)
         if (d->weights[view] > 0)
-            add_view(d, view, y, sums);
+            add_view(d, view, y, d->lines + (size_t)worker * head->width * LIGHT_FIELD_NUMBERS, sums);
     for (uint32_t x = 0; x < width; x++) {
         if (!d->weights || !(sums[x].weight > 0))
             draw_pixel(d, x, y, &sums[x]);
@@ -454,10 +466,12 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     d.field = field;
     d.out = out;
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
+    d.lines = mem_alloc_zero((size_t)pool_workers(pool) * d.field->head.width, LIGHT_FIELD_NUMBERS * sizeof *d.lines);
     bool ok = load_views(&d, field, pool, error) &&
-              ((d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
+              ((d.sums && d.lines && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
     ok = ok && (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
     mem_free(d.sums);
+    mem_free(d.lines);
     mem_free(d.points);
     mem_free(d.weights);
     return ok;

@@ -31,6 +31,7 @@ struct show {
     struct vec3 points[POINTS_LIMIT]; /* of the path */
     uint32_t point_count, frames, width, height;
     float (*light)[3]; /* of the picture */
+    uint8_t *rgb;      /* of a frame; borrowed */
 };
 
 /* --- the command line --- */
@@ -248,13 +249,17 @@ static bool write_picture(struct show *show, uint32_t frame, struct error *error
            picture_file_write(&target, &source, show->pool, error);
 }
 
+static void frame_row(void *context, uint32_t y, int worker) {
+    const struct show *show = context;
+    (void)worker;
+    row_bytes(context, y, show->rgb + (size_t)3 * show->width * y);
+}
+
 static bool frame_bytes(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
     struct show *show = context;
-    if (!draw(show, index, error))
-        return false;
-    for (uint32_t y = 0; y < show->height; y++)
-        row_bytes(show, y, rgb + (size_t)3 * show->width * y);
-    return true;
+    show->rgb = rgb;
+    return draw(show, index, error) &&
+           (pool_run(show->pool, show->height, frame_row, show) || error_set(error, ERROR_CANCELLED, "interrupted"));
 }
 
 static bool write_animation(struct show *show, struct error *error) {
