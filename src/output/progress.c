@@ -52,7 +52,7 @@ static void add_estimate(struct progress *progress, struct state *state, const s
     if (!(state->share > 0) || state->left < 0)
         return;
     double whole = state->elapsed + state->left, last = progress->writing;
-    state->share = progress->share = fmax(progress->share, state->share * whole / (whole + last));
+    state->share = progress->share = math_max(progress->share, state->share * whole / (whole + last));
     state->left += last;
 }
 
@@ -62,7 +62,7 @@ static void describe(const struct state *state, bool line, char out[160]) {
     char elapsed[48], left[48], rest[64] = "";
     const char *after = line ? " after " : "  ";
     text_duration(state->elapsed, elapsed, sizeof elapsed);
-    text_duration(fmax(state->left, 0), left, sizeof left);
+    text_duration(math_max(state->left, 0), left, sizeof left);
     if (state->left >= 0 && (line || state->elapsed > 1))
         (void)snprintf(rest, sizeof rest, ", about %s left", left);
     if (state->count == 0)
@@ -70,7 +70,7 @@ static void describe(const struct state *state, bool line, char out[160]) {
     else if (state->counts)
         (void)snprintf(out, 160, "%u of %u tiles%s%s", state->done, state->count, after, elapsed);
     else
-        (void)snprintf(out, 160, "%*.0f %%%s%s%s", line ? 0 : 3, 100 * fmax(state->share, 0), after, elapsed, rest);
+        (void)snprintf(out, 160, "%*.0f %%%s%s%s", line ? 0 : 3, 100 * math_max(state->share, 0), after, elapsed, rest);
 }
 
 /* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
@@ -88,7 +88,8 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
 
 static void draw_bar(struct progress *progress, const struct state *state, const char *text) {
     char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], name[64];
-    double share = state->counts ? fmin((double)state->done / fmax(state->count, 1), 1) : fmax(state->share, 0);
+    double share =
+        state->counts ? math_min((double)state->done / math_max(state->count, 1), 1) : math_max(state->share, 0);
     /* In a narrow terminal the remaining time is more useful than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
     memset(cells, '.', (size_t)bar);
@@ -146,7 +147,7 @@ static const double pauses[] = {
     [PROGRESS_NONE] = HUGE_VAL, [PROGRESS_BAR] = 0.1, [PROGRESS_LINES] = 10, [PROGRESS_JSON] = 0.2};
 
 static double pause_of(const struct progress *progress, double now) {
-    return fmax(pauses[progress->mode], progress->mode == PROGRESS_LINES ? 0.1 * (now - progress->begun) : 0);
+    return math_max(pauses[progress->mode], progress->mode == PROGRESS_LINES ? 0.1 * (now - progress->begun) : 0);
 }
 
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,

@@ -174,9 +174,9 @@ void terminal_sixel(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t h
 
 /* The largest size with the picture's aspect ratio within these limits, at least 1 x 1. */
 static void fit(const struct film *film, double widest, double highest, uint32_t *width, uint32_t *height) {
-    double scale = fmin(1, fmin(widest / film->width, highest / film->height));
-    *width = (uint32_t)fmax(1, floor(film->width * scale));
-    *height = (uint32_t)fmax(1, floor(film->height * scale));
+    double scale = math_min(1, math_min(widest / film->width, highest / film->height));
+    *width = (uint32_t)math_max(1, floor(film->width * scale));
+    *height = (uint32_t)math_max(1, floor(film->height * scale));
 }
 
 void terminal_draw(struct terminal *terminal, const struct film *film, const struct tone *tone) {
@@ -186,7 +186,7 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     double across = blocks ? terminal->columns : terminal->columns * terminal->cell_width;
     double down = blocks ? 2 * lines : lines * terminal->cell_height;
     /* As large as the window allows with two lines for the progress. */
-    fit(film, fmin(across, PIXELS_MAX), fmin(down, PIXELS_MAX), &width, &height);
+    fit(film, math_min(across, PIXELS_MAX), math_min(down, PIXELS_MAX), &width, &height);
     uint8_t *rgb = mem_alloc_zero((size_t)width * height, 3);
     if (!rgb)
         return;
