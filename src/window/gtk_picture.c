@@ -43,18 +43,21 @@ static struct tile_rectangle tile_rectangle(const struct picture_tiles *tiles, u
         (uint32_t)((uint64_t)right * width / full_width), (uint32_t)((uint64_t)bottom * height / full_height)};
 }
 
-/* The pixels of the picture that a pixel of a smaller one covers: from (p * full) to ((p + 1) * full), in units of
- * 1 / part pixels. */
+/* The pixels of the picture that a pixel of a smaller one covers, and how much of the first and the last one; all
+ * others are covered completely. */
 struct cover {
-    uint64_t from, to;
-    uint32_t first, last, part;
+    uint32_t first, last;
+    float begin, end;
 };
 static struct cover cover_of(uint32_t p, uint32_t full, uint32_t part) {
-    uint64_t from = (uint64_t)p * full, to = from + full;
-    return (struct cover){from, to, (uint32_t)(from / part), (uint32_t)((to - 1) / part), part};
+    uint64_t from = (uint64_t)p * full, to = from + full; /* in units of 1 / part pixels */
+    uint32_t first = (uint32_t)(from / part), last = (uint32_t)((to - 1) / part);
+    float unit = 1 / (float)part;
+    return (struct cover){first, last, (float)(MIN(to, (uint64_t)(first + 1) * part) - from) * unit,
+                          (float)(to - (uint64_t)last * part) * unit};
 }
-static uint64_t cover_weight(const struct cover *cover, uint32_t pixel) {
-    return MIN(cover->to, (uint64_t)(pixel + 1) * cover->part) - MAX(cover->from, (uint64_t)pixel * cover->part);
+static float cover_weight(const struct cover *cover, uint32_t pixel) {
+    return pixel == cover->first ? cover->begin : pixel == cover->last ? cover->end : 1;
 }
 
 /* A part of the picture that is shown smaller, with whole pixels: means by area. GTK would take several times as long.
@@ -62,32 +65,33 @@ static uint64_t cover_weight(const struct cover *cover, uint32_t pixel) {
 static void shrink(const struct window_picture *picture, const struct tile_rectangle *to, uint32_t width,
                    uint32_t height, uint8_t *out) {
     const uint8_t *pixels = window_picture_pixels(picture);
-    float *sums = g_new(float, 3 * (size_t)picture->width);
-    const uint32_t begin = cover_of(to->left, picture->width, width).first,
-                   end = cover_of(to->right - 1, picture->width, width).last;
-    const float unit = 1 / ((float)picture->width * (float)picture->height);
+    struct cover *columns = g_new(struct cover, to->right - to->left);
+    for (uint32_t x = to->left; x < to->right; x++)
+        columns[x - to->left] = cover_of(x, picture->width, width);
+    const uint32_t begin = columns[0].first, count = 3 * (columns[to->right - to->left - 1].last + 1 - begin);
+    const float unit = (float)width * (float)height / ((float)picture->width * (float)picture->height);
+    float *sums = g_new(float, count);
     for (uint32_t y = to->top; y < to->bottom; y++) {
         const struct cover rows = cover_of(y, picture->height, height);
-        for (uint32_t i = 3 * begin; i < 3 * (end + 1); i++)
-            sums[i] = 0;
+        memset(sums, 0, count * sizeof *sums);
         for (uint32_t row = rows.first; row <= rows.last; row++) {
-            const float weight = (float)cover_weight(&rows, row) * unit;
-            const uint8_t *from = pixels + 3 * (size_t)row * picture->width;
-            for (uint32_t i = 3 * begin; i < 3 * (end + 1); i++)
+            const float weight = cover_weight(&rows, row) * unit;
+            const uint8_t *from = pixels + 3 * ((size_t)row * picture->width + begin);
+            for (uint32_t i = 0; i < count; i++)
                 sums[i] += weight * (float)from[i];
         }
-        for (uint32_t x = to->left; x < to->right; x++) {
-            const struct cover columns = cover_of(x, picture->width, width);
+        for (uint32_t x = 0; x < to->right - to->left; x++) {
             float mean[3] = {0.5f, 0.5f, 0.5f};
-            for (uint32_t column = columns.first; column <= columns.last; column++) {
-                const float weight = (float)cover_weight(&columns, column);
+            for (uint32_t column = columns[x].first; column <= columns[x].last; column++) {
+                const float weight = cover_weight(&columns[x], column), *sum = sums + 3 * (column - begin);
                 for (int c = 0; c < 3; c++)
-                    mean[c] += weight * sums[3 * column + (uint32_t)c];
+                    mean[c] += weight * sum[c];
             }
             for (int c = 0; c < 3; c++)
                 *out++ = (uint8_t)MIN(mean[c], 255);
         }
     }
+    g_free(columns);
     g_free(sums);
 }
 

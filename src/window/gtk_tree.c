@@ -160,9 +160,13 @@ static void show_eye(struct gui *gui, GtkListItem *item) {
     GtkWidget *eye = gtk_widget_get_last_child(gtk_tree_expander_get_child(expander));
     const struct node_row *row = &node->list->rows[node->at];
     bool hidden = is_hidden(gui, row->serial);
+    const char *name = hidden ? "Show the node" : "Hide the node";
     gtk_widget_set_visible(eye, can_hide(node));
-    gtk_button_set_icon_name(GTK_BUTTON(eye), hidden ? "view-conceal-symbolic" : "view-reveal-symbolic");
-    gui_name(eye, hidden ? "Show the node" : "Hide the node");
+    /* A new icon lays out the window again, and a new tooltip asks the display where the pointer is. */
+    if (g_strcmp0(gtk_widget_get_tooltip_text(eye), name) != 0) {
+        gtk_button_set_icon_name(GTK_BUTTON(eye), hidden ? "view-conceal-symbolic" : "view-reveal-symbolic");
+        gui_name(eye, name);
+    }
     g_object_unref(node);
 }
 

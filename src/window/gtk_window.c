@@ -654,8 +654,9 @@ static void show_timeline(struct gui *gui) {
     gtk_range_set_value(GTK_RANGE(gui->frame_scale), state->frame_index);
     gui->updates = false;
     gtk_label_set_text(GTK_LABEL(gui->frame_label), state->frame);
-    gtk_button_set_icon_name(GTK_BUTTON(gui->play_button),
-                             state->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic");
+    const char *icon = state->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic";
+    if (g_strcmp0(gtk_button_get_icon_name(GTK_BUTTON(gui->play_button)), icon) != 0)
+        gtk_button_set_icon_name(GTK_BUTTON(gui->play_button), icon);
 }
 
 static void show_page(struct gui *gui) {
