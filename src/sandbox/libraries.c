@@ -267,9 +267,8 @@ LIBM_ONE(tanh)
  * format of one conversion: tostring, "..", string.format. Here a NaN loses its sign first. */
 
 static int write_text(char *text, size_t size, const char *format, va_list arguments) {
-    size_t length = strlen(format);
-    bool one_number =
-        length > 1 && format[0] == '%' && !strpbrk(format + 1, "%*L") && strchr("aAeEfFgG", format[length - 1]);
+    const char *conversion = format[0] == '%' ? format + 1 + strspn(format + 1, "-+ #0123456789.") : "";
+    bool one_number = conversion[0] && strchr("aAeEfFgG", conversion[0]) && !conversion[1];
     if (one_number) {
         va_list copy;
         va_copy(copy, arguments);

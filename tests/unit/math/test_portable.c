@@ -5,6 +5,7 @@
 #include "math/portable.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double numbers[] = {-INFINITY, -1e300, -2, -0.0, 0.0, 0x1p-1074, 1, 2, INFINITY, NAN};
 enum { NUMBERS = sizeof numbers / sizeof *numbers };
@@ -37,4 +38,16 @@ TEST(a_number_beyond_the_integers_becomes_the_nearest_one) {
                  {0x1p62, INT64_C(1) << 62}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         CHECK_EQ_INT(math_integer(cases[i].number), cases[i].integer);
+}
+
+/* Arguments that the format does not name are ignored. */
+TEST(a_nan_loses_its_sign_only_where_the_format_is_one_number) {
+    static const char *const formats[] = {"%s.lua", "%-6.2f", "%.14g", "%A", "%sa", "a%d"};
+    static const char *const texts[] = {"x.lua", "nan   ", "nan", "NAN", "xa", "a7"};
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        const char *volatile format = formats[i];
+        char text[32];
+        (void)(i == 5 ? snprintf(text, sizeof text, format, 7, -NAN) : snprintf(text, sizeof text, format, "x", -NAN));
+        CHECK_TEXT(text, texts[i]);
+    }
 }
