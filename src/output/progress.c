@@ -27,7 +27,7 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
 void progress_hide(struct progress *progress) {
     if (progress->columns == 0)
         return;
-    (void)fprintf(stderr, "\r%*s\r", progress->columns, "");
+    (void)fprintf(standard_error(), "\r%*s\r", progress->columns, "");
     progress->columns = 0;
 }
 
@@ -102,8 +102,9 @@ static void draw_bar(struct progress *progress, const struct state *state, const
         (void)snprintf(line, sizeof line, "%s: %s", name, text);
     int columns = (int)strlen(line) < limit ? (int)strlen(line) : limit;
     error_stream_begin_line(progress->stream);
-    (void)fprintf(stderr, "\r%-*.*s", columns > progress->columns ? columns : progress->columns, columns, line);
-    (void)fflush(stderr);
+    (void)fprintf(standard_error(), "\r%-*.*s", columns > progress->columns ? columns : progress->columns, columns,
+                  line);
+    (void)fflush(standard_error());
     progress->columns = columns;
 }
 
@@ -111,22 +112,22 @@ static void print_line(const struct progress *progress, const char *after_name, 
     char line[4096 + 160];
     (void)snprintf(line, sizeof line, "%s%s%s", progress->name, after_name, text);
     error_stream_begin_line(progress->stream);
-    text_print_scene_line(stderr, line);
+    text_print_scene_line(standard_error(), line);
 }
 
 static void print_json(const struct progress *progress, const char *event, const struct state *state) {
     error_stream_begin_line(progress->stream);
-    (void)fputs("{\"picture\":", stderr);
-    text_print_json(stderr, progress->name);
-    (void)fprintf(stderr,
+    (void)fputs("{\"picture\":", standard_error());
+    text_print_json(standard_error(), progress->name);
+    (void)fprintf(standard_error(),
                   ",\"event\":\"%s\",\"width\":%u,\"height\":%u,\"tiles_done\":%u,\"tiles\":%u,\"seconds\":%.3f", event,
                   progress->width, progress->height, state->done, state->count, state->elapsed);
     if (state->share >= 0)
-        (void)fprintf(stderr, ",\"share\":%.4f", state->share);
+        (void)fprintf(standard_error(), ",\"share\":%.4f", state->share);
     if (state->left >= 0)
-        (void)fprintf(stderr, ",\"left\":%.3f", state->left);
-    (void)fprintf(stderr, ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
-    (void)fflush(stderr);
+        (void)fprintf(standard_error(), ",\"left\":%.3f", state->left);
+    (void)fprintf(standard_error(), ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
+    (void)fflush(standard_error());
 }
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised) {

@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "image/png_write.h"
+#include "session/standard_streams.h"
 
 #include <math.h>
 #include <poll.h>
@@ -32,8 +33,8 @@ static bool answers_sixel(void) {
     raw = before;
     raw.c_lflag &= (tcflag_t) ~(ICANON | ECHO);
     (void)tcsetattr(STDIN_FILENO, TCSANOW, &raw);
-    (void)fputs("\033[c", stdout);
-    (void)fflush(stdout);
+    (void)fputs("\033[c", standard_output());
+    (void)fflush(standard_output());
     struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
     while (used + 1 < sizeof answer && poll(&in, 1, 150) > 0 && read(STDIN_FILENO, answer + used, 1) == 1)
         if (answer[used++] == 'c')
@@ -196,13 +197,13 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     if (terminal->moves && terminal->rows > 0)
         (void)printf("\033[%dA\r", terminal->rows);
     if (blocks)
-        terminal_blocks(stdout, rgb, width, height);
+        terminal_blocks(standard_output(), rgb, width, height);
     else if (terminal->graphics == TERMINAL_KITTY)
-        terminal_kitty(stdout, rgb, width, height, ((int)width + terminal->cell_width - 1) / terminal->cell_width,
-                       rows);
+        terminal_kitty(standard_output(), rgb, width, height,
+                       ((int)width + terminal->cell_width - 1) / terminal->cell_width, rows);
     else
-        terminal_sixel(stdout, rgb, width, height);
-    (void)fflush(stdout);
+        terminal_sixel(standard_output(), rgb, width, height);
+    (void)fflush(standard_output());
     terminal->rows = rows;
     mem_free(rgb);
 }
