@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "image/zlib_memory.h"
+#include "math/portable.h"
 
 #include <float.h>
 #include <math.h>
@@ -400,11 +401,11 @@ static bool find_disparities(const struct light_field_head *head, float *values,
         struct light_field_block *block =
             &entry->blocks[i / head->width / LIGHT_FIELD_BLOCK * across + i % head->width / LIGHT_FIELD_BLOCK];
         float *last = values + (size_t)i * LIGHT_FIELD_NUMBERS + COLOURS;
-        *last = *last > 0 ? fminf(1 / *last, FLT_MAX) : 0;
-        block->nearest = fmaxf(block->nearest, *last);
-        block->farthest = fminf(block->farthest, *last);
-        entry->nearest = fmax(entry->nearest, (double)*last);
-        entry->farthest = fmin(entry->farthest, (double)*last);
+        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
+        block->nearest = *last > block->nearest ? *last : block->nearest;
+        block->farthest = *last < block->farthest ? *last : block->farthest;
+        entry->nearest = math_max(entry->nearest, (double)*last);
+        entry->farthest = math_min(entry->farthest, (double)*last);
     }
     return entry->blocks != NULL;
 }

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 
 #include <math.h>
 #include <string.h>
@@ -265,7 +266,7 @@ static void prepare(struct drawing *d, const struct light_field_head *head, cons
                           .per_spacing = head->spacing > 0 ? 1 / head->spacing : 0,
                           .pixel = 2 * el_tan(head->fov * (PI / 360)) / head->height};
     d->per_pixel = 1 / d->pixel;
-    d->ratio = fmin((double)head->width / camera->width, (double)head->height / camera->height);
+    d->ratio = math_min((double)head->width / camera->width, (double)head->height / camera->height);
     d->shares[X] = camera->width / 2.0 * d->ratio;
     d->shares[Y] = camera->height / 2.0 * d->ratio;
     d->disparity = 1 / (camera->focus + camera->z);
@@ -287,8 +288,8 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
     }
     double half_width = middle_of(d.count[X]) * d.spacing, half_height = middle_of(d.count[Y]) * d.spacing;
     if (camera->z == 0) {
-        camera->x = fmin(fmax(camera->x, -half_width), half_width);
-        camera->y = fmin(fmax(camera->y, -half_height), half_height);
+        camera->x = math_min(math_max(camera->x, -half_width), half_width);
+        camera->y = math_min(math_max(camera->y, -half_height), half_height);
     }
     return outside;
 }
@@ -299,7 +300,7 @@ static double largest_disparity(const struct drawing *d) {
     for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->field->head.depth; i++) {
         const struct light_field_entry *entry = &d->field->entries[i];
         if (d->field->views[i])
-            largest = fmax(largest, fmax(entry->nearest - d->disparity, d->disparity - entry->farthest));
+            largest = math_max(largest, math_max(entry->nearest - d->disparity, d->disparity - entry->farthest));
     }
     return largest;
 }
@@ -345,7 +346,7 @@ static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
     const uint32_t across = light_field_across(&d->field->head);
     double at[AXES], low[AXES], high[AXES], largest = 0;
     find_pixel(d, &ray, camera, d->disparity, at);
-    double moved = fmax(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
+    double moved = math_max(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
     double scale = d->camera.aperture + moved, reach = d->blur * (scale / d->camera.aperture) + 1;
     for (int k = 0; k < AXES; k++) {
         low[k] = floor(limited(at[k] - reach, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
@@ -354,11 +355,11 @@ static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
     for (double row = low[Y]; row <= high[Y]; row++) {
         for (double column = low[X]; column <= high[X]; column++) {
             const struct light_field_block *block = &camera->entry->blocks[(size_t)row * across + (size_t)column];
-            double apart = fmax((double)block->nearest - d->disparity, d->disparity - (double)block->farthest);
+            double apart = math_max((double)block->nearest - d->disparity, d->disparity - (double)block->farthest);
             double beside_x = fabs(at[X] - (column + 0.5) * LIGHT_FIELD_BLOCK),
                    beside_y = fabs(at[Y] - (row + 0.5) * LIGHT_FIELD_BLOCK);
-            if (apart * scale * d->per_pixel + 1 + LIGHT_FIELD_BLOCK / 2.0 >= fmax(beside_x, beside_y))
-                largest = fmax(largest, apart);
+            if (apart * scale * d->per_pixel + 1 + LIGHT_FIELD_BLOCK / 2.0 >= math_max(beside_x, beside_y))
+                largest = math_max(largest, apart);
         }
     }
     return points_of_disc(largest * d->camera.aperture * d->per_pixel);
@@ -444,14 +445,14 @@ static bool load_views(const struct drawing *d, struct light_field *field, struc
         double extent = d->camera.aperture * fabs(1 + d->camera.z * d->per_focus) * d->per_spacing;
         for (int k = 0; k < AXES; k++) {
             double u = among_cameras(d, k, ray.crossing[k]);
-            low[k] = fmin(low[k], u - extent);
-            high[k] = fmax(high[k], u + extent);
+            low[k] = math_min(low[k], u - extent);
+            high[k] = math_max(high[k], u + extent);
         }
     }
     uint32_t first[AXES], last[AXES];
     for (int k = 0; k < AXES; k++) {
-        first[k] = (uint32_t)floor(fmin(fmax(low[k], 0), d->count[k] - 1));
-        last[k] = (uint32_t)ceil(fmin(fmax(high[k], 0), d->count[k] - 1));
+        first[k] = (uint32_t)floor(math_min(math_max(low[k], 0), d->count[k] - 1));
+        last[k] = (uint32_t)ceil(math_min(math_max(high[k], 0), d->count[k] - 1));
     }
     const struct light_field_part part = {first[X], first[Y], last[X] - first[X] + 1, last[Y] - first[Y] + 1};
     return light_field_load_part(field, &part, pool, error);
@@ -462,7 +463,7 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     struct drawing d;
     prepare(&d, &field->head, camera);
     double wide = middle_of(d.count[X]), high = middle_of(d.count[Y]);
-    d.camera.aperture = fmin(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
+    d.camera.aperture = math_min(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
     d.field = field;
     d.out = out;
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);

@@ -3,6 +3,7 @@
 #include "image/tone.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
 
 #include <math.h>
 
@@ -17,7 +18,7 @@ double tone_table_slope(const struct tone_table *table) {
     double max = 0;
     for (int i = 1; i < TONE_ENTRIES; i++) {
         double rise = fabs((double)table->values[i] - (double)table->values[i - 1]);
-        max = fmax(max, rise / (tone_table_light(i) - tone_table_light(i - 1)));
+        max = math_max(max, rise / (tone_table_light(i) - tone_table_light(i - 1)));
     }
     return max;
 }

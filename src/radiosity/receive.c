@@ -398,7 +398,7 @@ static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
     struct sample2 disc = sample_disc(xi);
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
-    double height = sqrt(fmax(0, 1 - disc.x * disc.x - disc.y * disc.y));
+    double height = sqrt(math_max(0, 1 - disc.x * disc.x - disc.y * disc.y));
     return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
 }
 
@@ -411,7 +411,7 @@ static bool sees_nothing(const struct receiver *receiver) {
     if (input->lights->area_light_count > 0 || input->lights->sampler.infinite_count > 0 || !vec3_finite(bounds->min) ||
         !vec3_finite(bounds->max) || patches->curved[patch_vertex_at(patches, receiver->vertex)->primitive])
         return false;
-    double far = fmax(vec3_max_abs(bounds->min), vec3_max_abs(bounds->max));
+    double far = math_max(vec3_max_abs(bounds->min), vec3_max_abs(bounds->max));
     for (uint32_t i = patches->first[receiver->vertex]; i < patches->first[receiver->vertex + 1]; i++) {
         struct vec3 c[3];
         patch_corners(patches, patches->of_vertex[i], c);
