@@ -347,10 +347,10 @@ static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
     double at[AXES], low[AXES], high[AXES], largest = 0;
     find_pixel(d, &ray, camera, d->disparity, at);
     double moved = math_max(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
-    double scale = d->camera.aperture + moved, reach = d->blur * (scale / d->camera.aperture) + 1;
+    double scale = d->camera.aperture + moved, extent = d->blur * (scale / d->camera.aperture) + 1;
     for (int k = 0; k < AXES; k++) {
-        low[k] = floor(limited(at[k] - reach, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
-        high[k] = floor(limited(at[k] + reach, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+        low[k] = floor(limited(at[k] - extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+        high[k] = floor(limited(at[k] + extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
     }
     for (double row = low[Y]; row <= high[Y]; row++) {
         for (double column = low[X]; column <= high[X]; column++) {
