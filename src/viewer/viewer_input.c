@@ -143,6 +143,8 @@ static void escape(struct viewer *viewer) {
 uint32_t viewer_needs_met(const struct viewer *viewer) {
     const bool met[] = {[NEEDS_NOTHING] = true,
                         [NEEDS_NAME] = viewer->name[0] != '\0',
+                        [NEEDS_SCENE] = viewer->name[0] != '\0',
+                        [NEEDS_VIEW] = viewer->block != NULL,
                         [NEEDS_PICTURE] = viewer->block != NULL,
                         [NEEDS_SELECTION] = viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING,
                         [NEEDS_FRAMES] = viewer->player.count > 0};
