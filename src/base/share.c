@@ -61,12 +61,13 @@ bool share_create(struct share *share, size_t size, struct error *error) {
 }
 
 bool share_attach(struct share *share, int descriptor, size_t size, struct error *error) {
-    *share = (struct share){.size = size ? size : 1, .descriptor = descriptor};
     struct stat status;
-    if (fstat(descriptor, &status) != 0 || (uint64_t)status.st_size < share->size) {
+    *share = (struct share){0};
+    if (fstat(descriptor, &status) != 0 || status.st_size < 1 || (uint64_t)status.st_size < size) {
         (void)close(descriptor);
         return error_set(error, ERROR_MACHINE, "the shared picture has the wrong size");
     }
+    *share = (struct share){.size = size ? size : (size_t)status.st_size, .descriptor = descriptor};
     return map_block(share, error);
 }
 

@@ -18,7 +18,8 @@ struct share {
 
 /* Allocates the memory at once: if there is not enough, this is an error now and not a crash later. */
 bool share_create(struct share *share, size_t size, struct error *error);
-/* Maps what another process created; takes over the descriptor, also when it fails. Checks the size. */
+/* Maps what another process created; takes over the descriptor, also when it fails. Checks the size; 0: takes that of
+ * the memory. */
 bool share_attach(struct share *share, int descriptor, size_t size, struct error *error);
 void share_destroy(struct share *share);
 

@@ -6,6 +6,8 @@
 #include "base/key_map.h"
 #include "export/triangles_internal.h"
 #include "export/zip_internal.h"
+#include "image/transfer.h"
+#include "math/box.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -180,7 +182,7 @@ static void write_ply(struct writer *w) {
     }
 }
 
-bool coloured_mesh_write(const struct coloured_mesh *mesh, struct list *out) {
+static bool write_coloured_ply(const struct coloured_mesh *mesh, struct list *out) {
     struct writer w = {.out = out};
     print(&w,
           "ply\nformat binary_little_endian 1.0\ncomment written by gray\nelement vertex %zu\n"
@@ -198,6 +200,58 @@ bool coloured_mesh_write(const struct coloured_mesh *mesh, struct list *out) {
             put_number(&w, mesh->triangles[i][k], 4);
     }
     return !w.failed;
+}
+
+/* One mesh of colours that are light already (KHR_materials_unlit), in the two chunks of a GLB (glTF 2.0, 4.4). */
+static bool write_coloured_glb(const struct coloured_mesh *mesh, struct list *out) {
+    enum { FLOATS = 5126, WORDS = 5125, VERTEX = 24 };
+    const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
+    const size_t points = mesh->point_count, indices = 3 * mesh->triangle_count;
+    struct list text = {0};
+    struct writer w = {.out = &text};
+    struct box box = box_empty();
+    for (size_t i = 0; i < points; i++)
+        box = box_add_point(box, mesh->points[i]);
+    print(&w,
+          "%s\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_materials_unlit\"],"
+          "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"materials\":[{\"doubleSided\":true,"
+          "\"extensions\":{\"KHR_materials_unlit\":{}}}],\"meshes\":[{\"primitives\":[{\"material\":0,\"indices\":2,"
+          "\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}]}],",
+          model_glb_header);
+    print(&w, "\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[", VERTEX * points + 4 * indices);
+    print(&w, "{\"buffer\":0,\"byteLength\":%zu,\"byteStride\":%d,\"target\":34962},", VERTEX * points, VERTEX);
+    print(&w, "{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}],\"accessors\":[", VERTEX * points,
+          4 * indices);
+    print(&w,
+          "{\"bufferView\":0,\"componentType\":%d,\"count\":%zu,\"type\":\"VEC3\",\"min\":[%.9g,%.9g,%.9g],"
+          "\"max\":[%.9g,%.9g,%.9g]},",
+          FLOATS, points, (double)(float)box.min.x, (double)(float)box.min.y, (double)(float)box.min.z,
+          (double)(float)box.max.x, (double)(float)box.max.y, (double)(float)box.max.z);
+    print(&w, "{\"bufferView\":0,\"byteOffset\":12,\"componentType\":%d,\"count\":%zu,\"type\":\"VEC3\"},", FLOATS,
+          points);
+    print(&w, "{\"bufferView\":1,\"componentType\":%d,\"count\":%zu,\"type\":\"SCALAR\"}]}%*s", WORDS, indices, 3, "");
+    text.count -= text.count % 4;
+    const size_t sizes[2] = {text.count, VERTEX * points + 4 * indices};
+    w.out = out;
+    print(&w, "glTF");
+    put_number(&w, 2, 4);
+    put_number(&w, (uint32_t)(28 + sizes[0] + sizes[1]), 4);
+    put_number(&w, (uint32_t)sizes[0], 4);
+    print(&w, "JSON");
+    put(&w, text.items, sizes[0]);
+    put_number(&w, (uint32_t)sizes[1], 4);
+    put(&w, "BIN", 4);
+    for (size_t i = 0; i < 6 * points; i++)
+        put_float(&w, i % 6 < 3 ? vec3_get(mesh->points[i / 6], (int)(i % 6))
+                                : transfer_decode(srgb, mesh->colours[i / 6][i % 6 - 3] / 255.0));
+    for (size_t i = 0; i < indices; i++)
+        put_number(&w, mesh->triangles[i / 3][i % 3], 4);
+    list_destroy(&text);
+    return !w.failed;
+}
+
+bool coloured_mesh_write(const struct coloured_mesh *mesh, enum model_format format, struct list *out) {
+    return format == FORMAT_GLB ? write_coloured_glb(mesh, out) : write_coloured_ply(mesh, out);
 }
 
 /* --- 3MF --- */

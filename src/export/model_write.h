@@ -65,14 +65,14 @@ bool model_write(const struct export_model *model, const struct model_write_opti
                  struct error *error);
 /* Ends a 3MF file, with the bytes of a PNG file. */
 bool model_add_thumbnail(struct model_files *files, const struct list *png, struct error *error);
-/* A PLY file of triangles with a colour for each vertex. False: no memory. */
+/* Triangles with a colour for each vertex, as a display shows it: a GLB file, or else PLY. False: no memory. */
 struct coloured_mesh {
     const struct vec3 *points;
     const uint8_t (*colours)[3]; /* by point */
     const uint32_t (*triangles)[3];
     size_t point_count, triangle_count;
 };
-bool coloured_mesh_write(const struct coloured_mesh *mesh, struct list *out);
+bool coloured_mesh_write(const struct coloured_mesh *mesh, enum model_format format, struct list *out);
 void model_files_destroy(struct model_files *files);
 
 #endif

@@ -5,6 +5,7 @@
 
 const char model_stl_header[] = "gray: binary STL";
 const char model_obj_header[] = "# written by gray";
+const char model_glb_header[] = "{\"asset\":{\"generator\":\"gray\",";
 
 enum model_format model_format_written(const char *name) {
     static const char *const endings[] = {MODEL_FORMATS_WRITTEN(LIST_WORD)};
@@ -15,6 +16,13 @@ enum model_format model_format_written(const char *name) {
     return FORMAT_OTHER;
 }
 
+enum model_format model_format_baked(const char *name) {
+    size_t length = strlen(name);
+    if (length > 4 && strcasecmp(name + length - 4, ".glb") == 0)
+        return FORMAT_GLB;
+    return model_format_written(name) == FORMAT_PLY ? FORMAT_PLY : FORMAT_OTHER;
+}
+
 static bool begins(const uint8_t *head, size_t size, const char *text) {
     return size >= strlen(text) && memcmp(head, text, strlen(text)) == 0;
 }
@@ -23,6 +31,7 @@ bool model_file_is(const uint8_t *head, size_t size) {
     /* The first file in a 3MF zip of gray is its model; other programs begin with a file that all such packages have.
      */
     bool package = begins(head, size, "PK\3\4") && size > 33 && memcmp(head + 30, "3D/", 3) == 0;
-    return package || begins(head, size, model_stl_header) || begins(head, size, model_obj_header) ||
+    bool glb = begins(head, size, "glTF") && size > 20 && begins(head + 20, size - 20, model_glb_header);
+    return package || glb || begins(head, size, model_stl_header) || begins(head, size, model_obj_header) ||
            begins(head, size, "solid ") || begins(head, size, "ply\n");
 }

@@ -22,10 +22,12 @@ enum model_unit { MODEL_UNITS(LIST_MEMBER) };
 
 /* By the extension, in upper or lower case; of formats that gray does not write FORMAT_OTHER. */
 enum model_format model_format_written(const char *name);
+/* The same for --bake, which writes PLY and GLB. */
+enum model_format model_format_baked(const char *name);
 /* The first line or bytes of files that gray writes. */
-extern const char model_stl_header[], model_obj_header[];
+extern const char model_stl_header[], model_obj_header[], model_glb_header[];
 /* Whether a file that begins so is a model of a format that gray writes, so that another may replace it. Binary STL and
- * OBJ files have no signature: only those of gray. */
+ * OBJ files have no signature, and GLB files are models of others: only those of gray. */
 bool model_file_is(const uint8_t *head, size_t size);
 
 #endif

@@ -2,6 +2,7 @@
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 
+#include "formats/list.h"
 #include "preview/preview_messages.h"
 
 #include <errno.h>
@@ -119,18 +120,38 @@ static bool link_done(void *context, const struct picture_report *report, bool e
     return early || link_settle(link, error);
 }
 
+/* Sends a request for a model, and receives the answer. */
+static bool ask_for_model(struct channel_services *link, const struct model_request *request, struct message *message,
+                          struct error *error) {
+    link_wait(link);
+    if (!channel_send(&link->channel, MESSAGE_MODEL, request, sizeof *request, -1) ||
+        channel_receive(&link->channel, message) != CHANNEL_MESSAGE || message->kind != MESSAGE_FILM)
+        return nobody_there(link, error);
+    if (!message->body.answer.ok)
+        *error = message->body.answer.error;
+    return message->body.answer.ok;
+}
+
+static bool link_solution(void *context, const struct model_request *request, struct list *bytes, struct error *error) {
+    struct message message;
+    struct share memory;
+    if (!ask_for_model(context, request, &message, error))
+        return false;
+    if (message.descriptor < 0)
+        return true;
+    if (!share_attach(&memory, message.descriptor, 0, error))
+        return false;
+    bool ok = list_add_bytes(bytes, memory.block, memory.size) || error_no_memory(error, "radiosity");
+    share_destroy(&memory);
+    return ok;
+}
+
 static bool link_model(void *context, const struct model_request *request, const void *bytes, struct error *error) {
     struct channel_services *link = context;
     struct message message;
     struct share memory;
-    link_wait(link);
-    if (!channel_send(&link->channel, MESSAGE_MODEL, request, sizeof *request, -1) ||
-        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_FILM)
-        return nobody_there(link, error);
-    if (!message.body.answer.ok) {
-        *error = message.body.answer.error;
+    if (!ask_for_model(link, request, &message, error))
         return false;
-    }
     if (!bytes)
         return true;
     if (message.descriptor < 0)
@@ -202,6 +223,7 @@ struct host_services channel_services_make(struct channel_services *link, struct
                                   .settle = link_settle,
                                   .model = link_model,
                                   .model_end = link_model_end,
+                                  .solution = link_solution,
                                   .line = link_line,
                                   .script_ended = link_script_ended,
                                   .read = link_read,

@@ -2,6 +2,7 @@
 #include "host/in_process.h"
 
 #include "base/mem.h"
+#include "formats/list.h"
 #include "host/render_process.h"
 #include "output/output_session.h"
 
@@ -38,12 +39,21 @@ static bool in_process_model(void *context, const struct model_request *request,
                              struct error *error) {
     struct in_process *in_process = context;
     struct output_session *output = &in_process->output;
-    if (!model_output_begin(&output->model, &output->files, request, error))
+    if (!output_begin_model(output, request, error))
         return false;
     if (!bytes)
         return true;
     memcpy(output->model.memory.block, bytes, request->size);
     return model_output_write(&output->model, &output->files, error);
+}
+
+static bool in_process_solution(void *context, const struct model_request *request, struct list *bytes,
+                                struct error *error) {
+    struct in_process *in_process = context;
+    struct model_output *model = &in_process->output.model;
+    return in_process_model(context, request, NULL, error) &&
+           (!model->memory.block || list_add_bytes(bytes, model->memory.block, model->memory.size) ||
+            error_no_memory(error, "radiosity"));
 }
 
 static void in_process_model_end(void *context) {
@@ -99,6 +109,7 @@ static int run(struct in_process *in_process, const struct options *options) {
                                      .done = in_process_done,
                                      .model = in_process_model,
                                      .model_end = in_process_model_end,
+                                     .solution = in_process_solution,
                                      .line = in_process_line,
                                      .script_ended = in_process_script_ended,
                                      .read = in_process_read,

@@ -186,7 +186,7 @@ static bool make_files(struct model_work *work, struct error *error) {
 }
 
 static struct model_request request_of(const struct model_work *work) {
-    struct model_request request = {.by_user = work->by_user};
+    struct model_request request = {.role = work->by_user ? MODEL_OF_USER : MODEL_OF_SCRIPT};
     (void)snprintf(request.file, sizeof request.file, "%s", work->file);
     return request;
 }
@@ -275,18 +275,45 @@ bool model_export_node(void *context, const struct export_request *request, stru
 
 bool model_export_bake(struct render_process *process, const struct tone *tone, struct error *error) {
     const struct host_services *services = process->services;
-    struct model_request request = {.by_user = 2};
+    struct model_request request = {.role = MODEL_BAKED};
     struct list bytes = {0};
     if (process->radiosity.patches.all.count == 0)
         return true;
     (void)snprintf(request.file, sizeof request.file, "%.4000s", process->options->bake);
-    bool ok = radiosity_bake(&process->radiosity, tone, &bytes) || error_no_memory(error, "the light of patches");
+    bool ok = radiosity_bake(&process->radiosity, tone, model_format_baked(request.file), &bytes) ||
+              error_no_memory(error, "the light of patches");
     request.size = bytes.count;
     ok = ok && services->model(services->context, &request, bytes.items, error);
     services->model_end(services->context);
     list_destroy(&bytes);
     process->baked = ok;
     return ok;
+}
+
+static struct model_request solution_request(const struct render_process *process, struct digest depends) {
+    struct model_request request = {.role = MODEL_SOLUTION, .depends = depends};
+    (void)snprintf(request.file, sizeof request.file, "%.4000s", process->picture_file);
+    return request;
+}
+
+bool model_export_load_solution(void *context, struct digest depends, struct list *bytes, struct error *error) {
+    const struct render_process *process = context;
+    const struct host_services *services = process->services;
+    const struct model_request request = solution_request(process, depends);
+    bool ok = services->solution(services->context, &request, bytes, error);
+    services->model_end(services->context);
+    return ok;
+}
+
+void model_export_save_solution(void *context, struct digest depends, const struct list *bytes) {
+    struct render_process *process = context;
+    const struct host_services *services = process->services;
+    struct model_request request = solution_request(process, depends);
+    struct error error;
+    request.size = bytes->count;
+    if (!services->model(services->context, &request, bytes->items, &error))
+        render_process_say(process, LINE_WARNING, "gray: warning: the solution of radiosity: %s", error.text);
+    services->model_end(services->context);
 }
 
 /* The first node of that name. */

@@ -12,6 +12,9 @@ bool model_export_picture(struct render_process *process, const struct render_re
 /* A picture is rendered: the thumbnail, if its scene is the model, and it is complete. False: no memory. */
 bool model_export_show(struct render_process *process, const struct film *film, const struct tone *tone,
                        struct error *error);
+/* Solutions of radiosity, as the functions of struct radiosity_store; a file that cannot be written is a warning. */
+bool model_export_load_solution(void *context, struct digest depends, struct list *bytes, struct error *error);
+void model_export_save_solution(void *context, struct digest depends, const struct list *bytes);
 /* --bake: the light of the picture that is rendered, once in a run. */
 bool model_export_bake(struct render_process *process, const struct tone *tone, struct error *error);
 /* After the script: writes the model that was kept. Forgets it in any case. */

@@ -425,6 +425,7 @@ static uint32_t in_preview(const struct options *options, double side) {
 static void init_work(struct picture_work *work, struct render_process *process, const struct render_request *request) {
     const struct options *options = process->options;
     struct control *control = process->services->control;
+    process->picture_file = request->file;
     *work = (struct picture_work){.process = process, .request = request};
     work->job = (struct render_job){
         .camera = request->camera,
@@ -832,6 +833,12 @@ void render_process_run(const struct options *options, const struct host_service
     struct render_process process = {.options = options, .services = services, .errors = &errors};
     scene_writer_init(&errors, &services->control->error_stream);
     process.read_log.limit = needs_files(options) ? 0 : logged_bytes;
+    process.store = (struct radiosity_store){&process, NULL, NULL, &services->control->unshot};
+    if (options_keep_solution(options)) {
+        process.store.load = model_export_load_solution;
+        process.store.save = model_export_save_solution;
+    }
+    process.radiosity.store = &process.store;
     const struct file_listener listener = {.searches = services->wait ? wait_for_files : NULL,
                                            .log =
                                                needs_files(options) || options->keeps_tiles ? &process.read_log : NULL,

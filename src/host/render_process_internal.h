@@ -42,6 +42,8 @@ struct render_process {
     struct assets assets;
     struct world_cache world_cache;  /* of the frame before, in an animation */
     struct radiosity radiosity;      /* of the picture before */
+    struct radiosity_store store;  /* of solutions */
+    const char *picture_file;        /* of the current picture, as the script wrote it */
     bool baked;                      /* its light is written */
     struct digest rendered;          /* picture_work.shows of the last picture that was rendered */
     struct scene_writer *errors;     /* what scripts write to standard error */
@@ -62,7 +64,7 @@ struct render_process {
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
     struct replaced_fields replaced[LIST_COUNT(SETTINGS_WITH_FIELD)]; /* by setting, of its option */
-    bool vain[OPTIONS_LIMIT]; /* by option, of this run: the notice that it has no effect was printed */
+    bool vain[OPTIONS_LIMIT];  /* by option, of this run: the notice that it has no effect was printed */
     struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
     bool frames_differ;
     uint64_t frames_shown;

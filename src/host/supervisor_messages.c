@@ -306,9 +306,9 @@ static void answer_model(struct supervisor *supervisor, const struct model_reque
     struct output_session *output = &supervisor->output;
     struct error error = {0};
     supervisor_stop_script_clock(supervisor);
-    bool ok = model_output_begin(&output->model, &output->files, request, &error);
+    bool ok = output_begin_model(output, request, &error);
     supervisor_send_answer(supervisor, MESSAGE_FILM, ok, false, &error,
-                           ok && request->size > 0 ? output->model.memory.descriptor : -1);
+                           output->model.memory.block ? output->model.memory.descriptor : -1);
 }
 
 static void write_model(struct supervisor *supervisor) {
@@ -406,7 +406,7 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
         supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_MODEL:
-        if (current->open || output->model.memory.block)
+        if ((current->open && message->body.model.role != MODEL_SOLUTION) || output->model.memory.block)
             break;
         answer_model(supervisor, &message->body.model);
         return;

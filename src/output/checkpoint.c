@@ -159,7 +159,7 @@ bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture
 
 static struct file_target target_of(struct checkpoint *checkpoint) {
     const struct picture_files *files = checkpoint->files;
-    bool named = files->options->checkpoint && strcmp(files->options->checkpoint, "auto") != 0;
+    bool named = options_are_named(files->options->checkpoint);
     return (struct file_target){checkpoint->path, named ? &files->named_checkpoint : &files->checkpoint,
                                 &checkpoint->file};
 }

@@ -13,9 +13,15 @@ struct model_output {
     bool by_user, is_beside;
     struct file_output beside; /* the materials of an OBJ file: they get their name with that file */
     char name[NAME_LIMIT];
+    /* The solution of radiosity: the file of the run, chosen for its first picture; a later picture of another scene
+     * does not replace it. */
+    char solution[NAME_LIMIT];
+    bool is_solution, is_later, stays;
+    struct digest depends;
 };
 
-/* Whether the file can be written, and memory for its bytes if their number is known. */
+/* Whether the file can be written, and memory for its bytes if their number is known; of a solution else that with the
+ * bytes of its file, if they are of the same scene. */
 bool model_output_begin(struct model_output *model, struct picture_files *files, const struct model_request *request,
                         struct error *error);
 /* Writes the file and releases the memory. The file of materials, which comes before its model, replaces none yet. */

@@ -352,6 +352,19 @@ static bool check_own(struct output_session *output, const struct picture_reques
     return true;
 }
 
+/* The file of a solution is named once. */
+bool output_begin_model(struct output_session *output, const struct model_request *request, struct error *error) {
+    struct model_output *model = &output->model;
+    const struct picture_label label = {request->file, output->pictures + !output->current.open, 0};
+    char name[NAME_LIMIT], notice[NAME_LIMIT + 128];
+    model->is_later = label.number > 1;
+    if (request->role == MODEL_SOLUTION && model->solution[0] == '\0' && options_keep_solution(output->options) &&
+        (!picture_files_name(&output->files, &label, name, notice, error) ||
+         !picture_files_solution(&output->files, name, model->solution, error)))
+        return false;
+    return model_output_begin(model, &output->files, request, error);
+}
+
 bool output_begin(struct output_session *output, const struct picture_request *request, bool *already,
                   struct error *error) {
     struct picture *picture = &output->current;
@@ -606,6 +619,7 @@ void output_show_progress(struct output_session *output) {
     if (display_draws(&output->display, clock_now()))
         progress_hide(&output->progress);
     report_display(output, display_step(&output->display, clock_now(), &error), &error);
+    output->progress.unshot = (double)atomic_load(&output->control->unshot);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
 }
 

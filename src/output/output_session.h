@@ -49,6 +49,8 @@ void output_init(struct output_session *output, const struct options *options, s
  * is another shard's; then no picture is open. */
 bool output_begin(struct output_session *output, const struct picture_request *request, bool *already,
                   struct error *error);
+/* model_output_begin; before the first picture is open, its name for the file of its solution. */
+bool output_begin_model(struct output_session *output, const struct model_request *request, struct error *error);
 /* Writes the files of the picture that is open; it stays open. */
 bool output_write(struct output_session *output, struct error *error);
 /* The film is complete: the files are written. The picture is closed in any case. */

@@ -10,6 +10,7 @@
 #include "image/picture_file.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
+#include "output/solution_file_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -76,6 +77,10 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->checkpoint.advice = files->named_checkpoint.advice = " (--checkpoint FILE chooses another file)";
     files->named_checkpoint.folders = NULL;
     files->checkpoint.quota = files->named_checkpoint.quota = NULL;
+    files->solution = options_are_named(options->radiosity_file) ? files->named_checkpoint : files->checkpoint;
+    files->solution.may_replace = solution_file_is;
+    files->solution.expected = "a solution of radiosity";
+    files->solution.advice = " (--radiosity-file FILE chooses another file)";
     files->saved = (struct file_rules){
         .never_replace = true, .role = FILE_ROLE_BESIDE, .folders = files->picture.folders, .guard = &files->guard};
     /* No picture replaces a script of the run. */
@@ -309,7 +314,7 @@ bool picture_files_written(const struct picture_files *files, const char *name, 
 bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                               struct error *error) {
     const struct options *options = files->options;
-    bool named = options->checkpoint && strcmp(options->checkpoint, "auto") != 0;
+    bool named = options_are_named(options->checkpoint);
     char folder[NAME_LIMIT], shard[64] = "";
     int length;
     if (named) {
@@ -324,6 +329,17 @@ bool picture_files_checkpoint(const struct picture_files *files, const char *nam
     }
     return length < NAME_LIMIT ||
            error_set(error, ERROR_SCENE, "%.100s...: the name of its checkpoint is longer than %d bytes", name,
+                     NAME_LIMIT - 1);
+}
+
+bool picture_files_solution(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
+                            struct error *error) {
+    const struct options *options = files->options;
+    const char *beside = options->animation != ANIMATION_NONE ? options->output : name;
+    int length = options_are_named(options->radiosity_file) ? snprintf(out, NAME_LIMIT, "%s", options->radiosity_file)
+                                                            : snprintf(out, NAME_LIMIT, "%s.radiosity", beside);
+    return length < NAME_LIMIT ||
+           error_set(error, ERROR_SCENE, "%.100s...: the name of its solution is longer than %d bytes", name,
                      NAME_LIMIT - 1);
 }
 
@@ -383,7 +399,7 @@ static bool check_file(const struct picture_files *files, const char *name, uint
 bool picture_files_check(struct picture_files *files, const char *name, uint32_t layers, const char *checkpoint,
                          bool check_checkpoint, struct error *error) {
     if (checkpoint && check_checkpoint) {
-        bool named = strcmp(files->options->checkpoint, "auto") != 0;
+        bool named = options_are_named(files->options->checkpoint);
         const struct file_target target = {.path = checkpoint,
                                            .rules = named ? &files->named_checkpoint : &files->checkpoint};
         if (!file_output_check(&target, error))

@@ -27,7 +27,8 @@ struct picture_files {
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
     struct file_rules named_checkpoint;
-    struct file_rules model; /* a model of a script; of -o: user_model */
+    struct file_rules solution; /* of radiosity */
+    struct file_rules model;    /* a model of a script; of -o: user_model */
     struct file_rules user_model;
     struct file_rules saved; /* views and edits saved from the window: never replace a file */
     bool ending_noticed;
@@ -73,6 +74,9 @@ bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_
 /* The name of the checkpoint; with --checkpoint auto it is that of the first picture. */
 bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                               struct error *error);
+/* That of the solution of radiosity: of --radiosity-file, or beside the first picture or the animation. */
+bool picture_files_solution(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
+                            struct error *error);
 /* Whether every file of the picture can be written: see file_output_check. layers: a mask of enum aov. checkpoint: its
  * name, or NULL; it is checked when check_checkpoint is set. */
 bool picture_files_check(struct picture_files *files, const char *name, uint32_t layers, const char *checkpoint,

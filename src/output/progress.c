@@ -42,7 +42,8 @@ static int terminal_columns(void) {
 struct state {
     double elapsed, share, left;
     uint32_t done, count;
-    bool counts; /* tiles */
+    bool counts;   /* tiles */
+    double unshot; /* share of the light of radiosity; 0: none is computed */
 };
 
 static void add_estimate(struct progress *progress, struct state *state, const struct progress_estimate *estimate,
@@ -57,7 +58,7 @@ static void add_estimate(struct progress *progress, struct state *state, const s
 }
 
 /* "43 %  2 min 8 s, about 2 min 46 s left", of a farm "12 of 300 tiles  2 min 8 s"; on a line "43 % after 2 min 8
- * s". */
+ * s". Radiosity: "40 % of the light is not yet shot". */
 static void describe(const struct state *state, bool line, char out[160]) {
     char elapsed[48], left[48], rest[64] = "";
     const char *after = line ? " after " : "  ";
@@ -65,7 +66,9 @@ static void describe(const struct state *state, bool line, char out[160]) {
     text_duration(fmax(state->left, 0), left, sizeof left);
     if (state->left >= 0 && (line || state->elapsed > 1))
         (void)snprintf(rest, sizeof rest, ", about %s left", left);
-    if (state->count == 0)
+    if (state->count == 0 && state->unshot > 0)
+        (void)snprintf(out, 160, "%.3g %% of the light is not yet shot%s%s", 100 * state->unshot, after, elapsed);
+    else if (state->count == 0)
         (void)snprintf(out, 160, "building the scene%s%s", line ? ", " : "  ", elapsed);
     else if (state->counts)
         (void)snprintf(out, 160, "%u of %u tiles%s%s", state->done, state->count, after, elapsed);
@@ -122,6 +125,8 @@ static void print_json(const struct progress *progress, const char *event, const
                   progress->width, progress->height, state->done, state->count, state->elapsed);
     if (state->share >= 0)
         (void)fprintf(stderr, ",\"share\":%.4f", state->share);
+    if (state->unshot > 0)
+        (void)fprintf(stderr, ",\"unshot\":%.4f", state->unshot);
     if (state->left >= 0)
         (void)fprintf(stderr, ",\"left\":%.3f", state->left);
     (void)fprintf(stderr, ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
@@ -157,7 +162,7 @@ void progress_update(struct progress *progress, uint32_t done, uint32_t count,
         !text_stderr_is_ready())
         return;
     char text[160];
-    struct state state = {now - progress->begun, -1, -1, done, count, !estimate->wanted};
+    struct state state = {now - progress->begun, -1, -1, done, count, !estimate->wanted, progress->unshot};
     if (count > 0 && estimate->wanted)
         add_estimate(progress, &state, estimate, now);
     describe(&state, progress->mode == PROGRESS_LINES, text);

@@ -21,6 +21,7 @@ struct progress {
     double writing;      /* seconds for denoising and writing the file */
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
+    double unshot;       /* share of the light of radiosity, set by the caller; 0: none is computed */
     bool elsewhere;      /* a window shows it; standard error has only the beginning and the end as JSON */
     double script_since; /* when the script began to run between pictures; 0: no script runs */
     double script_next;  /* seconds after which its next line is due */

@@ -430,15 +430,20 @@ static bool divide_long(struct patches *patches, uint32_t limit, struct error *e
     return true;
 }
 
+bool patches_begin(struct patches *patches, const struct world *world) {
+    *patches = (struct patches){.world = world, .curved = mem_alloc_zero((size_t)world->primitive_count + 1, 1)};
+    for (uint32_t i = 0; patches->curved && i < world->primitive_count; i++)
+        patches->curved[i] = is_curved(patches_kind(world, i));
+    return patches->curved != NULL;
+}
+
 bool patches_build(struct patches *patches, const struct world *world, uint32_t limit, struct pool *pool,
                    struct error *error) {
     struct patch_builder b = {.out = patches};
     double area = 0;
-    *patches = (struct patches){.world = world};
-    patches->curved = mem_alloc_zero((size_t)world->primitive_count + 1, 1);
-    bool ok = (world_scratch_init(&b.scratch, world) && patches->curved) || error_no_memory(error, "patches");
+    bool ok =
+        (patches_begin(patches, world) && world_scratch_init(&b.scratch, world)) || error_no_memory(error, "patches");
     for (uint32_t i = 0; ok && i < world->primitive_count; i++) {
-        patches->curved[i] = is_curved(patches_kind(world, i));
         ok = add_primitive(&b, i, pool, error);
         if (ok && patches->all.count > limit)
             ok =

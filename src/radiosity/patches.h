@@ -19,7 +19,7 @@ struct patch {
 };
 struct patch_vertex {
     struct vec3 point;
-    uint32_t primitive;
+    uint64_t primitive; /* without padding: solutions are kept as they are */
 };
 /* Zero value: empty. Owner: the caller, patches_destroy. */
 struct patches {
@@ -53,6 +53,8 @@ enum patch_kind patches_kind(const struct world *world, uint32_t primitive);
 bool patches_build(struct patches *patches, const struct world *world, uint32_t limit, struct pool *pool,
                    struct error *error);
 void patches_destroy(struct patches *patches);
+/* None yet. False: no memory. */
+bool patches_begin(struct patches *patches, const struct world *world);
 
 /* Adds an edge to those that are to be divided. False: no memory. */
 bool patches_mark(struct key_map *edges, uint32_t a, uint32_t b);

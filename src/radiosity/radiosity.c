@@ -1,6 +1,7 @@
 #include "radiosity/radiosity.h"
 
 #include "base/mem.h"
+#include "base/version.h"
 #include "export/model_write.h"
 #include "image/png_write.h"
 #include "radiosity/receive_internal.h"
@@ -10,6 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { PROBES = 16384, PROBES_LIMIT = 256 }; /* rays for a digest: in all, and to a primitive */
 enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
 static const double first_contrast = 0.1, border_contrast = 0.3;
@@ -25,7 +27,7 @@ void radiosity_destroy(struct radiosity *radiosity) {
     drop_factors(radiosity);
     patches_destroy(&radiosity->patches);
     mem_free(radiosity->sides);
-    *radiosity = (struct radiosity){0};
+    *radiosity = (struct radiosity){.store = radiosity->store};
 }
 
 static uint32_t side_count(const struct radiosity *radiosity) {
@@ -40,6 +42,7 @@ struct preparation {
     struct world_lights lights;
     struct receiver_input receivers;
     uint8_t *buries, *emissive;
+    struct arena arena;
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
@@ -225,7 +228,7 @@ static bool check_emitters(const struct world *world, struct error *error) {
     return true;
 }
 
-static bool begin_preparation(struct preparation *p, struct arena *arena, struct error *error) {
+static bool begin_preparation(struct preparation *p, struct error *error) {
     const struct world *world = p->input->world;
     struct world_lights_options options = {p->input->background, LIGHT_CHOICE_TREE};
     int workers = pool_workers(p->input->pool);
@@ -246,70 +249,92 @@ static bool begin_preparation(struct preparation *p, struct arena *arena, struct
                                            .emissive = p->emissive,
                                            .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
                                            .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
-    return check_emitters(world, error) && world_lights_build(&p->lights, world, options, arena, p->input->pool, error);
+    return check_emitters(world, error) &&
+           world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error);
 }
 
-/* What the solution depends on, as a sample of a light and the material in the middle of every patch show it. */
+/* What the solution depends on. Numbers of lights and materials, placements and meshes are complete; other shapes,
+ * textures and skies are seen by rays. */
 static struct digest digest_of(const struct preparation *p) {
     const struct radiosity_input *input = p->input;
     const struct world *world = input->world;
-    const struct patches *patches = &p->out->patches;
     const double numbers[] = {input->background, input->limit, input->rays, (double)input->seed, input->error_share};
-    struct digest digest = digest_bytes(numbers, sizeof numbers, (struct digest){1, 1});
+    const uint32_t probes = world->primitive_count < PROBES / PROBES_LIMIT ? PROBES_LIMIT
+                            : world->primitive_count < PROBES / 2          ? PROBES / world->primitive_count
+                                                                           : 2;
+    struct box bounds = world_finite_bounds(world);
+    struct digest digest = digest_bytes(GRAY_VERSION, sizeof GRAY_VERSION, (struct digest){1, 1});
+    digest = digest_bytes(numbers, sizeof numbers, digest);
     digest = digest_bytes(world->boxes, world->primitive_count * sizeof *world->boxes, digest);
+    for (uint32_t i = 0; i < world->light_count; i++) {
+        const struct light *l = &world->lights[i];
+        const struct vec3 positions[] = {l->position, l->corner, l->edge1, l->edge2, l->direction};
+        const double of_light[] = {l->kind,       l->colour.r,   l->colour.g, l->colour.b,  l->falloff[0],
+                                   l->falloff[1], l->falloff[2], l->range,    l->intensity, l->cos_inner,
+                                   l->cos_outer,  l->radius,     l->emissive, l->one_sided, light_brightest(l)};
+        digest = digest_bytes(of_light, sizeof of_light, digest_bytes(positions, sizeof positions, digest));
+    }
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        const struct surface_material *surface = &world->surfaces.materials[i];
+        const struct colour colours[] = {surface_diffuse(&world->surfaces, surface),
+                                         surface_emission(&world->surfaces, surface)};
+        digest = digest_bytes(colours, sizeof colours, digest);
+    }
+    for (uint32_t i = 0; i < world->prototype_count; i++) {
+        const struct mesh *mesh = geometry_mesh(&world->prototypes[i].geometry);
+        struct vec3 corners[3];
+        uint32_t slot;
+        for (uint32_t k = 0; mesh && k < mesh_triangle_count(mesh); k++) {
+            mesh_triangle(mesh, k, corners, &slot);
+            digest = digest_bytes(corners, sizeof corners, digest_bytes(&slot, sizeof slot, digest));
+        }
+    }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->buries[i]};
+        const struct transform placement = world_placement(world, i, 0);
+        const struct box *own = &world->boxes[i], box = box_meet(*own, box_is_empty(&bounds) ? *own : bounds);
         digest = digest_bytes(flags, sizeof flags, digest);
-    }
-    for (uint32_t i = 0; i < patches->all.count; i++) {
-        struct receiver_probe probe;
-        struct vec3 corners[3];
-        patch_corners(patches, i, corners);
-        receive_probe(&p->receivers, i, &p->scratches[0], &probe);
-        digest = digest_bytes(&probe, sizeof probe, digest_bytes(corners, sizeof corners, digest));
+        digest = digest_bytes(&placement.forward, sizeof placement.forward, digest);
+        for (uint32_t k = 0; !box_is_empty(&box) && k < probes; k++) {
+            struct receiver_probe probe;
+            receive_probe(&p->receivers, i, &box, random_combine(p->receivers.seed, (uint64_t)i * PROBES + k),
+                          &p->scratches[0], &probe);
+            digest = digest_bytes(&probe, sizeof probe, digest);
+        }
     }
     return digest;
 }
 
 static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    bool ok = find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
+    bool ok = patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
+              find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
     for (uint32_t i = 0; ok && i < p->count; i++)
         out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
     return ok;
 }
 
-/* *same: the digest is that of `known`, so there are only patches. */
-static bool prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct digest known, bool *same,
-                    struct error *error) {
-    struct preparation p = {.out = radiosity, .input = input};
-    struct arena arena = {0};
-    *radiosity = (struct radiosity){0};
-    bool ok = begin_preparation(&p, &arena, error), has_lights = ok;
-    ok = ok && patches_build(&radiosity->patches, input->world, input->limit, input->pool, error);
-    if (ok)
-        radiosity->digest = digest_of(&p);
-    *same = ok && digest_equal(radiosity->digest, known);
-    ok = ok && (*same || solve(&p, error));
-    if (has_lights)
-        world_lights_destroy(&p.lights);
-    for (int i = 0; p.scratches && i < pool_workers(input->pool); i++)
-        world_scratch_destroy(&p.scratches[i]);
-    arena_destroy(&arena);
-    mem_free(p.scratches);
-    mem_free(p.buries);
-    mem_free(p.emissive);
-    mem_free(p.sides);
-    mem_free(p.targets);
-    mem_free(p.until);
-    if (!ok)
-        radiosity_destroy(radiosity);
-    return ok;
+static void end_preparation(struct preparation *p) {
+    world_lights_destroy(&p->lights);
+    for (int i = 0; p->scratches && i < pool_workers(p->input->pool); i++)
+        world_scratch_destroy(&p->scratches[i]);
+    arena_destroy(&p->arena);
+    mem_free(p->scratches);
+    mem_free(p->buries);
+    mem_free(p->emissive);
+    mem_free(p->sides);
+    mem_free(p->targets);
+    mem_free(p->until);
 }
 
 bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
-    bool same;
-    return prepare(radiosity, input, (struct digest){0}, &same, error);
+    struct preparation p = {.out = radiosity, .input = input};
+    *radiosity = (struct radiosity){0};
+    bool ok = begin_preparation(&p, error) && solve(&p, error);
+    end_preparation(&p);
+    if (!ok)
+        radiosity_destroy(radiosity);
+    return ok;
 }
 
 void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
@@ -349,6 +374,11 @@ static void shoot(struct radiosity *radiosity, uint32_t from) {
     }
 }
 
+static void show_unshot(const struct radiosity *radiosity, double share) {
+    if (radiosity->store)
+        atomic_store_explicit(radiosity->store->unshot, (float)share, memory_order_relaxed);
+}
+
 bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct pool *pool) {
     const uint32_t count = side_count(radiosity);
     for (int pass = 0; pass < PASSES; pass++) {
@@ -361,6 +391,7 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
             largest = fmax(largest, own);
         }
         radiosity->left = all > 0 ? unshot / all : 0;
+        show_unshot(radiosity, radiosity->left);
         if (!(radiosity->left > error_share))
             return true;
         if (pool_cancelled(pool))
@@ -419,25 +450,106 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     return ok;
 }
 
-bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
-    struct radiosity next;
-    bool same = false;
-    if (!prepare(&next, input, radiosity->digest, &same, error))
-        return false;
-    if (same) {
-        radiosity_destroy(&next);
-        radiosity->patches.world = input->world;
-        return true;
-    }
-    radiosity_destroy(radiosity);
-    *radiosity = next;
-    if (radiosity_finish(radiosity, input->error_share, input->pool, error))
-        return true;
-    radiosity_destroy(radiosity);
-    return false;
+/* --- solutions that are kept --- */
+
+struct kept_head {
+    uint64_t vertices, patches;
+    double edge, left;
+};
+
+bool radiosity_write(const struct radiosity *radiosity, struct list *out) {
+    const struct patches *patches = &radiosity->patches;
+    const struct kept_head head = {patches->vertices.count, patches->all.count, patches->edge, radiosity->left};
+    return list_add_bytes(out, &head, sizeof head) &&
+           list_add_bytes(out, patches->vertices.items, head.vertices * sizeof(struct patch_vertex)) &&
+           list_add_bytes(out, patches->all.items, head.patches * sizeof(struct patch)) &&
+           list_add_bytes(out, radiosity->sides, 2 * head.vertices * sizeof *radiosity->sides);
 }
 
-bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out) {
+/* Whether all numbers are what a solution may have. */
+static bool is_valid(const struct radiosity *radiosity) {
+    const struct patches *patches = &radiosity->patches;
+    const uint32_t primitives = patches->world->primitive_count;
+    bool valid = isfinite(patches->edge) && patches->edge > 0;
+    for (uint32_t i = 0; valid && i < patches->vertices.count; i++)
+        valid = vec3_finite(patch_vertex_at(patches, i)->point) && patch_vertex_at(patches, i)->primitive < primitives;
+    for (uint32_t i = 0; valid && i < 3 * patches->all.count; i++)
+        valid = patch_at(patches, i / 3)->vertex[i % 3] < patches->vertices.count &&
+                patch_at(patches, i / 3)->primitive < primitives;
+    for (uint32_t i = 0; valid && i < side_count(radiosity); i++) {
+        const struct side_light *side = &radiosity->sides[i];
+        valid = side->area >= 0 && isfinite(colour_max_abs(side->light)) && isfinite(colour_max_abs(side->reflectance));
+    }
+    return valid;
+}
+
+bool radiosity_read(struct radiosity *out, const struct radiosity_input *input, const struct list *bytes,
+                    struct error *error) {
+    struct patches *patches = &out->patches;
+    struct kept_head head = {0};
+    const char *at = bytes->items;
+    if (bytes->count >= sizeof head)
+        memcpy(&head, at, sizeof head);
+    bool fits = head.vertices > 0 && head.vertices < UINT32_MAX / 2 && head.patches < UINT32_MAX / 3 &&
+                bytes->count == sizeof head + head.patches * sizeof(struct patch) +
+                                    head.vertices * (sizeof(struct patch_vertex) + 2 * sizeof(struct side_light));
+    at += sizeof head;
+    if (fits) {
+        if (!patches_begin(patches, input->world) ||
+            !list_add(&patches->vertices, at, head.vertices, sizeof(struct patch_vertex)) ||
+            !list_add(&patches->all, at + head.vertices * sizeof(struct patch_vertex), head.patches,
+                      sizeof(struct patch)) ||
+            !(out->sides = mem_alloc(2 * head.vertices * sizeof *out->sides)))
+            return error_no_memory(error, "radiosity");
+        memcpy(out->sides, at + head.vertices * sizeof(struct patch_vertex) + head.patches * sizeof(struct patch),
+               2 * head.vertices * sizeof *out->sides);
+        patches->edge = head.edge;
+        out->left = head.left;
+    }
+    return fits && is_valid(out) ? patches_index_space(patches, input->pool, error)
+                                 : error_set(error, ERROR_SCENE, "the solution of radiosity that was kept is damaged");
+}
+
+static bool find_solution(struct preparation *p, struct error *error) {
+    struct radiosity *out = p->out;
+    const struct radiosity_store *store = out->store;
+    struct list bytes = {0};
+    bool keeps = store && store->load, ok = !keeps || store->load(store->context, out->digest, &bytes, error);
+    if (ok && bytes.count > 0) {
+        ok = radiosity_read(out, p->input, &bytes, error);
+    } else if (ok) {
+        show_unshot(out, 1);
+        ok = solve(p, error) && radiosity_finish(out, p->input->error_share, p->input->pool, error);
+        show_unshot(out, 0);
+        if (ok && keeps && radiosity_write(out, &bytes)) /* without memory it is not kept */
+            store->save(store->context, out->digest, &bytes);
+    }
+    list_destroy(&bytes);
+    return ok;
+}
+
+bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
+    struct radiosity next = {.store = radiosity->store};
+    struct preparation p = {.out = &next, .input = input};
+    bool ok = begin_preparation(&p, error);
+    if (ok)
+        next.digest = digest_of(&p);
+    bool same = ok && digest_equal(next.digest, radiosity->digest);
+    ok = ok && (same || find_solution(&p, error));
+    end_preparation(&p);
+    if (!ok || same)
+        radiosity_destroy(&next);
+    if (same)
+        radiosity->patches.world = input->world;
+    if (!ok || same)
+        return ok;
+    radiosity_destroy(radiosity);
+    *radiosity = next;
+    return true;
+}
+
+bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, enum model_format format,
+                    struct list *out) {
     const struct patches *patches = &radiosity->patches;
     struct vec3 *points = mem_alloc(patches->vertices.count * sizeof *points);
     uint8_t(*colours)[3] = mem_alloc(patches->vertices.count * sizeof *colours);
@@ -455,7 +567,7 @@ bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, 
         memcpy(triangles[i], patch_at(patches, i)->vertex, sizeof triangles[i]);
     const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, (const uint32_t(*)[3])triangles,
                                        patches->vertices.count, patches->all.count};
-    ok = ok && coloured_mesh_write(&mesh, out);
+    ok = ok && coloured_mesh_write(&mesh, format, out);
     mem_free(points);
     mem_free(colours);
     mem_free(triangles);

@@ -9,6 +9,7 @@
 #define GRAY_RADIOSITY_RADIOSITY_H
 
 #include "base/hash.h"
+#include "formats/model_format.h"
 #include "image/tone.h"
 #include "math/colour.h"
 #include "radiosity/patches.h"
@@ -23,6 +24,15 @@ struct side_light {
     double weight; /* 1 / number of its rays */
 };
 
+/* Who keeps solutions for later runs, and shows how far one is. */
+struct radiosity_store {
+    void *context;
+    /* Adds the bytes of the solution with that digest, if there are any. NULL with `save`: none is kept. */
+    bool (*load)(void *context, struct digest depends, struct list *bytes, struct error *error);
+    void (*save)(void *context, struct digest depends, const struct list *bytes);
+    _Atomic float *unshot; /* the share of light that is not yet shot; 0: nothing is computed */
+};
+
 /* Zero value: empty. Owner: the caller, radiosity_destroy. */
 struct radiosity {
     struct patches patches;
@@ -30,9 +40,10 @@ struct radiosity {
     size_t *first;            /* by side, one more at the end: its receivers; dropped when it is solved */
     uint32_t *receivers;      /* the sides whose rays meet it, as often as they do */
     uint64_t rays;
-    double left;          /* share of light that is not shot */
-    struct digest digest; /* of all that the solution depends on; zero: there is none */
-    bool ready;           /* it is that of the next picture, which resets this */
+    double left;                         /* share of light that is not shot */
+    struct digest digest;                /* of all that the solution depends on; zero: there is none */
+    bool ready;                          /* it is that of the next picture, which resets this */
+    const struct radiosity_store *store; /* or NULL; borrowed, and stays when the rest is destroyed */
 };
 
 struct radiosity_input {
@@ -53,14 +64,20 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
 /* The same until it is solved: light from other surfaces, whose form factors have noise, becomes smooth. Then drops the
  * factors. Errors: no memory, cancelled. */
 bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error);
-/* The solution of a world, computed only if it differs from the one that is there. Errors: those of radiosity_prepare.
- */
+/* The solution of a world, computed only if it differs from the one that is there and from the one that was kept.
+ * Errors: those of radiosity_prepare and of the store. */
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error);
+/* The bytes of a solution, and back. False: no memory. Errors: no memory; they are no solution for the world;
+ * cancelled. */
+bool radiosity_write(const struct radiosity *radiosity, struct list *out);
+bool radiosity_read(struct radiosity *out, const struct radiosity_input *input, const struct list *bytes,
+                    struct error *error);
 /* Names the primitives that reflect light but have no patches. */
 void radiosity_warn(const struct world *world, world_warning *warn, void *context);
-/* The patches as a PLY file: colours of vertices are the light that their fronts reflect, or else their backs, for a
- * display. False: no memory. */
-bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, struct list *out);
+/* The patches as a PLY or GLB file: colours of vertices are the light that their fronts reflect, or else their backs,
+ * for a display. False: no memory. */
+bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, enum model_format format,
+                    struct list *out);
 void radiosity_destroy(struct radiosity *radiosity);
 
 /* The light that arrives at a hit, on the side of its view. False: there is no patch. */

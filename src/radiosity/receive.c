@@ -77,7 +77,7 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
                            .back = side & 1,
                            .key = random_combine(input->seed, side)};
     struct box box = box_empty();
-    uint32_t own = patch_vertex_at(patches, out.vertex)->primitive;
+    uint64_t own = patch_vertex_at(patches, out.vertex)->primitive;
     for (uint32_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
         struct vec3 c[3];
         patch_corners(patches, patches->of_vertex[i], c);
@@ -442,30 +442,34 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
 
 /* --- digests --- */
 
-void receive_probe(const struct receiver_input *input, uint32_t patch, struct world_scratch *scratch,
-                   struct receiver_probe *out) {
-    const struct patches *patches = &input->radiosity->patches;
-    const struct world *world = patches->world;
+void receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
+                   struct world_scratch *scratch, struct receiver_probe *out) {
+    const struct world *world = input->lights->world;
+    const struct vec3 size = vec3_sub(box->max, box->min);
     struct world_light_sample sample;
-    struct vec3 c[3];
+    struct crossing crossing;
     struct hit hit;
     struct bsdf bsdf;
-    double pmf;
+    double pmf, x[10];
+    for (int i = 0; i < 10; i++)
+        x[i] = random_unit(random_combine(key, (uint64_t)i));
+    const struct vec3 through = vec3_add(box->min, vec3_make(x[0] * size.x, x[1] * size.y, x[2] * size.z));
+    struct ray ray = {.direction = vec3_make(x[3] - 0.5, x[4] - 0.5, x[5] - 0.5), .t_max = INFINITY};
+    ray.origin = vec3_add_scaled(through, ray.direction, -x[6] * vec3_max_abs(size));
     *out = (struct receiver_probe){0};
-    patch_corners(patches, patch, c);
-    struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-    if (!patches_hit(patches, patch, middle, scratch, &hit))
+    if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
         return;
+    world_describe(world, &ray, primitive, &crossing, &hit);
     material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
+    out->t = crossing.t;
+    out->normal = hit.normal;
     out->diffuse = bsdf_diffuse(&bsdf);
     out->emission = bsdf.emission;
     out->opacity = bsdf.opacity;
-    uint64_t key = random_combine(input->seed, patch);
     const struct light_receiver at = light_receiver_of(&hit);
-    const struct sample2 xi = {random_unit(random_combine(key, 1)), random_unit(random_combine(key, 2))};
-    struct light_part part =
-        light_sampler_sample(&input->lights->sampler, at.point, at.normal, random_unit(random_combine(key, 0)), &pmf);
-    if (part.light == LIGHT_NONE || !world_lights_sample(input->lights, &at, part, xi, &sample))
+    struct light_part part = light_sampler_sample(&input->lights->sampler, at.point, at.normal, x[7], &pmf);
+    if (part.light == LIGHT_NONE ||
+        !world_lights_sample(input->lights, &at, part, (struct sample2){x[8], x[9]}, &sample))
         return;
     out->radiance = sample.radiance;
     out->direction = sample.direction;

@@ -32,14 +32,15 @@ double receive_brightness(const struct radiosity *radiosity, uint32_t patch, boo
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                   struct side_light *out, uint32_t *targets);
 
-/* In the middle of a patch, for digests; only numbers that are not padded. */
+/* What a ray to a primitive meets, for digests; only numbers that are not padded. */
 struct receiver_probe {
     struct colour diffuse, emission, radiance;
-    struct vec3 direction;
-    double opacity, pdf;
+    struct vec3 normal, direction;
+    double t, opacity, pdf;
 };
-void receive_probe(const struct receiver_input *input, uint32_t patch, struct world_scratch *scratch,
-                   struct receiver_probe *out);
+/* A random ray through a point of the box. Zero: it meets nothing. */
+void receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
+                   struct world_scratch *scratch, struct receiver_probe *out);
 
 /* Fills these flags. */
 void receive_find_buries(const struct world *world, uint8_t *buries);

@@ -28,6 +28,7 @@ struct control {
     _Atomic uint32_t next_frame; /* that the window wants of an animation; 0: the first one, or FRAMES_OVER */
     _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done; /* thousandths of that step */
+    _Atomic float unshot;        /* share of the light of radiosity that is not yet shot; 0: none is computed */
     _Atomic uint32_t lost;       /* not 0: the render process could not write all of its standard output */
     struct error_stream error_stream;
 };

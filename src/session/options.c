@@ -569,6 +569,15 @@ struct digest options_digest(const struct options *options) {
     return digest;
 }
 
+bool options_keep_solution(const struct options *options) {
+    bool implied = options->checkpoint && !options->checkpoint_implied && !options_output_is_stream(options);
+    return (options->radiosity_file || implied) && !options->window && !options->mpi;
+}
+
+bool options_are_named(const char *file) {
+    return file && strcmp(file, "auto") != 0;
+}
+
 uint32_t options_picture_limit(const struct options *options) {
     enum { STANDARD = 100000 };
     if (options->picture_count > 0)

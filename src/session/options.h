@@ -97,13 +97,14 @@ struct options {
     bool check, quiet, verbose, no_fork;
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
-    bool dump_scene;         /* --dump-scene: the world is listed instead of rendering */
-    bool dump_expr;          /* --dump-expr: so are the recorded functions */
-    bool json;               /* all three: as JSON */
-    const char *checkpoint;  /* --checkpoint: a file, or "auto", or NULL */
-    bool checkpoint_implied; /* by an animation: a file of an earlier run is replaced */
-    double checkpoint_every; /* seconds */
-    bool mpi;                /* one of several processes that make a picture together */
+    bool dump_scene;            /* --dump-scene: the world is listed instead of rendering */
+    bool dump_expr;             /* --dump-expr: so are the recorded functions */
+    bool json;                  /* all three: as JSON */
+    const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
+    const char *radiosity_file; /* --radiosity-file: a file, or "auto", or NULL */
+    bool checkpoint_implied;    /* by an animation: a file of an earlier run is replaced */
+    double checkpoint_every;    /* seconds */
+    bool mpi;                   /* one of several processes that make a picture together */
     double farm_stall;   /* seconds after which a render process of a farm that does not respond is killed; 0: never */
     double farm_silence; /* seconds without a message after which a rank is regarded as lost; 0: never */
     const char *display; /* --display, or NULL */
@@ -130,6 +131,11 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,
  * acceleration structures and verbosity are not part of it. */
 struct digest options_digest(const struct options *options);
+/* Whether a solution of radiosity is kept in a file: by --radiosity-file, and beside a checkpoint that is requested.
+ * Windows have none, and ranks of a farm solve on their own. */
+bool options_keep_solution(const struct options *options);
+/* Whether the value of --checkpoint or --radiosity-file is the name of a file. */
+bool options_are_named(const char *file);
 /* How many pictures the scripts of a run may render, and whether they may render one of this number, counted from 1. */
 uint32_t options_picture_limit(const struct options *options);
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);

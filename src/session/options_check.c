@@ -76,8 +76,8 @@ static bool check_questions(const struct options *options, struct error *error) 
 static bool check_bake(const struct options *options, struct error *error) {
     if (!options->bake)
         return true;
-    if (model_format_written(options->bake) != FORMAT_PLY)
-        return error_set(error, ERROR_USAGE, "--bake %.400s: the name must end in .ply", options->bake);
+    if (model_format_baked(options->bake) == FORMAT_OTHER)
+        return error_set(error, ERROR_USAGE, "--bake %.400s: the name must end in .ply or .glb", options->bake);
     return options->script_count == 1 || error_set(error, ERROR_USAGE, "--bake writes the light of one script");
 }
 
@@ -176,9 +176,12 @@ static bool check_parts(struct options *options, struct error *error) {
     if (options->no_fork && (options->checkpoint || options->shards))
         return error_set(error, ERROR_USAGE,
                          "--no-fork is for debuggers: it cannot be combined with --checkpoint, --resume or --shard");
-    if (pipe && options->checkpoint && strcmp(options->checkpoint, "auto") == 0)
+    if (pipe && options->checkpoint && !options_are_named(options->checkpoint))
         return error_set(error, ERROR_USAGE,
                          "with -o - there is no file name for a checkpoint; --checkpoint FILE sets one");
+    if (pipe && options_keep_solution(options) && !options_are_named(options->radiosity_file))
+        return error_set(error, ERROR_USAGE,
+                         "with -o - there is no file name for a solution of radiosity; --radiosity-file FILE sets one");
     if (pipe && options->shards)
         return error_set(error, ERROR_USAGE, "with -o - there is no file name for the parts of --shard");
     if ((options->shards || options->mpi || options->checkpoint) && options->settings.aov)

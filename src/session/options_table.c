@@ -70,7 +70,7 @@ static const struct setting options_table[] = {
      0, "mm", "Unit of the numbers in a written model, for files that name it (3MF)."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--node", "NAME", "", NULL, FIELD(node), 0, 0, 0, "all",
      "Write only the node of this name as a model."},
-    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--bake", "FILE.ply", "", NULL, FIELD(bake), 0, 0, 0, NULL,
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--bake", "FILE.ply|FILE.glb", "", NULL, FIELD(bake), 0, 0, 0, NULL,
      "Write the patches of the first picture, with the light that integrator radiosity has stored as colours of their "
      "vertices.",
      EFFECT_RADIOSITY},
@@ -178,6 +178,12 @@ static const struct setting options_table[] = {
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--resume", NULL, "", NULL, FIELD(resume), 0, 0, 0, NULL,
      "Continue from the checkpoint (--checkpoint auto unless another file is given); an error if the scene has "
      "changed; with --shard, skip a part that exists already."},
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MACHINES, "--radiosity-file", "FILE", "", NULL, FIELD(radiosity_file), 0,
+     0, 0, NULL,
+     "Keep the solution of integrator radiosity in FILE, or with auto in a file beside the first picture, as "
+     "--checkpoint "
+     "does: runs with other cameras use it; with --resume another scene is an error.",
+     EFFECT_RADIOSITY},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_MACHINES, "--partial", NULL, "", NULL, FIELD(partial), 0, 0, 0, "yes",
      "If rendering dir/foo.png is interrupted, write dir/foo.partial.png: finished tiles, and black for the others; "
      "after a minute also the checkpoint for --resume."},

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+struct list;
 struct preview_reply;
 struct preview_command;
 
@@ -34,6 +35,8 @@ struct host_services {
      * then model_end follows in any case. */
     bool (*model)(void *context, const struct model_request *request, const void *bytes, struct error *error);
     void (*model_end)(void *context);
+    /* The same question for MODEL_SOLUTION; adds the bytes that were kept if they are of the same scene. */
+    bool (*solution)(void *context, const struct model_request *request, struct list *bytes, struct error *error);
     void (*line)(void *context, enum line_kind kind, const char *text);
     void (*script_ended)(void *context, int index, int status);
     /* A script read a file, or opened it for writing. */

@@ -35,7 +35,7 @@ static bool prepare(struct stage *s, struct radiosity *radiosity, uint32_t limit
 }
 
 static uint32_t primitive_of(const struct radiosity *radiosity, size_t side) {
-    return patch_vertex_at(&radiosity->patches, (uint32_t)(side / 2))->primitive;
+    return (uint32_t)patch_vertex_at(&radiosity->patches, (uint32_t)(side / 2))->primitive;
 }
 
 static double area_of(const struct radiosity *radiosity, uint32_t primitive) {
@@ -300,7 +300,7 @@ TEST(baked_light_is_the_colour_of_vertices) {
     s.sky.colour = colour_all(1);
     if (prepare(&s, &radiosity, 300, 0)) {
         CHECK(radiosity_finish(&radiosity, 0.01, s.pool, &s.error));
-        CHECK(radiosity_bake(&radiosity, &(struct tone){.srgb = true}, &ply));
+        CHECK(radiosity_bake(&radiosity, &(struct tone){.srgb = true}, FORMAT_PLY, &ply));
         uint32_t vertices = 0, faces = 0;
         CHECK(list_add_bytes(&ply, "", 1));
         const char *head = ply.items, *body = strstr(head, "end_header\n");
@@ -330,9 +330,22 @@ TEST(bake_writes_a_file_beside_the_picture) {
     result = test_gray_scene("local b = gr.mesh('b', 'b.ply')\nprint(b ~= nil)\n", "-q scene.lua", NULL);
     CHECK_TEXT(result.out, "true\n");
     test_free_result(&result);
+    result = test_gray_scene(scene, "-q --integrator radiosity --bake b.glb scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    test_free_result(&result);
+    /* Colours are the light of the picture, in which a ball of kd .5 below a white sky is .5. */
+    test_write_text(test_path("glb.lua"),
+                    "local n = gr.mesh('b', 'b.glb')\n"
+                    "gr.render{node = n, file = 'g.png', width = 9, height = 9, eye = {0, 0, 8}, colour = 'linear'}\n");
+    test_shell_errors("$gray -q glb.lua && $gray -q --integrator radiosity scene.lua --size 9x9 -o s.png", 0, NULL);
+    struct test_picture baked = test_read_picture(test_path("g.png")), seen = test_read_picture(test_path("s.png"));
+    for (int k = 0; k < 3; k++)
+        CHECK_NEAR((double)baked.rgb[3 * 40 + k], (double)seen.rgb[3 * 40 + k], 2);
+    free(baked.rgb);
+    free(seen.rgb);
     result = test_gray_scene(scene, "--bake b.stl scene.lua", NULL);
     CHECK_EQ_INT(result.status, 2);
-    CHECK(strstr(result.err, "gray: --bake b.stl: the name must end in .ply"));
+    CHECK(strstr(result.err, "gray: --bake b.stl: the name must end in .ply or .glb"));
     test_free_result(&result);
 }
 
