@@ -84,9 +84,9 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     progress_estimate_reset(progress_estimate, fine);
     job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = work->view.headlight
-                  ? render_headlight(&job, work->view.shows, work->view.divide > 1, preview->pool, &report->rays, error)
-                  : render_run(&job, preview->pool, &report->rays, error);
+    const struct headlight_request headlight = {work->view.shows, work->view.divide > 1, FILM_TILE_DONE};
+    bool ok = work->view.headlight ? render_headlight(&job, &headlight, preview->pool, &report->rays, error)
+                                   : render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
         return false;

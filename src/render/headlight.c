@@ -2,8 +2,10 @@
 #include "render/headlight.h"
 
 #include "base/mem.h"
+#include "material/bsdf_select.h"
 #include "material/material_eval.h"
 #include "math/elementary.h"
+#include "radiosity/radiosity.h"
 #include "render/camera.h"
 #include "world/packet.h"
 #include "world/world_describe.h"
@@ -24,10 +26,12 @@ struct headlight {
     const struct render_job *job;
     struct pool *pool;
     struct camera_frame camera;
-    struct world_scratch *scratch; /* by worker */
-    _Atomic uint32_t *rows_done;   /* by tile: rows of squares */
-    double brightness;             /* that undoes the exposure */
+    struct world_scratch *scratch;  /* by worker */
+    _Atomic uint32_t *rows_done;    /* by tile: rows of squares */
+    double brightness;              /* that undoes the exposure */
+    const struct radiosity *stored; /* light of diffuse surfaces, or NULL */
     enum headlight_shows shows;
+    uint8_t state;
     double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
     bool coarse;
@@ -50,7 +54,25 @@ static struct colour heat(const struct headlight *headlight, uint64_t work) {
     return colour_scale(colour_make(high, fmin(2 * t, 1) - high, fmax(1 - 2 * t, 0)), headlight->brightness);
 }
 
-static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
+/* What a surface reflects of the stored light, and its mirrors of the light at the eye. False: it has none. */
+static bool shade_stored(const struct headlight *headlight, const struct hit *hit, const struct bsdf *bsdf,
+                         struct colour *out) {
+    struct colour light, shiny = {0, 0, 0};
+    if (!headlight->stored || bsdf->dark || !radiosity_light(headlight->stored, hit, &light))
+        return false;
+    for (int i = 0; i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
+            shiny = colour_add_scaled(shiny, bsdf->lobes[i].weight, ambient);
+    *out = colour_add(bsdf->emission, colour_mul(bsdf_diffuse(bsdf), light));
+    *out = colour_add_scaled(*out, shiny, headlight->brightness);
+    return true;
+}
+
+static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct hit *hit,
+                           const struct bsdf *bsdf) {
+    struct colour stored;
+    if (shade_stored(headlight, hit, bsdf, &stored))
+        return stored;
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
     struct colour colour = bsdf->albedo;
     double share =
@@ -78,7 +100,7 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
     for (int i = 0; found && i < HOLES; i++) {
         material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
         if (bsdf.opacity >= 0.5)
-            return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &bsdf)
+            return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &hit, &bsdf)
                                                           : describe(headlight, &hit, &bsdf);
         ray = hit_ray(&hit, &ray, ray.direction, ray.media);
         found = world_nearest_surface(world, &ray, scratch, &hit);
@@ -165,7 +187,7 @@ static void render_strip(void *context, uint32_t item, int worker) {
         render_square(headlight, &headlight->scratch[worker], &r);
     }
     if (atomic_fetch_add(&headlight->rows_done[tile], 1) + 1 == rows)
-        atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
+        atomic_store_explicit(&film->tiles[tile], headlight->state, memory_order_release);
 }
 
 static void measure_depths(struct headlight *headlight) {
@@ -176,17 +198,21 @@ static void measure_depths(struct headlight *headlight) {
     headlight->farthest = vec3_length(vec3_max(vec3_negate(before), vec3_negate(behind)));
 }
 
-bool render_headlight(const struct render_job *job, enum headlight_shows shows, bool coarse, struct pool *pool,
+bool render_headlight(const struct render_job *job, const struct headlight_request *request, struct pool *pool,
                       struct render_statistics *statistics, struct error *error) {
+    const enum headlight_shows shows = request->shows;
     struct headlight headlight = {.job = job,
                                   .pool = pool,
                                   .shows = shows,
-                                  .coarse = coarse,
+                                  .coarse = request->coarse,
+                                  .state = request->state,
                                   .brightness = el_exp2(-job->settings.tone.exposure)};
     struct settings settings = job->settings;
     char warning[256];
     int workers = pool_workers(pool);
     settings.lens.aperture = 0;
+    if (settings.integrator == INTEGRATOR_RADIOSITY && job->radiosity && job->radiosity->patches.world == job->world)
+        headlight.stored = job->radiosity;
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &headlight.camera,
                         warning, error))
         return false;
