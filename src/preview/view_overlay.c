@@ -64,8 +64,8 @@ static struct film_rectangle rectangle_of(const struct camera_frame *frame, cons
     const struct film_rectangle all = {0, 0, film->width, film->height};
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     enum projection projection = frame->lens.projection;
-    if ((projection != PROJECTION_PERSPECTIVE && projection != PROJECTION_ORTHOGRAPHIC) ||
-        camera_has_views(frame) || !vec3_finite(box->min) || !vec3_finite(box->max))
+    if ((projection != PROJECTION_PERSPECTIVE && projection != PROJECTION_ORTHOGRAPHIC) || camera_has_views(frame) ||
+        !vec3_finite(box->min) || !vec3_finite(box->max))
         return all;
     for (int i = 0; i < 8; i++) {
         struct vec3 p = {i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,

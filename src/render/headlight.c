@@ -32,6 +32,7 @@ struct headlight {
     const struct radiosity *stored; /* light of diffuse surfaces, or NULL */
     enum headlight_shows shows;
     uint8_t state;
+    uint32_t patch;
     double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
     bool coarse;
@@ -48,9 +49,9 @@ static struct colour describe(const struct headlight *headlight, const struct hi
     return colour_scale(colour, headlight->brightness);
 }
 
-/* Work as a colour. */
-static struct colour heat(const struct headlight *headlight, uint64_t work) {
-    double t = fmin(el_log2(1 + (double)work) / 12, 1), high = fmax(2 * t - 1, 0);
+/* From blue for 0 over green to red for 1. */
+static struct colour heat(const struct headlight *headlight, double share) {
+    double t = fmin(fmax(share, 0), 1), high = fmax(2 * t - 1, 0);
     return colour_scale(colour_make(high, fmin(2 * t, 1) - high, fmax(1 - 2 * t, 0)), headlight->brightness);
 }
 
@@ -66,6 +67,64 @@ static bool shade_stored(const struct headlight *headlight, const struct hit *hi
     *out = colour_add(bsdf->emission, colour_mul(bsdf_diffuse(bsdf), light));
     *out = colour_add_scaled(*out, shiny, headlight->brightness);
     return true;
+}
+
+/* Without what is in between: the part of the half space above the surface, weighted by the cosine, that a triangle
+ * covers. It is cut at the plane of the surface (J. Lambert, "Photometria", 1760, section 118). */
+static double unhidden_factor(struct vec3 point, struct vec3 normal, const struct vec3 corners[3]) {
+    struct vec3 cut[4];
+    int count = 0;
+    double sum = 0, rounding = 1e-9 * vec3_length(vec3_sub(corners[0], point));
+    for (int i = 0; i < 3; i++) {
+        struct vec3 a = vec3_sub(corners[i], point), b = vec3_sub(corners[(i + 1) % 3], point);
+        double above = vec3_dot(a, normal) - rounding, next = vec3_dot(b, normal) - rounding;
+        if (above > 0)
+            cut[count++] = a;
+        if ((above > 0) != (next > 0))
+            cut[count++] = vec3_add_scaled(a, vec3_sub(b, a), above / (above - next));
+    }
+    for (int i = 0; i < count; i++) {
+        struct vec3 a = vec3_normalize(cut[i]), b = vec3_normalize(cut[(i + 1) % count]), side = vec3_cross(a, b);
+        double length = vec3_length(side);
+        if (length > 0)
+            sum += el_atan2(length, vec3_dot(a, b)) * vec3_dot(side, normal) / length;
+    }
+    return fabs(sum) / (2 * PI);
+}
+
+/* The form factor from the surface to the patch: the middles of four equal parts of it are visible or not. */
+static double form_factor(const struct headlight *headlight, struct world_scratch *scratch, const struct ray *from,
+                          const struct hit *hit, struct vec3 normal) {
+    enum { PARTS = 4 };
+    const struct patches *patches = &headlight->stored->patches;
+    const struct world *world = headlight->job->world;
+    const uint32_t primitive = patch_at(patches, headlight->patch)->primitive;
+    struct vec3 c[3];
+    int visible = 0;
+    patch_corners(patches, headlight->patch, c);
+    for (int i = 0; i < PARTS; i++) {
+        const double share[3] = {i == 0 || i == 3 ? 4 : 1, i == 1 || i == 3 ? 4 : 1, i == 2 || i == 3 ? 4 : 1};
+        struct vec3 to = vec3_all(0);
+        for (int k = 0; k < 3; k++)
+            to = vec3_add_scaled(to, c[k], share[k] / (share[0] + share[1] + share[2]));
+        struct ray ray = hit_ray(hit, from, vec3_sub(to, hit->point), from->media);
+        struct hit met;
+        visible += !world_nearest_surface(world, &ray, scratch, &met) || met.t > 1 - 1e-6 || met.primitive == primitive;
+    }
+    return visible > 0 ? unhidden_factor(hit->point, normal, c) * visible / PARTS : 0;
+}
+
+/* The patch itself is white. */
+static struct colour show_factor(const struct headlight *headlight, struct world_scratch *scratch,
+                                 const struct ray *from, const struct hit *hit, struct vec3 normal) {
+    const struct patches *patches = &headlight->stored->patches;
+    uint32_t patch;
+    double shares[3];
+    if (hit->primitive == patch_at(patches, headlight->patch)->primitive &&
+        patches_find(patches, hit, &patch, shares) && patch == headlight->patch)
+        return colour_all(headlight->brightness);
+    double factor = form_factor(headlight, scratch, from, hit, normal);
+    return factor > 0 ? heat(headlight, 1 + el_log2(factor) / 16) : colour_all(0);
 }
 
 static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct hit *hit,
@@ -99,6 +158,8 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
         hit.footprint = 0;
     for (int i = 0; found && i < HOLES; i++) {
         material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
+        if (bsdf.opacity >= 0.5 && headlight->shows == HEADLIGHT_FACTORS)
+            return show_factor(headlight, scratch, &ray, &hit, bsdf.side);
         if (bsdf.opacity >= 0.5)
             return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &hit, &bsdf)
                                                           : describe(headlight, &hit, &bsdf);
@@ -127,7 +188,7 @@ static void render_single(const struct headlight *headlight, struct world_scratc
         bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
         colour = colour_of(headlight, scratch, ray, found ? &met : NULL);
         if (headlight->shows == HEADLIGHT_COST)
-            colour = heat(headlight, geom_work(&scratch->geom) - before);
+            colour = heat(headlight, el_log2(1 + (double)(geom_work(&scratch->geom) - before)) / 12);
     }
     store(pixel, colour);
 }
@@ -213,6 +274,9 @@ bool render_headlight(const struct render_job *job, const struct headlight_reque
     settings.lens.aperture = 0;
     if (settings.integrator == INTEGRATOR_RADIOSITY && job->radiosity && job->radiosity->patches.world == job->world)
         headlight.stored = job->radiosity;
+    headlight.patch = request->patch;
+    if (shows == HEADLIGHT_FACTORS && (!headlight.stored || request->patch == PATCH_NONE))
+        headlight.shows = HEADLIGHT_SURFACES;
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &headlight.camera,
                         warning, error))
         return false;

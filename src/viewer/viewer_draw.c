@@ -209,6 +209,9 @@ static void describe_state(const struct viewer *viewer, struct window_state *sta
         (void)snprintf(words, size, viewer->window.waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(words, size, "building");
+    } else if (control && atomic_load_explicit(&control->unshot, memory_order_relaxed) > 0) {
+        (void)snprintf(words, size, "%.3g %% of the light is not shot",
+                       100 * (double)atomic_load_explicit(&control->unshot, memory_order_relaxed));
     } else if (viewer_is_enlarging(viewer)) {
         (void)snprintf(words, size, "ready, enlarging: %.0f %%", 100 * state->share);
     } else if (viewer->pass.result == RESULT_COMPLETE) {

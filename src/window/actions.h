@@ -83,9 +83,13 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_SCENE, NEEDS_VIEW, NEEDS_PIC
       "Show how near surfaces are")                                                                                    \
     X(DO_SHOW_COST, "show-cost", "Show the _Cost", MENU_VIEW, NEEDS_PICTURE, "<Alt>5", "<Alt>5",                       \
       "Show the work for each ray, from blue to red")                                                                  \
+    X(DO_SHOW_FACTORS, "show-factors", "Show _Form Factors", MENU_VIEW, NEEDS_PICTURE, "<Alt>6", "<Alt>6",             \
+      "Radiosity: how much of what surfaces see is the patch under the mouse")                                         \
     X(DO_BOXES, "boxes", "_Boxes of the Objects", MENU_VIEW, NEEDS_PICTURE, "b", "b", "Draw the box of every object")  \
     X(DO_GRID, "grid", "_Grid of the Accelerator", MENU_VIEW, NEEDS_PICTURE, "n", "g",                                 \
       "Draw the cells of the acceleration structure")                                                                  \
+    X(DO_PATCHES, "patches", "P_atches of Radiosity", MENU_VIEW, NEEDS_PICTURE, "<Alt>b", "<Alt>b",                    \
+      "Draw the patches that store light")                                                                             \
     X(DO_HIDE, "hide", "_Hide Symbols", MENU_VIEW, NEEDS_NOTHING, "h", "h", "Hide what is drawn over the picture")     \
     X(DO_FULL_SCREEN, "full-screen", "F_ull Screen", MENU_VIEW, NEEDS_NOTHING, "F11", "F11", "The whole screen")       \
     X(DO_RENDER, "render", "_Render Again", MENU_PICTURE, NEEDS_NOTHING, "F12 F5", "F6 F5",                            \
