@@ -152,6 +152,9 @@ $(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECTS)
 $(GUI_OBJECTS): override CPPFLAGS += $(GTK_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
+# A program that was copied to another place finds its Lua library here.
+$(MAIN_OBJECT): private override CPPFLAGS += -DGRAY_SOURCES='"$(CURDIR)"'
+
 $(BUILD)/src/image/webp_read.o $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o $(BUILD)/tests/unit/image/test_bitmaps.o: override CPPFLAGS += $(WEBP_CFLAGS)
 # The harness knows when a test starts a program.
 $(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)

@@ -14,7 +14,7 @@ BEGIN {
     count = split(modules, names, " ")
     for (i = 1; i <= count; i++)
         rank[names[i]] = i
-    kinds = 4
+    kinds = 5
     calls[1] = "malloc|calloc|realloc|free|posix_memalign|aligned_alloc|strdup|strndup|asprintf|alloca"
     owner[1] = "^src/base/mem[.]c$"
     rule[1] = "memory outside base/mem"
@@ -27,6 +27,9 @@ BEGIN {
     calls[4] = "sin|cos|tan|asin|acos|atan|atan2|exp|exp2|log|log2|log10|pow|cbrt|hypot|sincos|fma"
     owner[4] = "^src/sandbox/libraries[.]c$"
     rule[4] = "elementary functions come from math/elementary"
+    calls[5] = "fmin|fmax|fminf|fmaxf"
+    owner[5] = "^$"
+    rule[5] = "libraries differ about the sign of zero: math_min and math_max of math/portable.h"
     apart["session"] = apart["output"] = " scene world sandbox record call compat script "
     for (i = 1; i <= kinds; i++)
         calls[i] = "(^|[^A-Za-z0-9_.>])(" calls[i] ")[ \t]*[(]"

@@ -4,19 +4,22 @@
 #   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are any
 #   tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
 # WAYS="default j1 bvh base" selects variants; ONLY="word ..." selects scenes whose path contains one of the words.
-# The hashes are of whole PNG files, so they hold for one version of zlib; gray compare shows by how many levels two
-# pictures differ.
+# RESUME=1 keeps the scenes that the program has rendered before. GRAY="PROGRAM" is another program, RUN="COMMAND" what
+# runs it. The hashes are of pixels; gray compare shows by how many levels two pictures differ.
 cd "$(dirname "$0")/.." || exit 1
 action=${1:-check}
 folder=${2:-build/pictures}
 list=tests/picture_hashes.txt
 variants=${WAYS:-default j1 bvh base}
 gray=$PWD/${GRAY:-gray}
-case $action in check | record) ;; *) sed -n '2,9p' "$0" >&2; exit 2 ;; esac
+case $action in check | record) ;; *) sed -n '2,8p' "$0" >&2; exit 2 ;; esac
 [ -x "$gray" ] || { echo "picture_hashes.sh: there is no $gray; run make first" >&2; exit 2; }
-mkdir -p "$folder" || exit 1
-rm -f "$folder"/*
+mkdir -p "$folder/done" || exit 1
+[ -n "${RESUME:-}" ] || rm -f "$folder"/*.* "$folder"/done/*
 folder=$(cd "$folder" && pwd)
+pixels=$folder/done/.pixels
+# shellcheck disable=SC2046
+${CC:-cc} -O1 tools/pixels.c $(pkg-config --cflags --libs libpng) -o "$pixels" || exit 1
 
 options_of() {
     case $1 in
@@ -44,7 +47,8 @@ render() { # render NAME SCENE OPTION...
     name=$1
     scene=$2
     shift 2
-    "$gray" -q -D quick=true --allow-read . --script-time 600 "$@" -- "$scene" >"$folder/$name.txt" 2>&1 ||
+    # shellcheck disable=SC2086
+    ${RUN:-} "$gray" -q -D quick=true --allow-read . --script-time 600 "$@" -- "$scene" >"$folder/$name.txt" 2>&1 ||
         echo "status $?" >>"$folder/$name.txt"
     [ -s "$folder/$name.txt" ] || rm -f "$folder/$name.txt"
 }
@@ -54,6 +58,8 @@ scenes=$(ls data/*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.l
 for scene in $scenes; do
     wanted "$scene" || continue
     base=$(echo "${scene%.lua}" | tr / -)
+    [ "$folder/done/$base" -nt "$gray" ] && continue
+    rm -f "$folder/$base".*
     # The options of the first lines, without those that set another size.
     options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
     for variant in $variants; do
@@ -61,7 +67,7 @@ for scene in $scenes; do
         render "$base.$variant" "$scene" --size 96x72 $small $options $(options_of "$variant") \
             -o "$folder/$base.$variant-%02d.png"
     done
-    case " $variants " in *" default "*) ;; *) continue ;; esac
+    case " $variants " in *" default "*) ;; *) touch "$folder/done/$base"; continue ;; esac
     # shellcheck disable=SC2086
     case $scene in
     *0[2-9]demo.lua | *1[0-4]demo.lua | tests/pictures/*)
@@ -73,10 +79,12 @@ for scene in $scenes; do
     options=$(echo "$options" | sed 's/-ss [0-9]*//') # one sample in all
     # shellcheck disable=SC2086
     render "$base.first" "$scene" --size 96x72 $first $options -o "$folder/$base.first-%02d.png"
+    touch "$folder/done/$base"
 done
 
-(cd "$folder" && ls | grep -v '^hashes$' | while read -r file; do
+(cd "$folder" && ls -d -- *.* | while read -r file; do
     case $file in
+    *.png) "$pixels" "$file" | sha256sum | sed "s#-\$#$file#" ;;
     # Times that scripts print differ from run to run.
     *.txt) sed -E -e "s#$folder#DIR#g" -e 's/[0-9]+\.[0-9]+ s( of processor time)?$/TIME/' "$file" | sha256sum | sed "s#-\$#$file#" ;;
     *) sha256sum "$file" ;;

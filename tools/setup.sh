@@ -2,30 +2,36 @@
 # Installs missing packages from the Debian archive of the machine, after a line for each group of them: those that the
 # build needs, the window (GTK 4), and libraries (JPEG, EXR and WebP pictures, glTF meshes, fonts). If one that the build
 # does not need cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
-# install packages, it prints one line with the command. On systems not derived from Debian it lists the packages to
-# install by hand.
+# install packages, and on Fedora, Arch and Alpine, it prints one line with the command. On other systems it lists the
+# packages to install by hand.
 # GTK 4 is large: it is installed with --window, or where a display is set and apt-get would add fewer than 100 packages.
-# Usage: tools/setup.sh [--minimal | --check | --tests] [--window | --no-window]
+# Usage: tools/setup.sh [--minimal | --check | --tests] [--window | --no-window] [--for SYSTEM]
 #   --minimal   only the packages that the build needs
 #   --check     only prints the missing packages; exit status 1 if the build needs one of them
 #   --tests     everything that make test can use: also clang, MPI, readers of animations, and, where GTK is installed
 #               or wanted, screens without a monitor
+#   --for       only prints the command that installs all of it on fedora, arch or alpine
 set -u
-mode="" window=""
-for word in "$@"; do
-    case $word in --window | --no-window) window=$word ;; *) mode=$word ;; esac
+mode="" window="" system=""
+while [ $# -gt 0 ]; do
+    case $1 in
+    --window | --no-window) window=$1 ;;
+    --for) system=${2:-none} && shift ;;
+    *) mode=$1 ;;
+    esac
+    [ $# -eq 0 ] || shift
 done
 missing=""
 wanted="" # lines "GROUP PACKAGE"
 need() { # need PACKAGE COMMAND...: the command shows whether it is installed
     package=$1
     shift
-    "$@" >/dev/null 2>&1 || missing="$missing $package"
+    { [ -z "$system" ] && "$@" >/dev/null 2>&1; } || missing="$missing $package"
 }
 want() { # want GROUP PACKAGE COMMAND...
     row="$1 $2"
     shift 2
-    "$@" >/dev/null 2>&1 || wanted="$wanted$row
+    { [ -z "$system" ] && "$@" >/dev/null 2>&1; } || wanted="$wanted$row
 "
 }
 packages_of() { # packages_of [GROUP]
@@ -36,7 +42,7 @@ have_lua() {
     for name in lua5.4 lua-5.4 lua54; do
         pkg-config --exists "$name" && return 0
     done
-    return 1
+    pkg-config --exists 'lua >= 5.4' 'lua < 5.5'
 }
 
 have_ctags() {
@@ -49,7 +55,7 @@ have_mpi() {
 
 # Whether the window is wanted here; prints what it costs where nobody has asked for it.
 want_gtk() {
-    pkg-config --exists gtk4 && return 0
+    [ -z "$system" ] && pkg-config --exists gtk4 && return 0
     [ "$window" != --window ] || return 0
     [ "$window" != --no-window ] && [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || return 1
     plan=$(apt-get install --assume-no --no-install-recommends libgtk-4-dev 2>/dev/null)
@@ -108,6 +114,48 @@ if [ "$mode" = --tests ]; then
 fi
 optional=$(packages_of)
 
+# Other systems' names of the packages, where one is not Debian's: Debian, Fedora, Arch, Alpine; -: none.
+command_of() { # command_of SYSTEM PACKAGE...
+    case $1 in fedora) command="dnf install" ;; arch) command="pacman -S --needed" ;; alpine) command="apk add" ;; esac
+    printf 'sudo %s' "$command"
+    column=$1
+    shift
+    printf '%s\n' "$@" | awk -v on="$column" '
+        BEGIN { column = on == "fedora" ? 2 : on == "arch" ? 3 : 4 }
+        NR == FNR { name[$1] = $column; next }
+        { word = $1 in name ? name[$1] : $1; if (word != "-" && !seen[word]++) printf " %s", word }
+        END { print "" }' /dev/fd/3 - 3<<'END'
+libc6-dev glibc-devel glibc musl-dev
+pkg-config pkgconf-pkg-config pkgconf pkgconf
+liblua5.4-dev lua-devel lua lua5.4-dev
+libpng-dev libpng-devel libpng libpng-dev
+zlib1g-dev zlib-devel zlib zlib-dev
+libjpeg-dev libjpeg-turbo-devel libjpeg-turbo libjpeg-turbo-dev
+libjansson-dev jansson-devel jansson jansson-dev
+libfreetype-dev freetype-devel freetype2 freetype-dev
+libopenexr-dev openexr-devel openexr openexr-dev
+libwebp-dev libwebp-devel libwebp libwebp-dev
+libgtk-4-dev gtk4-devel gtk4 gtk4.0-dev
+xvfb xorg-x11-server-Xvfb xorg-server-xvfb xvfb
+xauth xorg-x11-xauth xorg-xauth xauth
+dbus dbus-daemon dbus dbus
+python3-pyatspi python3-pyatspi python-atspi py3-atspi
+gir1.2-gtk-4.0 gtk4 gtk4 gtk4.0
+libopenmpi-dev openmpi-devel openmpi openmpi-dev
+openmpi-bin openmpi openmpi openmpi
+apngdis - - -
+universal-ctags ctags ctags ctags
+procps procps-ng procps-ng procps-ng
+mount util-linux util-linux util-linux
+END
+}
+case $system in
+"") ;;
+# shellcheck disable=SC2086
+fedora | arch | alpine) command_of "$system" $missing $optional; exit 0 ;;
+*) echo "setup.sh: --for is fedora, arch or alpine" >&2; exit 2 ;;
+esac
+
 [ -n "$missing$optional" ] || exit 0
 [ -n "$missing" ] || failure=0
 if [ "$mode" = --check ]; then
@@ -121,6 +169,12 @@ case $mode in
 esac
 [ -n "$missing" ] && what="gray needs packages" || what="optional packages are missing"
 if ! command -v apt-get >/dev/null 2>&1; then
+    for pair in dnf:fedora pacman:arch apk:alpine; do
+        command -v "${pair%:*}" >/dev/null 2>&1 || continue
+        # shellcheck disable=SC2086
+        echo "$what; to install them: $(command_of "${pair#*:}" $missing $optional)" >&2
+        exit "${failure:-1}"
+    done
     echo "$what; this machine has no apt-get, please install what your system calls$missing$optional" >&2
     exit "${failure:-1}"
 fi

@@ -26,7 +26,7 @@ bool beam_make(struct beam *out, const struct ray_packet *rays) {
         }
     }
     /* Directions that diverge too much, or turn back, make no beam. */
-    double spread = fmax(fmax(-low[0], high[0]), fmax(-low[1], high[1]));
+    double spread = math_max(math_max(-low[0], high[0]), math_max(-low[1], high[1]));
     if (!(min > 0 && max < 0x1p900 && min > 0x1p-900 && spread < 0x1p5))
         return false;
     /* Wider than the rounding of the slopes. */

@@ -175,13 +175,13 @@ static bool list_unbounded(struct grid *grid, const struct box *boxes, uint32_t 
 static bool build_voxels(struct grid *grid, const struct box *boxes, uint32_t count, uint32_t bounded,
                          const struct pool *pool, struct error *error) {
     /* A margin on every axis, also on axes without extent, larger than a ray's rounding error at the border. */
-    double largest = fmax(vec3_max_abs(grid->bounds.min), vec3_max_abs(grid->bounds.max));
+    double largest = math_max(vec3_max_abs(grid->bounds.min), vec3_max_abs(grid->bounds.max));
     double longest = vec3_max_abs(vec3_sub(grid->bounds.max, grid->bounds.min));
-    struct vec3 margin = vec3_all(fmax(longest * 0x1p-20 + largest * 0x1p-40, 0x1p-1000));
+    struct vec3 margin = vec3_all(math_max(longest * 0x1p-20 + largest * 0x1p-40, 0x1p-1000));
     grid->bounds = (struct box){vec3_sub(grid->bounds.min, margin), vec3_add(grid->bounds.max, margin)};
 
     /* Few items: a list is faster. Items that cover many voxels each: larger voxels, so that memory stays bounded. */
-    double wanted = bounded <= 3 ? 1 : fmin(CELLS_PER_ITEM * (double)bounded, CELLS_IN_ALL);
+    double wanted = bounded <= 3 ? 1 : math_min(CELLS_PER_ITEM * (double)bounded, CELLS_IN_ALL);
     uint64_t limit = (uint64_t)bounded * ENTRIES_PER_ITEM + 4096, entries = 0;
     if (limit > UINT32_MAX)
         limit = UINT32_MAX;

@@ -82,7 +82,7 @@ bool kd_triangles_build(struct kd_triangles **out, const struct triangle_set *se
     }
     if (ok && set->count > 0) {
         /* The slack of a clipped triangle is relative to the largest coordinate. */
-        index->extent = fmax(vec3_max_abs(set->bounds.min), vec3_max_abs(set->bounds.max));
+        index->extent = math_max(vec3_max_abs(set->bounds.min), vec3_max_abs(set->bounds.max));
         struct clip_job job = {set, index->extent * CLIP_SLACK};
         ok = kd_tree_build(&index->tree, &(struct kd_items){boxes, set->count, clip_triangle, &job}, pool, error);
     }

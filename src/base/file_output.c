@@ -16,12 +16,14 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <linux/stat.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -177,7 +179,8 @@ static bool can_be_renamed(const struct file_output *file, const struct stat *st
     struct stat folder;
     const uint64_t fixed = STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND;
     uid_t user = geteuid();
-    if (statx(file->folder, file->leaf, AT_SYMLINK_NOFOLLOW, 0, &more) == 0) {
+    /* Not every C library has a function for the call. */
+    if (syscall(SYS_statx, file->folder, file->leaf, AT_SYMLINK_NOFOLLOW, 0, &more) == 0) {
         if (more.stx_attributes & fixed)
             return cannot_write(error, file, EPERM);
         if (more.stx_attributes & STATX_ATTR_MOUNT_ROOT)

@@ -21,7 +21,9 @@ static inline enum cpu_isa cpu_isa(void) {
     return cpu_isa_chosen;
 }
 
-/* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. */
+/* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. Programs for other processors than
+ * x86-64 have the first of them alone. */
+#if defined(__x86_64__)
 #define CPU_ISA_CALL(name, ...)                                                                                        \
     switch (cpu_isa()) {                                                                                               \
     case CPU_ISA_BASE:                                                                                                 \
@@ -34,5 +36,8 @@ static inline enum cpu_isa cpu_isa(void) {
         name##_avx512(__VA_ARGS__);                                                                                    \
         break;                                                                                                         \
     }
+#else
+#define CPU_ISA_CALL(name, ...) name##_base(__VA_ARGS__);
+#endif
 
 #endif

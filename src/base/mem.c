@@ -22,7 +22,7 @@ struct mem_account *mem_charge(struct mem_account *account) {
 }
 
 static struct mem_account *account_in_charge(void) {
-    return atomic_load_explicit(&charged, memory_order_relaxed);
+    return atomic_load_explicit(&charged, memory_order_acquire);
 }
 
 uint64_t mem_refusals(void) {

@@ -343,7 +343,7 @@ static uint32_t group_end(struct sweep *s, uint32_t first) {
         double error = crossing_error(s, &s->items[end], limit);
         if (!(t - error <= extent))
             break;
-        extent = fmax(extent, t + error);
+        extent = math_max(extent, t + error);
     }
     return end;
 }
@@ -581,7 +581,7 @@ void csg_describe(const struct csg *csg, const struct ray *ray, const struct cro
     double rounding = 0;
     for (int i = 0; i < 3; i++) {
         const double *row = map->forward.m[i];
-        rounding = fmax(rounding, fabs(row[0] * p.x) + fabs(row[1] * p.y) + fabs(row[2] * p.z) + fabs(row[3]));
+        rounding = math_max(rounding, fabs(row[0] * p.x) + fabs(row[1] * p.y) + fabs(row[2] * p.z) + fabs(row[3]));
     }
     out->error = stretch(&map->forward) * out->error + 0x1p-49 * rounding;
     out->leaf = crossing->leaf;

@@ -356,9 +356,9 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
             plan->own_boxes[i] = plan->boxes[i] = b = box_tidy(b);
             plan->order[i] = i;
             crossings += shape_scratch_need(&leaf->shape);
-            double extent = box_is_empty(&b) ? 0 : fmax(vec3_max_abs(b.min), vec3_max_abs(b.max));
+            double extent = box_is_empty(&b) ? 0 : math_max(vec3_max_abs(b.min), vec3_max_abs(b.max));
             if (isfinite(extent)) /* solids without end have no size */
-                plan->size = fmax(plan->size, extent);
+                plan->size = math_max(plan->size, extent);
         }
         for (uint32_t i = 0; i < length; i++)
             flags[i] = false;

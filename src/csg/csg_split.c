@@ -130,7 +130,7 @@ static bool cut(struct splitting *s, struct piece piece, int axis, uint32_t *pie
             s->pieces[(*pieces)++] = (struct piece){piece.first + begun, i - begun};
             begun = i;
         }
-        extent = fmax(extent, vec3_get(s->spans[s->operands[operand]].box.max, axis));
+        extent = math_max(extent, vec3_get(s->spans[s->operands[operand]].box.max, axis));
         s->order[piece.first + i] = operand;
     }
     if (begun == 0)

@@ -787,14 +787,12 @@ static bool denoise_features(struct denoise_run *d, struct error *error) {
 }
 
 static const struct denoise_kernels *choose_kernels(void) {
-    switch (cpu_isa()) {
-    case CPU_ISA_BASE:
-        break;
-    case CPU_ISA_AVX2:
-        return &denoise_kernels_avx2;
-    case CPU_ISA_AVX512:
+#if defined(__x86_64__)
+    if (cpu_isa() == CPU_ISA_AVX512)
         return &denoise_kernels_avx512;
-    }
+    if (cpu_isa() == CPU_ISA_AVX2)
+        return &denoise_kernels_avx2;
+#endif
     return &denoise_kernels_base;
 }
 

@@ -104,7 +104,7 @@ static struct vec3 meet_planes(struct vec3 from, const struct plane *planes, int
             b[k] += n[k] * rest;
     }
     diagonalise(a, vectors);
-    double maximum = fmax(a[0][0], fmax(a[1][1], a[2][2]));
+    double maximum = math_max(a[0][0], math_max(a[1][1], a[2][2]));
     for (int i = 0; i < 3; i++) {
         struct vec3 e = {vectors[0][i], vectors[1][i], vectors[2][i]};
         if (a[i][i] > cut * maximum)
@@ -153,7 +153,7 @@ static void survey_loop(const struct cell_work *work, const struct loop *loop, s
         const struct loop_point *point = &loop->points[i];
         if (!point->on_edge)
             planes->turn =
-                fmin(planes->turn, vec3_dot(planes->mean_normal, vertex_of(work, point)->normal[point->side]));
+                math_min(planes->turn, vec3_dot(planes->mean_normal, vertex_of(work, point)->normal[point->side]));
     }
 }
 
@@ -498,7 +498,7 @@ static bool some_missed(const struct cell_work *work, const struct cell *cell, s
             continue;
         for (size_t t = first; t < contour->triangles.count && minimum > limit * limit; t++) {
             struct corners c = corners_at(contour, t);
-            minimum = fmin(minimum, triangle_distance_squared(known[i].point, c.point));
+            minimum = math_min(minimum, triangle_distance_squared(known[i].point, c.point));
         }
         if (minimum > limit * limit)
             return true;

@@ -214,7 +214,7 @@ static void bend_arc(struct face_search *search, const struct side *a, const str
             break;
         }
     }
-    struct vec3 point = vec3_add_scaled(middle, inward, fmin(depth, maximum));
+    struct vec3 point = vec3_add_scaled(middle, inward, math_min(depth, maximum));
     search->found[0] = (struct feature){vec3_with(point, search->axis, search->plane), *a, *b};
     search->count = 1;
     search->lost = true;
@@ -279,7 +279,7 @@ static int join_points(struct face_search *search, struct boundary_point *p, int
         for (int i = 0; i < count; i++) {
             double misfits = misfit(search->contour, &p[i], &p[(i + 1) % count]);
             best = misfits < minimum ? i : best;
-            minimum = fmin(misfits, minimum);
+            minimum = math_min(misfits, minimum);
         }
         int next = (best + 1) % count, kept = 0;
         arcs[made++] = make_arc(search, p[best], p[next]);

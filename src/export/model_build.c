@@ -277,7 +277,7 @@ static bool add_clusters(struct model_builder *b, struct error *error) {
 static bool choose_tolerance(struct model_builder *b, struct error *error) {
     struct box box = box_of_all(b->input->world);
     double size = vec3_max_abs(vec3_sub(box.max, box.min));
-    double far = fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
+    double far = math_max(vec3_max_abs(box.min), vec3_max_abs(box.max));
     b->tolerance = b->out->tolerance = b->input->tolerance > 0 ? b->input->tolerance : size / 1000;
     if (b->tolerance < 0x1p-20 * far)
         return error_set(error, ERROR_SCENE,

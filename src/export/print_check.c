@@ -29,7 +29,7 @@ static void add_triangle(struct checker *checker, const struct vec3 c[3]) {
     double down = area > 0 ? -normal.z / (2 * area) : 0;
     if (down <= 0)
         return;
-    if (fmax(c[0].z, fmax(c[1].z, c[2].z)) < checker->plate)
+    if (math_max(c[0].z, math_max(c[1].z, c[2].z)) < checker->plate)
         report->contact_area += area * down;
     else if (down > supported_sine)
         report->overhang_area += area;
@@ -65,7 +65,7 @@ static bool is_standing(const struct checker *checker) {
             for (size_t v = 0; v < part->points.count; v++) {
                 struct vec3 at = export_points(part)[v];
                 if (at.z < checker->plate)
-                    farthest = fmax(farthest, cosine * (at.x - centre.x) + sine * (at.y - centre.y));
+                    farthest = math_max(farthest, cosine * (at.x - centre.x) + sine * (at.y - centre.y));
             }
         }
         if (farthest < 0)
@@ -142,6 +142,6 @@ bool print_check(const struct export_model *model, struct pool *pool, struct pri
             return false;
     }
     if (checker.down > 1e-6)
-        out->overhang = el_asin(fmin(checker.down, 1)) * 180 / PI;
+        out->overhang = el_asin(math_min(checker.down, 1)) * 180 / PI;
     return true;
 }

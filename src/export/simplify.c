@@ -292,7 +292,7 @@ static bool fits_curve(const struct simplifier *s, const struct collapse *collap
 
 static double longest_edge(const struct vec3 point[3]) {
     double a = vec3_length(vec3_sub(point[1], point[0])), b = vec3_length(vec3_sub(point[2], point[1]));
-    return fmax(fmax(a, b), vec3_length(vec3_sub(point[0], point[2])));
+    return math_max(math_max(a, b), vec3_length(vec3_sub(point[0], point[2])));
 }
 
 static bool fits_surface(const struct simplifier *s, struct collapse *collapse, const struct ring_triangle *ring) {
@@ -329,8 +329,8 @@ static int nearest_target(const struct simplifier *s, const struct collapse *col
         double distance = sample->crease ? INFINITY : triangle_distance_squared(sample->point, ring->point);
         for (int k = 0; sample->crease && k < 3; k++)
             if (ring->crease >> k & 1)
-                distance =
-                    fmin(distance, segment_distance_squared(sample->point, ring->point[k], ring->point[(k + 1) % 3]));
+                distance = math_min(distance,
+                                    segment_distance_squared(sample->point, ring->point[k], ring->point[(k + 1) % 3]));
         if (distance < minimum) {
             minimum = distance;
             best = i;
@@ -506,7 +506,7 @@ static bool run_passes(struct simplifier *s) {
         return false;
     for (int pass = 0; pass < PASS_LIMIT; pass++) {
         uint32_t removed = 0, kept = 0;
-        s->tolerance = share * fmin(1, 0.4 + 0.2 * pass);
+        s->tolerance = share * math_min(1, 0.4 + 0.2 * pass);
         bool final = pass >= 3;
         for (uint32_t i = 0; i < remaining; i++) {
             uint32_t vertex = order[i];
@@ -520,7 +520,7 @@ static bool run_passes(struct simplifier *s) {
         remaining = kept;
         if (limit >= maximum && removed == 0)
             break;
-        limit = fmin(maximum, limit * growth);
+        limit = math_min(maximum, limit * growth);
     }
     return true;
 }

@@ -53,7 +53,7 @@ bool solid_mesh_compact(struct solid_mesh *mesh) {
 }
 
 double solid_grain(const struct csg *csg) {
-    return 0x1p-23 * fmax(vec3_max_abs(csg->bounds.min), vec3_max_abs(csg->bounds.max));
+    return 0x1p-23 * math_max(vec3_max_abs(csg->bounds.min), vec3_max_abs(csg->bounds.max));
 }
 
 struct vec3 solid_round(const struct csg *csg, struct vec3 point) {
@@ -331,7 +331,7 @@ bool solid_mesh_build(const struct solid_input *input, struct solid_mesh *out, s
     if (box_is_empty(&input->csg->bounds))
         return is_empty(input, error);
     double size = vec3_max_abs(vec3_sub(input->csg->bounds.max, input->csg->bounds.min));
-    double wanted = fmin(fmax(sqrt(size / input->tolerance), MIN_CELLS), MAX_CELLS);
+    double wanted = math_min(math_max(sqrt(size / input->tolerance), MIN_CELLS), MAX_CELLS);
     bool good = false;
     for (int i = 0; i < GRIDS && !good; i++) {
         uint32_t cells = (uint32_t)(wanted * (1 + 0.37 * i));

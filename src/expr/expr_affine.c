@@ -85,8 +85,8 @@ static struct affine_value apply(const struct expr_instruction *in, const struct
         return out;
     struct expr_interval ends = ends_of(form);
     out.form = form;
-    out.bounds.low = fmax(out.bounds.low, ends.low);
-    out.bounds.high = fmin(out.bounds.high, ends.high);
+    out.bounds.low = math_max(out.bounds.low, ends.low);
+    out.bounds.high = math_min(out.bounds.high, ends.high);
     return out;
 }
 

@@ -392,8 +392,8 @@ static void noise_slopes(const struct expr_interval box[3], struct expr_interval
     for (int k = 0; k < 3; k++) {
         double change =
             NOISE_SECOND_MAX * radius[k] + NOISE_MIXED_MAX * (radius[(k + 1) % 3] + radius[(k + 2) % 3]) + 1e-9;
-        out[k].low = fmax(out[k].low, gradient[k] - change);
-        out[k].high = fmin(out[k].high, gradient[k] + change);
+        out[k].low = math_max(out[k].low, gradient[k] - change);
+        out[k].high = math_min(out[k].high, gradient[k] + change);
     }
 }
 
@@ -537,7 +537,7 @@ static bool is_zero(struct expr_interval a) {
 }
 
 static struct expr_interval enclosure(struct expr_interval a, struct expr_interval b) {
-    return (struct expr_interval){fmin(a.low, b.low), fmax(a.high, b.high), a.may_be_nan || b.may_be_nan};
+    return (struct expr_interval){math_min(a.low, b.low), math_max(a.high, b.high), a.may_be_nan || b.may_be_nan};
 }
 
 /* The slope of one of two operands, or any slope between them. */
@@ -546,7 +546,7 @@ static struct expr_interval chosen_slope(struct expr_choice choice, struct expr_
 }
 
 static double largest(struct expr_interval a) {
-    return fmax(fabs(a.low), fabs(a.high)) * (1 + 4 * DBL_EPSILON);
+    return math_max(fabs(a.low), fabs(a.high)) * (1 + 4 * DBL_EPSILON);
 }
 
 static double root_of_sum(double a, double b) {

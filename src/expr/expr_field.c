@@ -83,7 +83,8 @@ enum { FACE_CELLS = 16 };
 
 /* The ends of u / sqrt(1 + u^2 + v^2). */
 static void coordinate_ends(const double u[2], const double v[2], double *low, double *high) {
-    double v_near = v[0] <= 0 && v[1] >= 0 ? 0 : fmin(fabs(v[0]), fabs(v[1])), v_far = fmax(fabs(v[0]), fabs(v[1]));
+    double v_near = v[0] <= 0 && v[1] >= 0 ? 0 : math_min(fabs(v[0]), fabs(v[1])),
+           v_far = math_max(fabs(v[0]), fabs(v[1]));
     double first = u[0] / sqrt(1 + u[0] * u[0] + (u[0] < 0 ? v_near * v_near : v_far * v_far));
     double second = u[1] / sqrt(1 + u[1] * u[1] + (u[1] > 0 ? v_near * v_near : v_far * v_far));
     *low = first - 0x1p-40;
@@ -107,8 +108,9 @@ static void put_cell(struct direction_cells *cells, int at, int face, int i, int
     const double u[2] = {2.0 * i / FACE_CELLS - 1, 2.0 * (i + 1) / FACE_CELLS - 1};
     const double v[2] = {2.0 * j / FACE_CELLS - 1, 2.0 * (j + 1) / FACE_CELLS - 1};
     int axis = face / 2, across = (axis + 1) % 3, up = (axis + 2) % 3;
-    double u_near = fmin(fabs(u[0]), fabs(u[1])), v_near = fmin(fabs(v[0]), fabs(v[1])); /* no cell contains 0 inside */
-    double u_far = fmax(fabs(u[0]), fabs(u[1])), v_far = fmax(fabs(v[0]), fabs(v[1]));
+    double u_near = math_min(fabs(u[0]), fabs(u[1])),
+           v_near = math_min(fabs(v[0]), fabs(v[1])); /* no cell contains 0 inside */
+    double u_far = math_max(fabs(u[0]), fabs(u[1])), v_far = math_max(fabs(v[0]), fabs(v[1]));
     double near = 1 / sqrt(1 + u_near * u_near + v_near * v_near) + 0x1p-40;
     double far = 1 / sqrt(1 + u_far * u_far + v_far * v_far) - 0x1p-40;
     cells->low[axis][at] = face % 2 ? far : -near;
@@ -123,11 +125,11 @@ static double cell_largest(const struct expr_program *program, const struct expr
                            struct vec3 probe) {
     double largest = 0;
     for (int k = 0; k < outputs; k++)
-        largest = fmax(largest, bounds[k].high[at]);
+        largest = math_max(largest, bounds[k].high[at]);
     if (isfinite(largest))
         return largest;
     struct colour value = expr_field_at(program, probe);
-    return fmax(value.r, fmax(value.g, value.b));
+    return math_max(value.r, math_max(value.g, value.b));
 }
 
 bool expr_field_largest(const struct expr_program *program, double *largest) {
@@ -148,7 +150,7 @@ bool expr_field_largest(const struct expr_program *program, double *largest) {
                      (cell + i) / FACE_CELLS % FACE_CELLS);
         expr_evaluate_intervals(program, &boxes, bounds, NULL, rows);
         for (int i = 0; i < EXPR_BOXES; i++)
-            *largest = fmax(*largest, cell_largest(program, bounds, program->output_count, i, cells.probes[i]));
+            *largest = math_max(*largest, cell_largest(program, bounds, program->output_count, i, cells.probes[i]));
     }
     mem_free(rows);
     return true;

@@ -632,9 +632,9 @@ static bool end_some(struct interval_frame *f, struct expr_interval *states) {
     struct expr_interval first = states[0];
     if (!f->loop->ends || !expr_may_end(first))
         return true;
-    states[0].high = fmin(first.high, fmax(first.low, 0)); /* or NaN */
+    states[0].high = math_min(first.high, math_max(first.low, 0)); /* or NaN */
     end_with(f, states);
-    states[0] = (struct expr_interval){fmax(first.low, f->loop->type[0] == EXPR_TYPE_I), first.high, false};
+    states[0] = (struct expr_interval){math_max(first.low, f->loop->type[0] == EXPR_TYPE_I), first.high, false};
     return expr_may_go_on(first);
 }
 

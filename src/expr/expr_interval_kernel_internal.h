@@ -171,8 +171,8 @@ static void end_with(struct boxes_frame *l, uint32_t lane, const struct expr_int
     for (uint32_t k = 0; k < l->loop->state_count; k++) {
         const struct expr_interval state = first && k == 0 ? *first : argument_of(l, k, lane);
         double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
-        row[box] = has_ended ? fmin(row[box], state.low) : state.low;
-        row[box + EXPR_BOXES] = has_ended ? fmax(row[box + EXPR_BOXES], state.high) : state.high;
+        row[box] = has_ended ? math_min(row[box], state.low) : state.low;
+        row[box + EXPR_BOXES] = has_ended ? math_max(row[box + EXPR_BOXES], state.high) : state.high;
         l->may_be_nan[k] |= (uint64_t)state.may_be_nan << box;
     }
     l->has_ended |= (uint64_t)1 << box;
@@ -197,10 +197,10 @@ static void end_some(struct boxes_frame *l) {
         const uint64_t bit = (uint64_t)1 << lane;
         struct expr_interval first = {low[lane], high[lane], (may_be_nan & bit) != 0};
         const bool goes_on = expr_may_go_on(first);
-        first.high = fmin(first.high, fmax(first.low, 0));
+        first.high = math_min(first.high, math_max(first.low, 0));
         end_with(l, lane, &first);
         if (goes_on) {
-            low[lane] = fmax(first.low, is_integer);
+            low[lane] = math_max(first.low, is_integer);
             l->m.flags[0].first &= ~bit;
         } else
             l->active &= ~bit;

@@ -235,7 +235,8 @@ static bool write_tiles(struct text_writer *writer, const struct film *film, str
         struct byte_writer output = {writer->buffer + RECORD_HEAD};
         put_u32(&output, tile);
         size_t size = film_tile_pack(film, tile, output.at);
-        if (atomic_fetch_or(&film->tiles[tile], 0) != state) /* no load of the pixels moves behind it */
+        atomic_thread_fence(memory_order_acquire); /* the pixels are loaded before the state */
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != state)
             continue;
         if (!write_record(writer, state == FILM_TILE_DONE ? RECORD_TILE : RECORD_BEGUN, 4 + size, error))
             return false;

@@ -19,7 +19,7 @@ static double duration_of(const struct gltf *g, const json_t *samplers) {
         const json_t *input = json_object_get(json_array_get(samplers, i), "input");
         json_int_t index = json_is_integer(input) ? json_integer_value(input) : -1;
         const json_t *accessor = index >= 0 ? json_array_get(gltf_array(g, "accessors"), (size_t)index) : NULL;
-        duration = fmax(duration, json_number_value(json_array_get(json_object_get(accessor, "max"), 0)));
+        duration = math_max(duration, json_number_value(json_array_get(json_object_get(accessor, "max"), 0)));
     }
     return duration;
 }
@@ -136,7 +136,7 @@ static bool find_keys(struct gltf *g, uint32_t accessor, const struct gltf_acces
 /* Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985: along the shorter arc. */
 static void slerp(double *from, const double *to, double at) {
     double cosine = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
-    double sign = cosine < 0 ? -1 : 1, angle = el_acos(fmin(fabs(cosine), 1)), sine = el_sin(angle);
+    double sign = cosine < 0 ? -1 : 1, angle = el_acos(math_min(fabs(cosine), 1)), sine = el_sin(angle);
     double a = 1 - at, b = at;
     if (sine > 1e-6) {
         a = el_sin(a * angle) / sine;

@@ -278,7 +278,7 @@ static double value_of(const uint8_t *p, enum number_type type, bool normalized)
     static const double one[NUMBER_TYPES] = {
         [NUMBER_I8] = 127, [NUMBER_U8] = 255, [NUMBER_I16] = 32767, [NUMBER_U16] = 65535};
     double x = scan_number(p, type, false);
-    return normalized && one[type] > 0 ? fmax(x / one[type], -1) : x;
+    return normalized && one[type] > 0 ? math_max(x / one[type], -1) : x;
 }
 
 bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint64_t first, uint64_t count,

@@ -177,7 +177,7 @@ static bool read_volume(struct gltf *g, const json_t *volume, struct model_mater
     if (!gltf_numbers(g, volume, "attenuationColor", colour, 3, where))
         return false;
     for (int i = 0; i < 3 && distance > 0 && !m->layers.thin_walled; i++)
-        absorption[i] = colour[i] < 1 ? -el_log(fmax(colour[i], 1e-6)) / distance : 0;
+        absorption[i] = colour[i] < 1 ? -el_log(math_max(colour[i], 1e-6)) / distance : 0;
     m->absorption = colour_make(absorption[0], absorption[1], absorption[2]);
     return true;
 }
@@ -194,7 +194,7 @@ static bool read_scattering(struct gltf *g, const json_t *extensions, struct mod
     if (!gltf_numbers(g, diffuse, "diffuseTransmissionColorFactor", tint, 3, where) ||
         !gltf_numbers(g, scatter, "multiscatterColor", colour, 3, where))
         return false;
-    g_scatter = fmin(fmax(g_scatter, -0.99), 0.99);
+    g_scatter = math_min(math_max(g_scatter, -0.99), 0.99);
     v->subsurface_weight = share(diffuse, "diffuseTransmissionFactor", 0);
     v->subsurface_colour = unit_colour(tint);
     v->subsurface_anisotropy = v->thin_walled ? 1 : g_scatter;
@@ -215,15 +215,15 @@ static bool read_scattering(struct gltf *g, const json_t *extensions, struct mod
 /* Thicknesses are in nanometres. */
 static void read_film(const json_t *film, struct openpbr *layers) {
     layers->film_weight = share(film, "iridescenceFactor", 0);
-    layers->film_ior = fmax(number_or(film, "iridescenceIor", 1.3), 1);
-    layers->film_thickness = fmax(number_or(film, "iridescenceThicknessMaximum", 400), 0) / 1000;
+    layers->film_ior = math_max(number_or(film, "iridescenceIor", 1.3), 1);
+    layers->film_thickness = math_max(number_or(film, "iridescenceThicknessMaximum", 400), 0) / 1000;
 }
 
 static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_material *m, const char *where) {
     double colour[3] = {0, 0, 0};
     if (!gltf_numbers(g, sheen, "sheenColorFactor", colour, 3, where))
         return false;
-    double weight = unit(fmax(colour[0], fmax(colour[1], colour[2])));
+    double weight = unit(math_max(colour[0], math_max(colour[1], colour[2])));
     m->layers.fuzz_weight = weight;
     m->layers.fuzz_roughness = share(sheen, "sheenRoughnessFactor", 0);
     if (weight > 0)
@@ -238,7 +238,7 @@ static bool read_gloss(struct gltf *g, const json_t *gloss, struct model_materia
     if (!gltf_numbers(g, gloss, "specularFactor", colour, 3, where))
         return false;
     struct colour specular = unit_colour(colour);
-    double max = colour_max_abs(specular), root = sqrt(fmin(max, 0.98));
+    double max = colour_max_abs(specular), root = sqrt(math_min(max, 0.98));
     m->layers.base_metalness = 0;
     m->layers.specular_ior = (1 + root) / (1 - root);
     m->ks = max > 0 ? colour_scale(specular, 1 / max) : specular;
@@ -252,7 +252,7 @@ static bool read_layer_maps(struct gltf *g, const json_t *extensions, struct mod
     const struct openpbr *layers = &m->layers;
     const double transmission = m->transmission > 0, thickness = layers->film_weight > 0 ? layers->film_thickness : 0;
     const json_t *film = json_object_get(extensions, "KHR_materials_iridescence");
-    const double thinnest = fmax(number_or(film, "iridescenceThicknessMinimum", 100), 0) / 1000;
+    const double thinnest = math_max(number_or(film, "iridescenceThicknessMinimum", 100), 0) / 1000;
     const struct {
         const char *extension, *key;
         enum material_input input;
@@ -313,7 +313,8 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     m->roughness = share(rough, "roughnessFactor", 1);
     read_film(json_object_get(extensions, "KHR_materials_iridescence"), &m->layers);
     /* 20 / Abbe's number. */
-    m->dispersion = fmax(number_or(json_object_get(extensions, "KHR_materials_dispersion"), "dispersion", 0), 0) / 20;
+    m->dispersion =
+        math_max(number_or(json_object_get(extensions, "KHR_materials_dispersion"), "dispersion", 0), 0) / 20;
     m->transmission = share(json_object_get(extensions, "KHR_materials_transmission"), "transmissionFactor", 0);
     const json_t *gloss = json_object_get(extensions, "KHR_materials_pbrSpecularGlossiness");
     return read_volume(g, volume, m, where) && read_scattering(g, extensions, m, where) &&
@@ -330,7 +331,7 @@ static bool read_emission(struct gltf *g, const json_t *source, struct model_mat
     if (!gltf_numbers(g, source, "emissiveFactor", emitted, 3, where))
         return false;
     m->ke = colour_scale(colour_make(emitted[0], emitted[1], emitted[2]),
-                         fmax(number_or(strength, "emissiveStrength", 1), 0));
+                         math_max(number_or(strength, "emissiveStrength", 1), 0));
     return colour_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where);
 }
 
@@ -359,7 +360,7 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     if (blend || mask) { /* the alpha channel of the colour's picture; factors below 1 apply before the cut */
         double cutoff = number_or(source, "alphaCutoff", 0.5);
         m->map_d.by_alpha = true;
-        m->map_d.cutoff = blend ? 0 : base[3] > 0 ? fmax(cutoff / base[3], 1e-9) : INFINITY;
+        m->map_d.cutoff = blend ? 0 : base[3] > 0 ? math_max(cutoff / base[3], 1e-9) : INFINITY;
         if (!read_map(g, colours, picture, &m->map_d, where))
             return false;
     }

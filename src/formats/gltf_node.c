@@ -174,7 +174,7 @@ static bool lens_of(const json_t *source, struct model_camera *camera) {
     const json_t *orthographic = json_object_get(source, "orthographic");
     if (type && strcmp(type, "perspective") == 0) {
         camera->vertical_angle = number_or(perspective, "yfov", 0);
-        camera->aspect = fmax(number_or(perspective, "aspectRatio", 0), 0);
+        camera->aspect = math_max(number_or(perspective, "aspectRatio", 0), 0);
         return camera->vertical_angle > 0 && camera->vertical_angle < PI && number_in_range(camera->aspect);
     }
     for (int i = 0; i < 2; i++)
@@ -204,7 +204,7 @@ static bool shine_of(const json_t *source, struct model_light *light) {
     const char *type = json_string_value(json_object_get(source, "type"));
     const json_t *spot = json_object_get(source, "spot");
     const json_t *colour = json_object_get(source, "color");
-    double light_of[3] = {1, 1, 1}, strength = fmax(number_or(source, "intensity", 1), 0);
+    double light_of[3] = {1, 1, 1}, strength = math_max(number_or(source, "intensity", 1), 0);
     bool known = false;
     for (int i = 0; type && i < 3; i++)
         if (strcmp(type, kinds[i]) == 0) {
@@ -212,9 +212,9 @@ static bool shine_of(const json_t *source, struct model_light *light) {
             known = true;
         }
     for (size_t i = 0; colour && i < 3; i++)
-        light_of[i] = fmax(json_number_value(json_array_get(colour, i)), 0);
+        light_of[i] = math_max(json_number_value(json_array_get(colour, i)), 0);
     light->intensity = colour_scale(colour_make(light_of[0], light_of[1], light_of[2]), strength);
-    light->range = fmax(number_or(source, "range", 0), 0);
+    light->range = math_max(number_or(source, "range", 0), 0);
     light->outer = number_or(spot, "outerConeAngle", PI / 4);
     light->inner = number_or(spot, "innerConeAngle", 0);
     return known && colour_within(light->intensity, NUMBER_LIMIT) && number_in_range(light->range) &&

@@ -474,7 +474,7 @@ static bool add_colour(struct ply *ply, const double value[SCALARS], double scal
         return no_memory(ply);
     bool fine = isfinite(value[RED]) && isfinite(value[GREEN]) && isfinite(value[BLUE]);
     for (int k = 0; k < 3; k++)
-        c[k] = fine ? (float)number_clamped(fmax(value[RED + k] * scale, 0), 1) : 1;
+        c[k] = fine ? (float)number_clamped(math_max(value[RED + k] * scale, 0), 1) : 1;
     ply->mesh->colours.count++;
     if (!fine)
         left_out_add(&ply->odd_colours, position_of_row(ply));

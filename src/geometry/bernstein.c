@@ -6,6 +6,7 @@
 #include "geometry/bernstein.h"
 
 #include "math/bracket.h"
+#include "math/portable.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -84,7 +85,7 @@ static double bracketed_root(const double *b, int degree) {
         return b[0] / (b[0] - b[1]);
     /* Does not start at an end: it may be a zero that counts as positive, with the root elsewhere. */
     struct bracket at = {.lo = 0, .hi = 1, .last_step = 1, .rising = b[0] < 0};
-    at.x = fmin(fmax(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
+    at.x = math_min(math_max(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
     for (int i = 0; i < 100; i++) {
         double slope, value = value_and_slope(b, degree, at.x, &slope);
         if (value == 0)
@@ -121,7 +122,7 @@ int bernstein_roots(const double *b, int degree, double *out) {
     double scale = 0;
     for (int i = 0; i <= degree; i++) {
         stack[0].b[i] = b[i];
-        scale = fmax(scale, fabs(b[i]));
+        scale = math_max(scale, fabs(b[i]));
     }
     stack[0].lo = 0;
     stack[0].width = 1;
@@ -136,7 +137,7 @@ int bernstein_roots(const double *b, int degree, double *out) {
         if (changes > 1) {
             double largest = 0;
             for (int i = 0; i <= degree; i++)
-                largest = fmax(largest, fabs(piece.b[i]));
+                largest = math_max(largest, fabs(piece.b[i]));
             if (piece.depth < DEEPEST && largest > NOISE * scale) {
                 struct piece *right = &stack[depth], *left = &stack[depth + 1];
                 bernstein_split(piece.b, degree, 0.5, left->b, right->b);

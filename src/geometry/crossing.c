@@ -126,7 +126,7 @@ static void take(struct mapped u, struct mapped v, struct surface *out) {
         along_u = vec3_negate(along_u);
         facing = -facing;
     }
-    facing = fmax(facing, STEEPEST);
+    facing = math_max(facing, STEEPEST);
     out->has_uv = true;
     out->u = away ? u.at : 1 - u.at;
     out->v = v.at;

@@ -114,7 +114,7 @@ static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double sid
 static inline struct vec3 hit_start_behind(const struct hit *hit, const struct ray *from, struct vec3 direction) {
     struct vec3 unit = vec3_normalize(direction);
     double turned = vec3_length(vec3_add(unit, hit->view)), along = vec3_dot(unit, vec3_normalize(hit->dpdu));
-    double past = fmin(turned / fmax(1 - along * along, 0x1p-40), 4);
+    double past = math_min(turned / math_max(1 - along * along, 0x1p-40), 4);
     double rounding = hit->offset + 0x1p-42 * vec3_max_abs(from->origin);
     return vec3_add_scaled(ray_at(from, hit->t), unit, rounding + hit->behind * past);
 }

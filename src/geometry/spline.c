@@ -4,6 +4,7 @@
 #include "geometry/spline.h"
 
 #include "geometry/bernstein.h"
+#include "math/portable.h"
 #include <math.h>
 #include <string.h>
 static const double *point_at(const struct spline_input *in, int64_t i, double mirrored[4]) {
@@ -191,8 +192,8 @@ void outline_range(const double b[4], double *lo, double *hi) {
     int count = 2 + bernstein_roots(slope, 2, stops + 2);
     for (int k = 0; k < count; k++) {
         double value = cubic_value(b, stops[k]);
-        *lo = fmin(*lo, value);
-        *hi = fmax(*hi, value);
+        *lo = math_min(*lo, value);
+        *hi = math_max(*hi, value);
     }
 }
 

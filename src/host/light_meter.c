@@ -34,8 +34,8 @@ static double exposure_of(const struct film *film, double *luminances) {
     for (size_t i = 0; i < count; i++)
         sum += el_log2(luminances[i]);
     double mean = el_exp2(sum / (double)count), high = luminances[(count - 1) * 95 / 100];
-    double stops = el_log2(fmax(bright / high, dark / mean));
-    return floor(fmin(fmax(stops, -EXPOSURE_MAX), EXPOSURE_MAX) * 64 + 0.5) / 64;
+    double stops = el_log2(math_max(bright / high, dark / mean));
+    return floor(math_min(math_max(stops, -EXPOSURE_MAX), EXPOSURE_MAX) * 64 + 0.5) / 64;
 }
 
 static bool measure(const struct render_job *job, struct pool *pool, double *stops, struct error *error) {
@@ -87,9 +87,9 @@ bool light_meter_measure(struct picture_work *work, struct error *error) {
         height /= (double)lens->rows * lens_grids(lens);
         lens->rows = lens->columns = 0;
     }
-    double scale = fmin(1, (double)WIDTH / fmax(width, height));
-    job.width = (uint32_t)fmax(width * scale, 1);
-    job.height = (uint32_t)fmax(height * scale, 1);
+    double scale = math_min(1, (double)WIDTH / math_max(width, height));
+    job.width = (uint32_t)math_max(width * scale, 1);
+    job.height = (uint32_t)math_max(height * scale, 1);
     settings_set_draft(&job.settings, DRAFT_QUICK);
     job.settings.cropped = false;
     job.settings.noise = job.settings.time_limit = 0;

@@ -76,7 +76,7 @@ static struct camera thumbnail_camera(const struct model_work *work, const struc
         for (size_t v = 0; v < part->points.count; v++) {
             struct vec3 to = vec3_sub(export_points(part)[v], middle);
             double along = vec3_dot(to, view), across = vec3_length(vec3_add_scaled(to, view, -along));
-            distance = fmax(distance, across / slope - along);
+            distance = math_max(distance, across / slope - along);
         }
     }
     return (struct camera){vec3_add_scaled(middle, view, -distance), view, work->up, fov};
@@ -100,7 +100,7 @@ static bool put_into_list(void *list, const void *bytes, size_t size, struct err
 static bool encode_thumbnail(const struct film *film, const struct tone *tone, struct list *out, struct error *error) {
     uint32_t longer = film->width > film->height ? film->width : film->height;
     double scale = longer > THUMBNAIL ? (double)THUMBNAIL / longer : 1;
-    uint32_t width = (uint32_t)fmax(1, scale * film->width), height = (uint32_t)fmax(1, scale * film->height);
+    uint32_t width = (uint32_t)math_max(1, scale * film->width), height = (uint32_t)math_max(1, scale * film->height);
     struct thumbnail thumbnail = {width, mem_alloc((size_t)3 * width * height)};
     const struct png_source source = {
         .width = width, .height = height, .bytes = thumbnail_row, .context = &thumbnail, .srgb = tone->srgb};

@@ -36,9 +36,10 @@
 #include <unistd.h>
 
 /* The Lua library: $GRAY_LUA, else relative to the program as it is installed (PREFIX/bin/gray and
- * PREFIX/share/gray/lua), else above it in the source tree (build/release/gray and lua). NULL when there is none. */
+ * PREFIX/share/gray/lua), else above it in the source tree (build/release/gray and lua), else in the tree where it was
+ * compiled. NULL when there is none. */
 static const char *find_library(struct arena *arena) {
-    static const char *const folders[] = {"../share/gray/lua", "lua", "../lua", "../../lua"};
+    static const char *const folders[] = {"../share/gray/lua", "lua", "../lua", "../../lua", GRAY_SOURCES "/lua"};
     char program[4096], folder[4096];
     const char *given = getenv("GRAY_LUA");
     if (given && given[0] != '\0')
@@ -48,10 +49,11 @@ static const char *find_library(struct arena *arena) {
     char *slash = strrchr(program, '/');
     if (!slash)
         return NULL;
-    *slash = '\0';
+    slash[1] = '\0';
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
-        const char *probe = arena_format(arena, "%s/%s/readobj.lua", program, folders[i]);
-        const char *candidate = arena_format(arena, "%s/%s", program, folders[i]);
+        const char *base = folders[i][0] == '/' ? "" : program;
+        const char *probe = arena_format(arena, "%s%s/readobj.lua", base, folders[i]);
+        const char *candidate = arena_format(arena, "%s%s", base, folders[i]);
         if (probe && candidate && file_is_regular(probe) && file_canonical(candidate, folder, sizeof folder))
             return arena_format(arena, "%s", folder);
     }

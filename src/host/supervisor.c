@@ -46,7 +46,7 @@ static void show_notes(struct supervisor *supervisor) {
 static void leave_abandoned(struct supervisor *supervisor) {
     if (!supervisor->output.farm || supervisor->ended || !farm_is_abandoned(supervisor->output.farm))
         return;
-    text_print_line(stderr, "gray: the first rank of the farm has been silent for too long, this one ends");
+    text_print_line(standard_error(), "gray: the first rank of the farm has been silent for too long, this one ends");
     supervisor_interrupt(supervisor);
     supervisor_note_status(supervisor, ERROR_CANCELLED);
 }
@@ -329,7 +329,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     if (!output_flush_streams(&supervisor->output, &error))
         supervisor_note_error(supervisor, &error);
     end_farm(supervisor);
-    standard_streams_end(&supervisor->streams);
+    standard_streams_end();
     if (supervisor->signals >= 0)
         (void)close(supervisor->signals);
     mem_unshare(supervisor->control, sizeof *supervisor->control);

@@ -111,7 +111,7 @@ bool supervisor_child_is_stalled(struct supervisor *supervisor) {
 }
 
 void supervisor_leave(struct supervisor *supervisor) {
-    standard_streams_end(&supervisor->streams);
+    standard_streams_end();
     (void)close(supervisor->signals);
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);

@@ -47,7 +47,7 @@ static double half_grid(const struct view_window *w, bool across) {
 }
 
 static double largest_aperture(const struct view_window *w) {
-    return fmax(half_grid(w, true), half_grid(w, false));
+    return math_max(half_grid(w, true), half_grid(w, false));
 }
 
 /* The eye stays in the field, and the plane in focus in front of it. */
@@ -56,13 +56,13 @@ static void limit(struct view_window *w) {
     if (w->view->is_field) {
         struct light_field_camera camera = view_camera(w->view, now);
         (void)light_field_clamp(&w->view->field.head, &camera);
-        now->at = vec3_make(camera.x, camera.y, fmin(camera.z, 0.9 * w->view->field.head.screen));
-        now->focus = fmax(now->focus, fmax(1e-3 * w->view->field.head.screen, 1e-3 - now->at.z));
-        now->aperture = fmin(fmax(now->aperture, 0), largest_aperture(w));
+        now->at = vec3_make(camera.x, camera.y, math_min(camera.z, 0.9 * w->view->field.head.screen));
+        now->focus = math_max(now->focus, math_max(1e-3 * w->view->field.head.screen, 1e-3 - now->at.z));
+        now->aperture = math_min(math_max(now->aperture, 0), largest_aperture(w));
     } else {
-        now->at.y = fmin(fmax(now->at.y, -90), 90);
+        now->at.y = math_min(math_max(now->at.y, -90), 90);
         now->at.x = remainder(now->at.x, 360);
-        now->fov = fmin(fmax(now->fov, 5), 150);
+        now->fov = math_min(math_max(now->fov, 5), 150);
     }
     w->outdated = true;
 }
@@ -146,7 +146,7 @@ static bool draw(struct view_window *w, bool coarse, struct error *error) {
     for (size_t i = 0; i < (size_t)3 * w->view->width * w->view->height; i++)
         w->bytes[i] = tone_byte(&tone, light[i]);
     double seconds = clock_now() - began, fits = divide * sqrt(seconds / picture_seconds);
-    w->divide = (uint32_t)fmin(fmax(ceil(fits - 0.1), 1), DIVIDE_LIMIT);
+    w->divide = (uint32_t)math_min(math_max(ceil(fits - 0.1), 1), DIVIDE_LIMIT);
     w->coarse = divide > 1;
     return true;
 }
@@ -188,9 +188,9 @@ static void fit(struct view_window *w, const struct window_event *event) {
             w->bytes = bytes;
         }
     }
-    double scale = fmin(event->x / w->width, event->y / w->height);
-    state->shown_width = (int)fmax(1, floor(w->width * scale));
-    state->shown_height = (int)fmax(1, floor(w->height * scale));
+    double scale = math_min(event->x / w->width, event->y / w->height);
+    state->shown_width = (int)math_max(1, floor(w->width * scale));
+    state->shown_height = (int)math_max(1, floor(w->height * scale));
     state->left = (int)(event->x - state->shown_width) / 2;
     state->top = (int)(event->y - state->shown_height) / 2;
     w->outdated = true;
@@ -330,7 +330,7 @@ static void handle(struct view_window *w, const struct window_event *event) {
 
 /* The arrow keys. */
 static void step_keys(struct view_window *w, double now) {
-    double seconds = fmin(now - w->stepped, 0.1), dx = w->held[FLY_RIGHT] - w->held[FLY_LEFT],
+    double seconds = math_min(now - w->stepped, 0.1), dx = w->held[FLY_RIGHT] - w->held[FLY_LEFT],
            dy = w->held[FLY_FORWARD] - w->held[FLY_BACK];
     double across = w->view->is_field ? 2 * half_grid(w, true) : 180,
            up = w->view->is_field ? 2 * half_grid(w, false) : 90;

@@ -280,7 +280,7 @@ bool exr_write_channels(const struct file_target *target, uint32_t width, uint32
 /* --- reading --- */
 
 static float bounded(float light) {
-    return light > 0 ? fminf(light, FLT_MAX) : 0; /* NaN too */
+    return light > FLT_MAX ? FLT_MAX : light > 0 ? light : 0; /* NaN too */
 }
 
 /* Floats of a pixel of a chunk. With 1, 3 or 4 the library takes shortcuts that do not know channels to skip. */

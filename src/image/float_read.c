@@ -65,7 +65,7 @@ static struct image *finish(struct reading *r, struct image *image, bool ok) {
 }
 
 static float bounded(double light) {
-    return light > 0 ? (float)fmin(light, FLT_MAX) : 0; /* NaN too */
+    return light > 0 ? (float)math_min(light, FLT_MAX) : 0; /* NaN too */
 }
 
 /* --- Radiance --- */

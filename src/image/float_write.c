@@ -4,6 +4,7 @@
 #include "image/float_write.h"
 
 #include "base/mem.h"
+#include "math/portable.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,8 +66,8 @@ bool pfm_write(const struct file_target *target, uint32_t width, uint32_t height
 void hdr_pixel(const float rgb[3], uint8_t out[4]) {
     double c[3], max = 0;
     for (int i = 0; i < 3; i++) {
-        c[i] = rgb[i] > 0 ? fmin((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest value */
-        max = fmax(max, c[i]);
+        c[i] = rgb[i] > 0 ? math_min((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest value */
+        max = math_max(max, c[i]);
     }
     memset(out, 0, 4);
     if (max < 0x1p-126)

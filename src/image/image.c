@@ -123,7 +123,7 @@ double image_brightest(const struct image *image) {
     if (image->bits != 32)
         return 1;
     struct rgba largest = image_largest(image);
-    return fmax(fmax(largest.r, largest.g), largest.b);
+    return math_max(math_max(largest.r, largest.g), largest.b);
 }
 
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
@@ -327,14 +327,14 @@ static struct rgba trilinear(const struct view *view, double level, double u, do
 /* Several trilinear samples along the wider side of the footprint, each as wide as its share. */
 static struct rgba mipmapped(const struct view *view, struct image_point at) {
     double texels_u = at.width_u * view->image->levels[0].width, texels_v = at.width_v * view->image->levels[0].height;
-    double wide = fmax(texels_u, texels_v), narrow = fmin(texels_u, texels_v);
+    double wide = math_max(texels_u, texels_v), narrow = math_min(texels_u, texels_v);
     if (!(wide > 1))
         return trilinear(view, 0, at.u, at.v);
-    double ratio = wide / fmax(narrow, 1);
+    double ratio = wide / math_max(narrow, 1);
     int taps = ratio < MAX_TAPS ? (int)ceil(ratio) : MAX_TAPS;
     double level = image_level_for(wide / taps, view->last);
-    double step_u = texels_u >= texels_v ? fmin(at.width_u, 1) / taps : 0;
-    double step_v = texels_u >= texels_v ? 0 : fmin(at.width_v, 1) / taps;
+    double step_u = texels_u >= texels_v ? math_min(at.width_u, 1) / taps : 0;
+    double step_v = texels_u >= texels_v ? 0 : math_min(at.width_v, 1) / taps;
     struct rgba sum = {0, 0, 0, 0};
     for (int i = 0; i < taps; i++) {
         double step = i - 0.5 * (taps - 1);

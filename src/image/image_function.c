@@ -156,12 +156,12 @@ static struct texel_span texels_in(double low, double high, uint32_t size, struc
     }
     bool is_nearest = how.filter == IMAGE_NEAREST;
     double start = is_nearest ? 0 : 0.5;
-    double first = floor(fmax(low, 0) * size - start - slack);
-    double last = floor(fmin(high, 1) * size - start + slack) + (is_nearest ? 0 : 1);
+    double first = floor(math_max(low, 0) * size - start - slack);
+    double last = floor(math_min(high, 1) * size - start + slack) + (is_nearest ? 0 : 1);
     if (wrap == IMAGE_REPEAT && (first < 0 || last >= size))
         return all;
-    first = fmin(fmax(first, 0), size - 1);
-    last = fmin(fmax(last, first), size - 1);
+    first = math_min(math_max(first, 0), size - 1);
+    last = math_min(math_max(last, first), size - 1);
     return (struct texel_span){(uint32_t)first, (uint32_t)last};
 }
 
@@ -195,7 +195,7 @@ static struct texel_span texels_of(const struct image_function *function, int ax
     double a = along(function, axis, x.low), b = along(function, axis, x.high);
     if (x.may_be_nan || isnan(a) || isnan(b))
         return (struct texel_span){0, size - 1};
-    return texels_in(fmin(a, b), fmax(a, b), size, function->sampling, axis);
+    return texels_in(math_min(a, b), math_max(a, b), size, function->sampling, axis);
 }
 
 /* Interpolation has errors of a few units in the last place of its texels. */
@@ -206,12 +206,12 @@ struct image_interval image_function_bounds(const struct image_function *functio
     if (!image->ranges || image->ranges->has_nan)
         return any;
     struct value_range range = range_of(image, channel, texels_of(function, 0, u), texels_of(function, 1, v));
-    double size = fmax(fabs(range.low[channel]), fabs(range.high[channel]));
+    double size = math_max(fabs(range.low[channel]), fabs(range.high[channel]));
     double error = function->sampling.filter == IMAGE_NEAREST ? 0 : 16 * DBL_EPSILON * size;
     struct rgba low = image_from_units((struct rgba){.a = range.low[channel] - error});
     struct rgba high = image_from_units((struct rgba){.a = range.high[channel] + error});
     double p = low.a * factor(function, channel), q = high.a * factor(function, channel);
     if (!isfinite(p) || !isfinite(q))
         return any;
-    return (struct image_interval){fmin(p, q), fmax(p, q), false};
+    return (struct image_interval){math_min(p, q), math_max(p, q), false};
 }

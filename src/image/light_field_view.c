@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 
 #include <math.h>
 #include <string.h>
@@ -256,7 +257,7 @@ static void prepare(struct drawing *d, const struct light_field_head *head, cons
                           .per_spacing = head->spacing > 0 ? 1 / head->spacing : 0,
                           .pixel = 2 * el_tan(head->fov * (PI / 360)) / head->height};
     d->per_pixel = 1 / d->pixel;
-    d->ratio = fmin((double)head->width / camera->width, (double)head->height / camera->height);
+    d->ratio = math_min((double)head->width / camera->width, (double)head->height / camera->height);
     d->shares[X] = camera->width / 2.0 * d->ratio;
     d->shares[Y] = camera->height / 2.0 * d->ratio;
     d->disparity = 1 / (camera->focus + camera->z);
@@ -278,8 +279,8 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
     }
     double half_width = middle_of(d.count[X]) * d.spacing, half_height = middle_of(d.count[Y]) * d.spacing;
     if (camera->z == 0) {
-        camera->x = fmin(fmax(camera->x, -half_width), half_width);
-        camera->y = fmin(fmax(camera->y, -half_height), half_height);
+        camera->x = math_min(math_max(camera->x, -half_width), half_width);
+        camera->y = math_min(math_max(camera->y, -half_height), half_height);
     }
     return outside;
 }
@@ -290,7 +291,7 @@ static double largest_disparity(const struct drawing *d) {
     for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->field->head.depth; i++) {
         const struct light_field_entry *entry = &d->field->entries[i];
         if (d->field->views[i])
-            largest = fmax(largest, fmax(entry->nearest - d->disparity, d->disparity - entry->farthest));
+            largest = math_max(largest, math_max(entry->nearest - d->disparity, d->disparity - entry->farthest));
     }
     return largest;
 }
@@ -302,7 +303,7 @@ static bool make_lens(struct drawing *d) {
     double blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
     d->point_count = 1;
     if (across > 0)
-        d->point_count = (uint32_t)fmin(fmax(ceil(PI * blur * blur), LENS_FEWEST), LENS_LIMIT);
+        d->point_count = (uint32_t)math_min(math_max(ceil(PI * blur * blur), LENS_FEWEST), LENS_LIMIT);
     d->points = mem_alloc_zero(d->point_count, sizeof *d->points);
     for (uint32_t i = 0; d->points && i < d->point_count && across > 0; i++) {
         double radius = d->camera.aperture * sqrt((i + 0.5) / d->point_count), sine, cosine;
@@ -382,14 +383,14 @@ static bool load_views(const struct drawing *d, struct light_field *field, struc
         double extent = d->camera.aperture * fabs(1 + d->camera.z * d->per_focus) * d->per_spacing;
         for (int k = 0; k < AXES; k++) {
             double u = among_cameras(d, k, ray.crossing[k]);
-            low[k] = fmin(low[k], u - extent);
-            high[k] = fmax(high[k], u + extent);
+            low[k] = math_min(low[k], u - extent);
+            high[k] = math_max(high[k], u + extent);
         }
     }
     uint32_t first[AXES], last[AXES];
     for (int k = 0; k < AXES; k++) {
-        first[k] = (uint32_t)floor(fmin(fmax(low[k], 0), d->count[k] - 1));
-        last[k] = (uint32_t)ceil(fmin(fmax(high[k], 0), d->count[k] - 1));
+        first[k] = (uint32_t)floor(math_min(math_max(low[k], 0), d->count[k] - 1));
+        last[k] = (uint32_t)ceil(math_min(math_max(high[k], 0), d->count[k] - 1));
     }
     const struct light_field_part part = {first[X], first[Y], last[X] - first[X] + 1, last[Y] - first[Y] + 1};
     return light_field_load_part(field, &part, pool, error);
@@ -400,7 +401,7 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     struct drawing d;
     prepare(&d, &field->head, camera);
     double wide = middle_of(d.count[X]), high = middle_of(d.count[Y]);
-    d.camera.aperture = fmin(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
+    d.camera.aperture = math_min(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
     d.field = field;
     d.out = out;
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
@@ -434,7 +435,7 @@ static double difference_at(const struct drawing *d, const struct light_field_pa
             taps[Y] = tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y]);
             add_pixels(d, d->field->views[row * d->field->head.columns + column], taps, 1, &seen);
             for (int c = 0; c < 3; c++) {
-                double light = fmax(0, seen.numbers[c] / seen.weight), value = light / (1 + light);
+                double light = math_max(0, seen.numbers[c] / seen.weight), value = light / (1 + light);
                 mean[c] += value / cameras;
                 square += value * value / cameras;
             }
@@ -451,7 +452,7 @@ static double find_agreement(const struct drawing *d, const struct light_field_p
     for (int i = 1; i <= 3 * STEPS_LIMIT; i++) {
         double difference = difference_at(d, part, pixel, i * step);
         best = difference < smallest ? i * step : best;
-        smallest = fmin(difference, smallest);
+        smallest = math_min(difference, smallest);
     }
     return best;
 }
@@ -467,8 +468,8 @@ bool light_field_distance(struct light_field *field, const struct light_field_ca
     struct field_ray ray = ray_of(&d, &(struct lens_point){{0, 0}}, pixel[X], pixel[Y]);
     for (int k = 0; k < AXES; k++) {
         double u = limited(among_cameras(&d, k, ray.crossing[k]), 0, d.count[k] - 1);
-        first[k] = (uint32_t)fmax(0, floor_of(u) - 1);
-        count[k] = (uint32_t)fmin(4, d.count[k] - first[k]);
+        first[k] = (uint32_t)math_max(0, floor_of(u) - 1);
+        count[k] = (uint32_t)math_min(4, d.count[k] - first[k]);
     }
     part = (struct light_field_part){first[X], first[Y], count[X], count[Y]};
     error->text[0] = '\0';

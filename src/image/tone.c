@@ -3,6 +3,9 @@
 #include "image/tone.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
+
+#include "math/portable.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +21,7 @@ double tone_table_slope(const struct tone_table *table) {
     double max = 0;
     for (int i = 1; i < TONE_ENTRIES; i++) {
         double rise = fabs((double)table->values[i] - (double)table->values[i - 1]);
-        max = fmax(max, rise / (tone_table_light(i) - tone_table_light(i - 1)));
+        max = math_max(max, rise / (tone_table_light(i) - tone_table_light(i - 1)));
     }
     return max;
 }
@@ -77,7 +80,7 @@ void tone_bytes_make(const struct tone *tone, struct tone_bytes *out) {
         float light;
         memcpy(&light, &bits, sizeof light);
         double c = tone_apply(&unexposed, (double)light);
-        out->bytes[i] = (uint8_t)(c > 0 ? floor(255 * fmin(c, 1) + 0.5) : 0);
+        out->bytes[i] = (uint8_t)(c > 0 ? floor(255 * math_min(c, 1) + 0.5) : 0);
     }
 }
 

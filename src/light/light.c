@@ -337,7 +337,7 @@ static double largest(struct colour c) {
 static double mesh_brightest(const struct light_mesh *mesh) {
     double max = 0;
     for (uint32_t i = 0; i < mesh->count; i++)
-        max = fmax(max, largest(light_triangle_radiance(&mesh->triangles[i])));
+        max = math_max(max, largest(light_triangle_radiance(&mesh->triangles[i])));
     return max;
 }
 
@@ -402,7 +402,7 @@ enum light_extent light_bounds_of(const struct light *light, uint32_t part, stru
     case LIGHT_SPOT:
         light_bounds_fade(light, out);
         out->axis = light->direction;
-        out->cos_theta_o = fmax(-1, fmin(1, light->cos_outer) - 0x1p-40);
+        out->cos_theta_o = math_max(-1, math_min(1, light->cos_outer) - 0x1p-40);
         break;
     case LIGHT_PARALLELOGRAM:
         if (light_is_delta(light)) {
@@ -514,8 +514,8 @@ bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 
     const struct light *light = emitter->light;
     switch (light->kind) {
     case LIGHT_SPOT: {
-        double angle = el_acos(fmax(-1, fmin(1, vec3_dot(axis, light->direction))));
-        double outer = el_acos(fmax(-1, fmin(1, light->cos_outer)));
+        double angle = el_acos(math_max(-1, math_min(1, vec3_dot(axis, light->direction))));
+        double outer = el_acos(math_max(-1, math_min(1, light->cos_outer)));
         return angle < outer + el_acos(cos_half);
     }
     case LIGHT_PARALLELOGRAM: /* behind its plane in some directions, behind it between them */

@@ -28,8 +28,8 @@ static void work_out(struct light_bounds *b) {
 }
 
 bool light_bounds_finish(struct light_bounds *b) {
-    b->steady = fmin(b->steady, max);
-    b->attenuation = fmin(b->attenuation, max);
+    b->steady = math_min(b->steady, max);
+    b->attenuation = math_min(b->attenuation, max);
     work_out(b);
     return b->steady + b->attenuation > 0 && vec3_finite(b->box.min) && vec3_finite(b->box.max);
 }
@@ -37,7 +37,7 @@ bool light_bounds_finish(struct light_bounds *b) {
 /* --- unions --- */
 
 static double angle_of(double cosine) {
-    return el_acos(fmax(-1, fmin(1, cosine)));
+    return el_acos(math_max(-1, math_min(1, cosine)));
 }
 
 /* v turned by the angle towards `to`, a unit vector at right angles to it. */
@@ -54,27 +54,27 @@ static struct vec3 join_cones(struct vec3 axis_a, double cos_a, struct vec3 axis
     if (cos_a <= -1 || (cos_b >= 1 && cosine >= cos_a)) /* without a call of the arc cosine */
         return axis_a;
     double a = angle_of(cos_a), b = angle_of(cos_b), apart = angle_of(cosine);
-    if (fmin(apart + b, PI) <= a)
+    if (math_min(apart + b, PI) <= a)
         return axis_a;
     *cos_half = cos_b;
-    if (fmin(apart + a, PI) <= b)
+    if (math_min(apart + a, PI) <= b)
         return axis_b;
     double half = (a + apart + b) / 2;
     struct vec3 across = vec3_sub(axis_b, vec3_scale(axis_a, cosine));
     *cos_half = -1;
     if (half >= PI || !(vec3_length(across) > 0))
         return axis_a;
-    *cos_half = fmax(-1, el_cos(half) - 0x1p-40);
+    *cos_half = math_max(-1, el_cos(half) - 0x1p-40);
     return turned(axis_a, vec3_normalize(across), half - a);
 }
 
 struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b) {
     struct light_bounds out = {.box = box_join(a->box, b->box),
-                               .cos_theta_e = fmin(a->cos_theta_e, b->cos_theta_e),
+                               .cos_theta_e = math_min(a->cos_theta_e, b->cos_theta_e),
                                .two_sided = a->two_sided || b->two_sided,
-                               .steady = fmin(a->steady + b->steady, max),
-                               .attenuation = fmin(a->attenuation + b->attenuation, max),
-                               .range = fmax(a->range, b->range)};
+                               .steady = math_min(a->steady + b->steady, max),
+                               .attenuation = math_min(a->attenuation + b->attenuation, max),
+                               .range = math_max(a->range, b->range)};
     struct vec3 axis_b = b->axis;
     if (a->two_sided && b->two_sided && vec3_dot(a->axis, b->axis) < 0)
         axis_b = vec3_negate(axis_b);
@@ -181,16 +181,17 @@ static bool cut_cone(const struct light *light, struct vec3 origin, struct vec3 
     double rest = b * b - a * (start * start - square * vec3_dot(o, o));
     if (!(rest > 0) || a == 0)
         return a == 0;
-    double root = sqrt(rest), one = (-b - root) / a, two = (-b + root) / a, low = fmin(one, two), high = fmax(one, two);
+    double root = sqrt(rest), one = (-b - root) / a, two = (-b + root) / a, low = math_min(one, two),
+           high = math_max(one, two);
     if (a < 0) {
         if (start + along * (low + high) / 2 < 0)
             return false;
-        *from = fmax(*from, low);
-        *to = fmin(*to, high);
+        *from = math_max(*from, low);
+        *to = math_min(*to, high);
     } else if (along > 0) {
-        *from = fmax(*from, high);
+        *from = math_max(*from, high);
     } else {
-        *to = fmin(*to, low);
+        *to = math_min(*to, low);
     }
     return *from < *to;
 }

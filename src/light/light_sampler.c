@@ -34,7 +34,7 @@ struct building {
 
 /* The solid angle of the directions in which a cone of normals shines, those near its rim by their cosine. */
 static double cone_measure(const struct light_bounds *b) {
-    double theta_o = el_acos(b->cos_theta_o), theta_e = el_acos(b->cos_theta_e), all = fmin(theta_o + theta_e, PI);
+    double theta_o = el_acos(b->cos_theta_o), theta_e = el_acos(b->cos_theta_e), all = math_min(theta_o + theta_e, PI);
     double sin_o, cos_o;
     el_sincos(theta_o, &sin_o, &cos_o);
     double inside = 2 * PI * (1 - cos_o);
@@ -206,7 +206,7 @@ static bool build_shares(struct light_sampler *out, const struct building *b, ui
     /* Sums that end at exactly 1, whatever was rounded. */
     for (uint32_t i = 0; i < out->count; i++) {
         double begin = so_far;
-        so_far = i + 1 < out->count ? fmin(so_far + until[i] / sum, 1) : 1;
+        so_far = i + 1 < out->count ? math_min(so_far + until[i] / sum, 1) : 1;
         until[i] = so_far;
         share[out->first_part[candidates[i].light] + candidates[i].triangle] = so_far - begin;
     }
@@ -313,7 +313,7 @@ static struct light_part sample_tree(const struct light_sampler *s, struct vec3 
         bool first = u < share;
         node = first ? one : other;
         *pmf *= first ? share : b / (a + b);
-        u = fmin(first ? u / share : (u - share) / (1 - share), below_one);
+        u = math_min(first ? u / share : (u - share) / (1 - share), below_one);
     }
     return s->nodes[node].part;
 }
@@ -357,7 +357,7 @@ struct light_part light_sampler_sample(const struct light_sampler *s, struct vec
         return no_part;
     if (u < tree) {
         *pmf = tree;
-        return sample_tree(s, point, normal, fmin(u / tree, below_one), pmf);
+        return sample_tree(s, point, normal, math_min(u / tree, below_one), pmf);
     }
     double position = (u - tree) / (1 - tree) * s->infinite_count;
     uint32_t number = position < s->infinite_count ? (uint32_t)position : s->infinite_count - 1;

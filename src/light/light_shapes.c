@@ -26,8 +26,8 @@ void light_plane_prepare(struct light *light) {
     plane->across = vec3_cross(light->edge1, light->edge2);
     plane->area = vec3_length(plane->across);
     plane->normal = light->kind == LIGHT_DISC ? light->direction : vec3_normalize(plane->across);
-    plane->size = fmax(vec3_max_abs(light->position) + light->radius,
-                       vec3_max_abs(light->corner) + vec3_max_abs(light->edge1) + vec3_max_abs(light->edge2));
+    plane->size = math_max(vec3_max_abs(light->position) + light->radius,
+                           vec3_max_abs(light->corner) + vec3_max_abs(light->edge1) + vec3_max_abs(light->edge2));
     if (light->kind == LIGHT_PARALLELOGRAM) {
         plane->frame = rectangle_frame_make(light->edge1, light->edge2);
         return;
@@ -105,7 +105,8 @@ struct box light_parallelogram_box(const struct light *light) {
 
 struct box light_disc_box(const struct light *light) {
     struct vec3 n = light->direction;
-    struct vec3 sines = {sqrt(fmax(0, 1 - n.x * n.x)), sqrt(fmax(0, 1 - n.y * n.y)), sqrt(fmax(0, 1 - n.z * n.z))};
+    struct vec3 sines = {sqrt(math_max(0, 1 - n.x * n.x)), sqrt(math_max(0, 1 - n.y * n.y)),
+                         sqrt(math_max(0, 1 - n.z * n.z))};
     return light_box_centred(light->position, vec3_scale(sines, light->radius));
 }
 

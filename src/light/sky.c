@@ -284,7 +284,7 @@ static struct colour cross_colour(const struct sky *sky, struct vec3 d, double s
     /* A cone of angle e around the unit direction d cuts the plane at distance 1 in an ellipse of about e / depth by
      * e / depth^2; the face is 2 wide there. */
     struct level fine = level_at(sky, 0);
-    double texels = spread > 0 ? spread / (2 * depth * sqrt(depth)) * fmax(fine.width, fine.height) : 0;
+    double texels = spread > 0 ? spread / (2 * depth * sqrt(depth)) * math_max(fine.width, fine.height) : 0;
     double level = texels > 1 ? image_level_for(texels, last_level(sky)) : 0;
     int lower = (int)level;
     fine = level_at(sky, lower);
@@ -379,18 +379,18 @@ static double unturned_brightest(const struct sky *sky) {
         return image_brightest(sky->image);
     case SKY_FACES:
         for (int i = 0; i < 6; i++)
-            max = fmax(max, image_brightest(sky->faces[i]));
+            max = math_max(max, image_brightest(sky->faces[i]));
         return max;
     case SKY_STOPS:
         for (uint32_t i = 0; i < sky->stop_count; i++)
-            max = fmax(max, largest(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+            max = math_max(max, largest(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
         return max;
     case SKY_CLEAR:
         /* Brightest at the sun or at the horizon below it. */
         max = largest(sky_clear_colour(&sky->clear, sky->clear.sun));
-        max = fmax(max, largest(sky_clear_colour(&sky->clear,
-                                                 vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
-        return fmax(max, largest(sky->clear.ground));
+        max = math_max(max, largest(sky_clear_colour(
+                                &sky->clear, vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
+        return math_max(max, largest(sky->clear.ground));
     case SKY_FUNCTION:
         return sky->largest;
     }
@@ -409,7 +409,7 @@ bool sky_is_black(const struct sky *sky) {
         break;
     case SKY_STOPS:
         for (uint32_t i = 0; i < sky->stop_count; i++)
-            max = fmax(max, colour_max_abs(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+            max = math_max(max, colour_max_abs(colour_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
         break;
     case SKY_GRADIENT:
     case SKY_CROSS:

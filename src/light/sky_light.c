@@ -70,7 +70,7 @@ static double angle_down(const struct patch *p) {
 }
 
 static double angle_of(const struct sky *sky, const struct patch *p) {
-    return fmax(angle_across(sky, p), angle_down(p));
+    return math_max(angle_across(sky, p), angle_down(p));
 }
 
 static double luminance_at(const struct sky *sky, double x, double y, double spread) {
@@ -105,7 +105,7 @@ static double mean_luminance(const struct sky *sky, const struct patch *p) {
 
 /* Of a picture: above 0 if any texel shines into the patch. */
 static double wide_luminance(const struct sky *sky, const struct patch *p) {
-    return middle_luminance(sky, p, fmax(4 * angle_of(sky, p), 2 * texel_angle(sky)));
+    return middle_luminance(sky, p, math_max(4 * angle_of(sky, p), 2 * texel_angle(sky)));
 }
 
 /* --- bounds of a function --- */
@@ -124,8 +124,9 @@ static void patch_directions(const struct sky *sky, const struct patch *p, struc
     struct expr_affine along = {(1 + cosine) / 2, {0, 0}, (1 - cosine) / 2};
     struct expr_affine aside = {0, {sine, 0}, half * half * half / 15};
     /* The distance from the axis grows or falls with height along an arc of a circle. */
-    double top = sqrt(4 * p->y * (1 - p->y)), end = p->y + p->height, bottom = sqrt(fmax(0, 4 * end * (1 - end)));
-    double chord = (4 * p->height * p->height + (top - bottom) * (top - bottom)) / 4, slack = sqrt(fmax(0, 1 - chord));
+    double top = sqrt(4 * p->y * (1 - p->y)), end = p->y + p->height, bottom = sqrt(math_max(0, 4 * end * (1 - end)));
+    double chord = (4 * p->height * p->height + (top - bottom) * (top - bottom)) / 4,
+           slack = sqrt(math_max(0, 1 - chord));
     double sagitta = 2 * slack * chord / ((1 + slack) * (top + bottom));
     struct expr_affine level = {(top + bottom + sagitta) / 2, {0, (top - bottom) / 2}, sagitta / 2};
     d[0] = expr_affine_multiply(level, expr_affine_add(expr_affine_scale(along, c), expr_affine_scale(aside, -s)));
@@ -278,9 +279,9 @@ static bool divide(struct division *d, uint32_t at) {
 static bool divide_parts(struct division *d) {
     for (uint32_t begin = 1, end = d->count; begin < end && d->count < MAX_PARTS; begin = end, end = d->count) {
         /* At most BREADTH of them. */
-        double limit = unknown_share * fmax(0, d->light);
+        double limit = unknown_share * math_max(0, d->light);
         for (uint32_t chosen = BREADTH + 1; chosen > BREADTH;
-             limit = chosen > BREADTH ? fmax(2 * limit, 0x1p-1000) : limit) {
+             limit = chosen > BREADTH ? math_max(2 * limit, 0x1p-1000) : limit) {
             chosen = 0;
             for (uint32_t i = begin; i < end; i++)
                 chosen += d->parts[i].unknown > limit;
@@ -428,7 +429,7 @@ static double sample_parts(const struct sky_table *table, size_t cell, double at
         part = &table->parts[part->halves + second];
     }
     for (int axis = 0; axis < 2; axis++)
-        at[axis] = low[axis] + size[axis] * fmin(at[axis], 1);
+        at[axis] = low[axis] + size[axis] * math_min(at[axis], 1);
     return density;
 }
 
@@ -465,7 +466,7 @@ struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table
 
 /* *within: the position inside of the cell. */
 static uint32_t cell_index(double x, uint32_t count, double *within) {
-    double cell = fmin(fmax(floor(x * count), 0), count - 1.0);
+    double cell = math_min(math_max(floor(x * count), 0), count - 1.0);
     *within = x * count - cell;
     return (uint32_t)cell;
 }

@@ -101,7 +101,7 @@ static double block(const uint16_t (*values)[ALBEDO_ROUGHNESSES][ALBEDO_COSINES]
  * difference has a cusp at the angle of total reflection; facets of little roughness reflect as a smooth boundary. */
 double albedo_reflection(double cosine, double roughness, double eta) {
     double units = block(reflection_table[eta > 1], cosine, roughness, eta);
-    double rough = eta > 1 ? fmin(fmax(16 * roughness - 1, 0), 1) : 0;
+    double rough = eta > 1 ? math_min(math_max(16 * roughness - 1, 0), 1) : 0;
     if (rough == 1)
         return share(units);
     double smooth = 65535 * dielectric_fresnel(cosine, eta);

@@ -376,7 +376,7 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
         return lobe->share;
     if (!bsdf->fresnel_of_facets || !(flags & BSDF_TRACED) || (flags & BSDF_DELTA))
         return 1;
-    double reflected = fmin(fmax(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
+    double reflected = math_min(math_max(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
     return flags & BSDF_TRANSMITS ? 1 - reflected : reflected;
 }
 

@@ -71,7 +71,7 @@ double bsdf_lambert(const struct bsdf *bsdf) {
     double largest = 0;
     for (int i = 0; i < bsdf->count; i++)
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
-            largest = fmax(largest, colour_max_abs(bsdf->lobes[i].weight));
+            largest = math_max(largest, colour_max_abs(bsdf->lobes[i].weight));
     return largest;
 }
 

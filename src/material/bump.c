@@ -34,7 +34,7 @@ static double height_at(const struct texture_image *image, struct texcoord at, d
 /* The distance of the two lookups of the image. */
 static double step_of(double width, uint32_t texels) {
     double texel = 1 / (double)texels;
-    return width > texel ? fmin(width, 1) : texel;
+    return width > texel ? math_min(width, 1) : texel;
 }
 
 static void turn_by_heights(const struct surface_bump *bump, const struct texture_image *image, const struct hit *hit,
@@ -87,7 +87,7 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
 static bool slopes_by_differences(const struct surface_bump *bump, const struct texture_tables *textures,
                                   const struct hit *hit, double slopes[2]) {
     struct vec3 a, b;
-    double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
+    double step = math_max(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
     if (!(step > 0))
         return false;
     frame_tangents(vec3_normalize(hit->pattern_normal), &a, &b);

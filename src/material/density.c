@@ -57,7 +57,7 @@ const struct density *density_of_function(struct arena *arena, const struct dens
         return NULL;
     }
     for (uint64_t i = 0; i < count; i++) {
-        double high = fmin((double)bounds[i][1] * in->looseness, in->bound);
+        double high = math_min((double)bounds[i][1] * in->looseness, in->bound);
         if (!(high <= (double)FLT_MAX)) {
             (void)error_set(error, ERROR_SCENE,
                             "gray finds no bound of the density of %s; give one with bound = NUMBER",
@@ -90,8 +90,8 @@ static void bound_cell(struct density *density, uint64_t cell, double looseness)
         for (uint64_t y = first[1]; y <= last[1]; y++)
             for (uint64_t x = first[0]; x <= last[0]; x++) {
                 float value = density->values[x + n[0] * (y + n[1] * z)];
-                low = fminf(low, value);
-                high = fmaxf(high, value);
+                low = (float)math_min(low, value);
+                high = (float)math_max(high, value);
             }
     /* Interpolation rounds. */
     density->bounds[cell][0] = low * (1 - 0x1p-20F);
@@ -144,10 +144,10 @@ static double grid_at(const struct density *density, struct vec3 p) {
     for (int k = 0; k < 3; k++) {
         double n = density->count[k];
         double at = (vec3_get(p, k) - vec3_get(density->cells.corner, k)) / vec3_get(density->cells.size, k) * n - 0.5;
-        double low = fmin(fmax(floor(at), 0), n - 1);
-        shares[k] = fmin(fmax(at - low, 0), 1);
+        double low = math_min(math_max(floor(at), 0), n - 1);
+        shares[k] = math_min(math_max(at - low, 0), 1);
         offsets[k][0] = stride * (uint64_t)low;
-        offsets[k][1] = stride * (uint64_t)fmin(low + 1, n - 1);
+        offsets[k][1] = stride * (uint64_t)math_min(low + 1, n - 1);
         stride *= density->count[k];
     }
     double planes[2];
@@ -168,7 +168,7 @@ uint64_t density_cell(const struct density *density, struct vec3 p) {
     for (int k = 0; k < 3; k++) {
         double n = density->cells.count[k];
         double at = floor((vec3_get(p, k) - vec3_get(density->cells.corner, k)) / vec3_get(density->cells.size, k) * n);
-        cell += stride * (uint64_t)fmin(fmax(at, 0), n - 1);
+        cell += stride * (uint64_t)math_min(math_max(at, 0), n - 1);
         stride *= density->cells.count[k];
     }
     return cell;

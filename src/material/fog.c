@@ -63,7 +63,7 @@ static double grid_depth(const struct fog *fog, struct vec3 o, struct vec3 d, do
     if (!fog_traversal_begin(&traversal, &cells, o, d, distance))
         return 0;
     while (fog_traversal_next(&traversal, &cell, &from, &to))
-        sum += fog->densities[cell] * fmax(to - from, 0);
+        sum += fog->densities[cell] * math_max(to - from, 0);
     return sum;
 }
 

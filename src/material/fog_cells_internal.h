@@ -36,8 +36,8 @@ static inline bool fog_cells_clip(const struct fog_cells *cells, struct vec3 o, 
             continue;
         }
         double a = (low - start) / step, b = (high - start) / step;
-        *from = fmax(*from, a < b ? a : b);
-        *to = fmin(*to, a < b ? b : a);
+        *from = math_max(*from, a < b ? a : b);
+        *to = math_min(*to, a < b ? b : a);
     }
     return *from < *to;
 }
@@ -77,7 +77,7 @@ static inline bool fog_traversal_next(struct fog_traversal *traversal, uint64_t 
     *cell = (uint64_t)traversal->cell[0] +
             count[0] * ((uint64_t)traversal->cell[1] + count[1] * (uint64_t)traversal->cell[2]);
     *from = traversal->t;
-    *to = traversal->t = fmin(next[axis], traversal->to);
+    *to = traversal->t = math_min(next[axis], traversal->to);
     traversal->next[axis] += traversal->delta[axis];
     traversal->cell[axis] += traversal->step[axis];
     return true;

@@ -99,11 +99,11 @@ static bool find_bounds(const struct fog_cells *cells, const struct expr_program
         expr_evaluate_intervals(program, &in, out, NULL, rows);
         for (uint32_t i = 0; i < in.count; i++) {
             for (int k = 0; k < program->output_count; k++)
-                *largest = fmax(*largest, out[k].high[i]);
+                *largest = math_max(*largest, out[k].high[i]);
             /* Rounded outwards: singles must contain the doubles. */
             if (bounds) {
-                bounds[first + i][0] = (float)fmin(fmax(0, out[0].low[i]), FLT_MAX);
-                bounds[first + i][1] = round_up(fmax(0, out[0].high[i]));
+                bounds[first + i][0] = (float)math_min(math_max(0, out[0].low[i]), FLT_MAX);
+                bounds[first + i][1] = round_up(math_max(0, out[0].high[i]));
             }
         }
     }
@@ -155,7 +155,7 @@ static double largest_at_points(const struct fog_field *field) {
     for (uint64_t i = 0; i < CHECKED_POINTS; i++) {
         evaluate(field->colour, checked_point(&field->cells, i), 0, out);
         for (int k = 0; k < field->colour->output_count; k++)
-            largest = isfinite(out[k]) ? fmax(largest, out[k]) : largest;
+            largest = isfinite(out[k]) ? math_max(largest, out[k]) : largest;
     }
     return largest;
 }

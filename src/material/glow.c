@@ -30,7 +30,7 @@ const struct heat *heat_make(struct arena *arena, const struct density *kelvin, 
     heat->kelvin = kelvin;
     const float(*bounds)[2] = density_cells(kelvin, &cells);
     for (uint64_t i = 0; i < fog_cell_count(&cells); i++)
-        heat->top = fmax(heat->top, (double)bounds[i][1]);
+        heat->top = math_max(heat->top, (double)bounds[i][1]);
     for (int i = 0; i <= HEAT_STEPS && heat->top > 0; i++)
         heat->light[i] = spectrum_black_body(heat->top * el_exp(el_log(HEAT_SPAN) * ((double)i / HEAT_STEPS - 1)));
     return heat;
@@ -41,7 +41,7 @@ static struct colour light_of(const struct heat *heat, double kelvin) {
     if (!(at > 0))
         return colour_all(0);
     int step = at < HEAT_STEPS ? (int)at : HEAT_STEPS - 1;
-    double share = fmin(at - step, 1);
+    double share = math_min(at - step, 1);
     return colour_add(colour_scale(heat->light[step], 1 - share), colour_scale(heat->light[step + 1], share));
 }
 

@@ -129,8 +129,8 @@ static void add_rough_pane(const struct surface_inputs *inputs, double reflect, 
     add_lobe(bsdf, LOBE_PANE, colour_scale(inputs->ks, refract), 0);
     if (!inputs->fresnel)
         return;
-    bsdf->lobes[bsdf->count - 2].share = fmax(bsdf->fresnel, 1.0 / 16);
-    bsdf->lobes[bsdf->count - 1].share = fmax(1 - bsdf->fresnel, 1.0 / 16);
+    bsdf->lobes[bsdf->count - 2].share = math_max(bsdf->fresnel, 1.0 / 16);
+    bsdf->lobes[bsdf->count - 1].share = math_max(1 - bsdf->fresnel, 1.0 / 16);
 }
 
 static void set_lobes(const struct surface_inputs *inputs, const struct material_context *context, struct bsdf *bsdf) {

@@ -102,7 +102,7 @@ double medium_brightest(const struct medium *medium) {
     struct colour source = medium->fog ? medium->fog->colour : source_of(medium, medium->emission);
     if (medium->heat)
         source = colour_mul(source, heat_brightest(medium->heat));
-    return fmax(source.r, fmax(source.g, source.b));
+    return math_max(source.r, math_max(source.g, source.b));
 }
 
 /* That of one medium. */
@@ -166,7 +166,8 @@ double medium_flight_chance(const struct medium_flight *flight, struct colour ex
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u) {
     const struct medium_flight flight = medium_fly(medium->extinction, throughput, u);
-    struct medium_sample sample = {.scatters = flight.distance < distance, .distance = fmin(flight.distance, distance)};
+    struct medium_sample sample = {.scatters = flight.distance < distance,
+                                   .distance = math_min(flight.distance, distance)};
     struct colour left = uniform_transmittance(medium->extinction, sample.distance);
     double chance = medium_flight_chance(&flight, medium->extinction, left, sample.scatters);
     sample.weight =

@@ -111,7 +111,7 @@ static bool next_piece(struct pieces *pieces) {
         pieces->low[i] = here ? traversal->low : 0;
         pieces->high[i] = here ? traversal->high : 0;
         if (pieces->inside[i])
-            to = fmin(to, here ? traversal->to : traversal->from);
+            to = math_min(to, here ? traversal->to : traversal->from);
     }
     pieces->to = to;
     return true;
@@ -230,7 +230,7 @@ static const double thin = 0x1p-20;
 
 static double sample_depth(double rate, double length, double u) {
     double whole = rate > 0 ? -el_expm1(-rate * length) : 0;
-    return whole > thin ? fmin(-el_log(1 - u * whole) / rate, length) : u * length;
+    return whole > thin ? math_min(-el_log(1 - u * whole) / rate, length) : u * length;
 }
 
 static double depth_pdf(double rate, double length, double depth) {

@@ -80,8 +80,9 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
     double coat = v->coat_weight * reflectance(v->coat_ior);
     double gloss = reflectance(openpbr_ior(v->specular_ior, v->specular_weight)) * colour_max_abs(numbers.ks);
     double roughness = v->coat_weight > 0.5 ? v->coat_roughness : numbers.roughness;
-    double width = fmax(roughness * roughness, 0.03), exponent = 2 / (width * width) - 2, share = fmin(gloss + coat, 1);
-    double weight = fmin(share * (exponent + 8) / 8, largest);
+    double width = math_max(roughness * roughness, 0.03), exponent = 2 / (width * width) - 2,
+           share = math_min(gloss + coat, 1);
+    double weight = math_min(share * (exponent + 8) / 8, largest);
     struct colour colour = colour_scale(numbers.kd, v->base_weight * (1 - v->subsurface_weight));
     colour = colour_min(colour_add_scaled(colour, v->subsurface_colour, v->subsurface_weight), colour_all(1));
     out->shininess = exponent / 4;
@@ -100,10 +101,11 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
     struct colour fuzz = colour_scale(colour_min(v->fuzz_colour, colour_all(1)), cover);
     out->kd = colour_scale(colour_add(below, fuzz), (1 - metal) * (1 - share));
     out->ks = colour_add(colour_scale(colour_all(weight), 1 - metal), colour_scale(colour, metal));
-    out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? fmin(share / weight, 1) : 0);
+    out->reflect = metal + (1 - metal) * (roughness < matt && weight > 0 ? math_min(share / weight, 1) : 0);
     out->roughness = out->reflect > 0 && roughness > smooth ? roughness : 0;
     double rays = out->glossy_samples > 0 ? out->glossy_samples : 4; /* N of N x N; fewer show a small share as well */
-    out->glossy_samples = (int)fmin(fmax(floor(0.75 * rays * sqrt(metal + (1 - metal) * share) + 0.5), 1), rays);
+    out->glossy_samples =
+        (int)math_min(math_max(floor(0.75 * rays * sqrt(metal + (1 - metal) * share) + 0.5), 1), rays);
     if (textured && metal > 0) { /* its colour is that of reflections */
         textures[INPUT_KS] = textures[INPUT_KD];
         textures[INPUT_KD] = &black;
@@ -221,7 +223,7 @@ static void add_fuzz(struct layering *l) {
 }
 
 static struct colour root(struct colour c) {
-    return colour_make(sqrt(fmax(c.r, 0)), sqrt(fmax(c.g, 0)), sqrt(fmax(c.b, 0)));
+    return colour_make(sqrt(math_max(c.r, 0)), sqrt(math_max(c.g, 0)), sqrt(math_max(c.b, 0)));
 }
 
 /* The share of light that passes a coat with this reflectance and colour. */
@@ -249,7 +251,7 @@ static void add_coat(struct layering *l) {
     l->coated = 0;
     if (!(v->coat_weight > 0) || l->inside)
         return;
-    double cosine = l->coat_turns ? fmin(vec3_dot(l->coat_side, l->view), 1) : l->cosine;
+    double cosine = l->coat_turns ? math_min(vec3_dot(l->coat_side, l->view), 1) : l->cosine;
     double reflected = dielectric_fresnel(cosine, eta);
     l->coated = v->coat_weight;
     l->coat_sees = reflected;
@@ -320,11 +322,11 @@ static double roughness_below(const struct layering *l) {
 static void set_film(struct layering *l, double wavelength) {
     const struct openpbr *v = l->values;
     bool there = v->film_weight > 0 && v->film_thickness > 0;
-    l->bsdf->film.weight = there ? fmin(v->film_weight, 1) : 0;
+    l->bsdf->film.weight = there ? math_min(v->film_weight, 1) : 0;
     if (!there)
         return;
     l->bsdf->film.thickness = v->film_thickness;
-    l->bsdf->film.ior = fmax(v->film_ior, 0.01);
+    l->bsdf->film.ior = math_max(v->film_ior, 0.01);
     l->bsdf->film.before = l->outside + l->coated * (v->coat_ior - l->outside);
     l->bsdf->film.wavelength = wavelength;
 }
@@ -365,7 +367,8 @@ static void add_metal(struct layering *l, double roughness) {
     if (!(v->base_metalness > 0))
         return;
     struct colour weight = colour_scale(l->left, v->base_metalness * (v->specular_weight < 1 ? v->specular_weight : 1));
-    struct bsdf_facets *facets = add_facets(l, v->tangent, fmax(roughness, smooth_roughness), v->specular_anisotropy);
+    struct bsdf_facets *facets =
+        add_facets(l, v->tangent, math_max(roughness, smooth_roughness), v->specular_anisotropy);
     bsdf_facets_metal(facets, colour_scale(l->inputs->kd, v->base_weight), l->inputs->ks);
     struct colour mean = metal_average(l, facets);
     weight = darken(l, weight, mean, l->coat_sees + roughness * (l->coat_inside - l->coat_sees));
@@ -413,7 +416,7 @@ static void add_subsurface(struct layering *l, const struct hit *hit, bool walks
 
 /* Diffuse light, and that from under the surface in its place. */
 static void add_opaque(struct layering *l, const struct hit *hit, bool walks, struct colour left) {
-    double share = fmin(l->values->subsurface_weight, 1);
+    double share = math_min(l->values->subsurface_weight, 1);
     if (share > 0) {
         l->bsdf->albedo =
             colour_add_scaled(colour_scale(l->bsdf->albedo, 1 - share), l->values->subsurface_colour, share);
@@ -468,7 +471,7 @@ static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, st
     struct colour through = let_through(l);
     /* It leaves after several of them, to this side or the other. */
     double lack = facets->lack_seen, single = 1 - facets->reflected - lack;
-    add(l, has_film(l) ? LOBE_FILM_GLASS : LOBE_GLASS, through, fmax(single, min_glass_share));
+    add(l, has_film(l) ? LOBE_FILM_GLASS : LOBE_GLASS, through, math_max(single, min_glass_share));
     add(l, LOBE_FACETS_MULTIPLE, colour_mul(all, lost), lack * (1 - facets->through));
     add(l, LOBE_FACETS_THROUGH, colour_mul(through, lost), lack * facets->through);
     if (colour_is_black(l->turned))
@@ -477,7 +480,7 @@ static void add_rough_passage(struct layering *l, struct bsdf_facets *facets, st
     *turning = *facets;
     bsdf_facets_metal(turning, colour_all(1), colour_all(1));
     add_metal_facets(l, turning, colour_all(1),
-                     colour_scale(colour_mul(all, l->turned), fmax(single, 0) + lack * facets->through));
+                     colour_scale(colour_mul(all, l->turned), math_max(single, 0) + lack * facets->through));
 }
 
 /* What the facets of a rough boundary reflect, and the colour of what they lose. */

@@ -43,7 +43,7 @@ struct vec3 phase_sample(const struct phase *phase, struct vec3 wo, struct sampl
         c = rayleigh_cosine(u.x);
         break;
     }
-    c = fmin(fmax(c, -1), 1);
+    c = math_min(math_max(c, -1), 1);
     struct vec3 forward = vec3_negate(wo), side, up;
     frame_tangents(forward, &side, &up);
     el_sincos(TURN * u.y, &sine, &cosine);

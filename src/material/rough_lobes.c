@@ -41,7 +41,7 @@ void bsdf_facets_shape(struct bsdf_facets *facets, struct vec3 normal, struct ve
     }
     double other = 1 - anisotropy, alpha = roughness * roughness * sqrt(2 / (1 + other * other));
     out->alpha_along = alpha < 1 ? alpha : 1;
-    out->alpha_across = fmax(alpha * other, 1e-6);
+    out->alpha_across = math_max(alpha * other, 1e-6);
     double square = out->alpha_along * out->alpha_along + out->alpha_across * out->alpha_across;
     facets->roughness = anisotropy > 0 ? sqrt(sqrt(square / 2)) : roughness;
 }
@@ -67,7 +67,7 @@ static const double stretch_min_index = 1.1, stretch_max_index = 2.5, stretch_mi
 
 /* The node below a position from 0 to 1, and how far beyond it. */
 static int node_below(double position, int count, double *beyond) {
-    double at = fmin(fmax(position, 0), 1) * (count - 1);
+    double at = math_min(math_max(position, 0), 1) * (count - 1);
     int node = at < count - 1 ? (int)at : count - 2;
     *beyond = at - node;
     return node;
@@ -94,7 +94,7 @@ static double mean_lack(const struct bsdf_facets *facets, double mean_albedo, do
     double lack = 1 - mean_albedo;
     if (!is_stretched(facets))
         return lack;
-    return fmin(lack * albedo_stretch_average(d->alpha_along, d->alpha_across) * boundary_stretch(d, eta), 1);
+    return math_min(lack * albedo_stretch_average(d->alpha_along, d->alpha_across) * boundary_stretch(d, eta), 1);
 }
 
 void bsdf_facets_boundary(struct bsdf_facets *facets, double eta) {
@@ -185,7 +185,7 @@ static double fujii_a(double roughness) {
 
 /* Portsmouth et al. 2024, equation 5: pi f divided by the colour. */
 static double fujii(double roughness, double n_o, double n_i, double o_i) {
-    double a = fujii_a(roughness), s = o_i - n_o * n_i, t = s > 0 ? fmax(n_o, n_i) : 1;
+    double a = fujii_a(roughness), s = o_i - n_o * n_i, t = s > 0 ? math_max(n_o, n_i) : 1;
     return a * (1 + roughness * s / t);
 }
 
@@ -345,7 +345,7 @@ static struct colour film_share(const struct colour shares[FILM_STEPS + 1], doub
     double across = eta * eta * (1 - cosine * cosine);
     if (across >= 1)
         return colour_all(1);
-    double at = FILM_STEPS * fmin(eta > 1 ? sqrt(1 - across) : cosine, 1);
+    double at = FILM_STEPS * math_min(eta > 1 ? sqrt(1 - across) : cosine, 1);
     int i = at < FILM_STEPS ? (int)at : FILM_STEPS - 1;
     return colour_add_scaled(shares[i], colour_sub(shares[i + 1], shares[i]), at - i);
 }
@@ -394,7 +394,7 @@ static double lack_towards(const struct bsdf_facets *facets, struct vec3 directi
         return stretched ? sums_of_boundary(&facets->distribution, direction, eta, NULL).lack.r
                          : 1 - albedo_boundary(fabs(height), facets->roughness, eta);
     double lack = 1 - albedo_mirror(fabs(height), facets->roughness);
-    return stretched ? fmin(lack * stretch_towards(facets, direction), 1) : lack;
+    return stretched ? math_min(lack * stretch_towards(facets, direction), 1) : lack;
 }
 
 void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view) {

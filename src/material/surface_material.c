@@ -175,8 +175,7 @@ bool surface_passes(const struct surface_material *surface) {
 
 bool surface_walks(const struct surface_material *surface) {
     const struct openpbr *v = &surface->openpbr;
-    return surface->has_layers &&
-           (v->subsurface_weight > 0 || surface_has_texture(surface, INPUT_SUBSURFACE_WEIGHT)) &&
+    return surface->has_layers && (v->subsurface_weight > 0 || surface_has_texture(surface, INPUT_SUBSURFACE_WEIGHT)) &&
            (v->subsurface_radius > 0 || surface_has_texture(surface, INPUT_SUBSURFACE_RADIUS));
 }
 
@@ -248,12 +247,12 @@ static double layers_specular(const struct surface_material *surface) {
         return 1;
     if (surface_has_texture(surface, INPUT_SPECULAR_IOR) || surface_has_texture(surface, INPUT_SPECULAR_WEIGHT) ||
         v->film_weight > 0 || surface_has_texture(surface, INPUT_FILM_WEIGHT))
-        base = fmax(base, 0.04);
+        base = math_max(base, 0.04);
     if (!surface_has_texture(surface, INPUT_KS))
         base *= colour_max_abs(surface->phong.ks);
     if (surface_has_texture(surface, INPUT_COAT_IOR))
-        coat = fmax(coat, 0.04);
-    return fmax(base, surface_has_texture(surface, INPUT_COAT_WEIGHT) ? coat : v->coat_weight * coat);
+        coat = math_max(coat, 0.04);
+    return math_max(base, surface_has_texture(surface, INPUT_COAT_WEIGHT) ? coat : v->coat_weight * coat);
 }
 
 /* The highlight's colour from textures is not known here; it may be white. */
@@ -262,7 +261,7 @@ double surface_specular(const struct surface_material *surface) {
     bool filtered = surface_has_texture(surface, INPUT_KS);
     double amount = surface->fresnel ? 1 : numbers->reflect + numbers->refract;
     double specular = amount > 0 ? amount * (filtered ? 1 : colour_max_abs(numbers->ks)) : 0;
-    return surface->has_layers ? fmax(specular, layers_specular(surface)) : specular;
+    return surface->has_layers ? math_max(specular, layers_specular(surface)) : specular;
 }
 
 /* Of metal, F82 with a tint above 1 (blue of brass) is at most Schlick's formula and -edge c (1 - c)^6; Schlick's
@@ -273,7 +272,7 @@ static double metal_albedo_bound(struct colour f0, struct colour tint) {
     double bound = colour_max_abs(f0);
     for (int c = 0; c < 3; c++) {
         if (-colour_get(facets.edge, c) > 5 * (1 - colour_get(f0, c)))
-            bound = fmax(bound, colour_get(tint, c));
+            bound = math_max(bound, colour_get(tint, c));
     }
     return bound;
 }
@@ -299,7 +298,7 @@ static double layers_albedo_bound(const struct surface_tables *tables, const str
                                v->subsurface_colour);
     double coat = layer_bound(tables, surface, INPUT_COAT_WEIGHT, v->coat_weight, INPUT_COAT_COLOUR, v->coat_colour);
     double fuzz = layer_bound(tables, surface, INPUT_FUZZ_WEIGHT, v->fuzz_weight, INPUT_FUZZ_COLOUR, v->fuzz_colour);
-    return fmax(fmax(fmax(base, fmin(below, 1)), transmission) * fmax(coat, 1), fuzz);
+    return math_max(math_max(math_max(base, math_min(below, 1)), transmission) * math_max(coat, 1), fuzz);
 }
 
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */
@@ -315,6 +314,6 @@ double surface_albedo_bound(const struct surface_tables *tables, const struct su
         return layers_albedo_bound(tables, surface,
                                    metal_albedo_bound(colour_scale(colour, openpbr->base_weight), numbers->ks));
     if (openpbr)
-        return layers_albedo_bound(tables, surface, fmax(diffuse, colour_max_abs(numbers->ks)));
+        return layers_albedo_bound(tables, surface, math_max(diffuse, colour_max_abs(numbers->ks)));
     return diffuse + (specular > 0 ? specular : colour_max_abs(numbers->ks) * 2 / (exponent + 1));
 }

@@ -206,7 +206,7 @@ struct colour texture_map_colour(const struct texture_operation *map, struct col
 /* --- without a hit --- */
 
 static struct colour larger(struct colour a, struct colour b) {
-    return colour_make(fmax(a.r, b.r), fmax(a.g, b.g), fmax(a.b, b.b));
+    return colour_make(math_max(a.r, b.r), math_max(a.g, b.g), math_max(a.b, b.b));
 }
 
 static struct colour estimate_image(const struct texture_image *image, struct colour under,

@@ -58,7 +58,7 @@ static void footprint_axes(const struct hit *hit, struct vec3 axes[2]) {
         along = vec3_normalize(along);
     else
         frame_tangents(n, &along, &axes[1]);
-    axes[0] = vec3_scale(along, hit->footprint * fmin(1 / fabs(cosine), MAX_STRETCH));
+    axes[0] = vec3_scale(along, hit->footprint * math_min(1 / fabs(cosine), MAX_STRETCH));
     axes[1] = vec3_scale(vec3_cross(n, along), hit->footprint);
 }
 
@@ -125,7 +125,8 @@ static void box_of(const struct expr_program *program, const struct region *regi
 /* The number of points for which the standard error of the mean is below 1/27 if the values are uniform between the
  * bounds. The bounds are usually two or three times too wide. Values above 1 count relative to their magnitude. */
 static int points_for(struct expr_interval bounds, int max) {
-    double size = fmax(fmax(fabs(bounds.low), fabs(bounds.high)), 1), width = 8 * (bounds.high - bounds.low) / size;
+    double size = math_max(math_max(fabs(bounds.low), fabs(bounds.high)), 1),
+           width = 8 * (bounds.high - bounds.low) / size;
     int count = 1;
     while (count < max && !(width * width <= count))
         count *= 2;
@@ -292,7 +293,8 @@ static int count_slope_points(const struct texture_operation *texture, const str
             if (ranges[k].is_nan || slope.may_be_nan || !isfinite(slope.low) || !isfinite(slope.high))
                 return 0;
             double p = height * slope.low, q = height * slope.high;
-            int wanted = points_for((struct expr_interval){fmin(p, q), fmax(p, q), false}, texture->recorded.points);
+            int wanted =
+                points_for((struct expr_interval){math_min(p, q), math_max(p, q), false}, texture->recorded.points);
             count = wanted > count ? wanted : count;
         }
     }

@@ -107,7 +107,7 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
 /* Euler and Rodrigues; W. R. Hamilton, "On Quaternions", 1844. Divided by the square of the length, so that the length
  * of q does not matter. */
 struct transform transform_rotate_quaternion(double w, struct vec3 v) {
-    double max = fmax(fabs(w), vec3_max_abs(v));
+    double max = math_max(fabs(w), vec3_max_abs(v));
     int exponent;
     (void)frexp(max, &exponent);
     w = ldexp(w, -exponent);
@@ -128,7 +128,7 @@ double transform_stretch(const struct transform *t) {
     double stretch = 0;
     for (int i = 0; i < 3; i++) {
         const double *row = t->forward.m[i];
-        stretch = fmax(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
+        stretch = math_max(stretch, fabs(row[0]) + fabs(row[1]) + fabs(row[2]));
     }
     return stretch;
 }

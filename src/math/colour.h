@@ -3,6 +3,8 @@
 #ifndef GRAY_MATH_COLOUR_H
 #define GRAY_MATH_COLOUR_H
 
+#include "math/portable.h"
+
 #include <math.h>
 #include <stdbool.h>
 

@@ -1,4 +1,4 @@
-/* Elementary functions with the same bits on every x86-64 processor: the only ones allowed for pixels.
+/* Elementary functions with the same bits on every processor: the only ones allowed for pixels.
  *
  * libm chooses between variants by processor (with and without FMA), and their last bits differ. These use + - * / and
  * square root in double precision, rounding to nearest, and integer operations, nothing else.

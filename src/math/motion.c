@@ -21,8 +21,8 @@ static const double bounds_step = 5; /* degrees between the moments that bounds 
 static double norm_product(const struct affine *a) {
     double rows = 0, columns = 0;
     for (int i = 0; i < 3; i++) {
-        rows = fmax(rows, fabs(a->m[i][0]) + fabs(a->m[i][1]) + fabs(a->m[i][2]));
-        columns = fmax(columns, fabs(a->m[0][i]) + fabs(a->m[1][i]) + fabs(a->m[2][i]));
+        rows = math_max(rows, fabs(a->m[i][0]) + fabs(a->m[i][1]) + fabs(a->m[i][2]));
+        columns = math_max(columns, fabs(a->m[0][i]) + fabs(a->m[1][i]) + fabs(a->m[2][i]));
     }
     return rows * columns;
 }
@@ -38,7 +38,7 @@ static struct affine polar_turn(const struct affine *linear) {
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
                 double next = 0.5 * (g * turn.m[i][j] + both.inverse.m[j][i] / g);
-                change = fmax(change, fabs(next - turn.m[i][j]));
+                change = math_max(change, fabs(next - turn.m[i][j]));
                 turn.m[i][j] = next;
             }
         }
@@ -193,7 +193,7 @@ static bool is_finite(const struct box *box) {
 static struct box turned_bounds(const struct box *box, struct vec3 axis, double from, double to) {
     double radius = 0;
     for (unsigned i = 0; i < 8; i++)
-        radius = fmax(radius, vec3_length(vec3_cross(axis, box_corner(box, i))));
+        radius = math_max(radius, vec3_length(vec3_cross(axis, box_corner(box, i))));
     int steps = 1 + (int)(fabs(to - from) / bounds_step);
     double step = (to - from) / steps, half_sine = el_sin(step * degree / 4);
     double off = radius * 2 * half_sine * half_sine; /* 1 - cos(x) = 2 sin(x / 2)^2 */

@@ -27,6 +27,7 @@
 #include <string.h>
 
 #include "math/exact.h"
+#include "math/portable.h"
 
 static int exponent_of(double x) {
     int exponent;
@@ -37,10 +38,10 @@ static int exponent_of(double x) {
 /* Adds two roots in any order to the result; those that overflowed are left out. */
 static int two_roots(double r, double s, double out[2]) {
     int count = 0;
-    if (isfinite(fmin(r, s)))
-        out[count++] = fmin(r, s);
-    if (isfinite(fmax(r, s)))
-        out[count++] = fmax(r, s);
+    if (isfinite(math_min(r, s)))
+        out[count++] = math_min(r, s);
+    if (isfinite(math_max(r, s)))
+        out[count++] = math_max(r, s);
     return count;
 }
 
@@ -234,7 +235,7 @@ static int choose_shift(const double *c, int degree, double lo, double hi) {
         if (share + 1 > shift)
             shift = share + 1;
     }
-    double extent = fmax(fabs(lo), fabs(hi));
+    double extent = math_max(fabs(lo), fabs(hi));
     if (isfinite(extent) && extent > 0.0 && exponent_of(extent) < shift)
         shift = exponent_of(extent);
     return shift > 1023 ? 1023 : shift;
@@ -249,7 +250,8 @@ static int roots_shifted(const double *scaled, int degree, int shift, double lo,
     if (degree <= 2) {
         count = roots_quadratic(degree == 2 ? scaled[2] : 0.0, scaled[1], scaled[0], found);
     } else {
-        count = roots_scaled(scaled, degree, fmax(ldexp(lo, -shift), -1.0), fmin(ldexp(hi, -shift), 1.0), found);
+        count =
+            roots_scaled(scaled, degree, math_max(ldexp(lo, -shift), -1.0), math_min(ldexp(hi, -shift), 1.0), found);
     }
     for (int i = 0; i < count; i++) {
         double root = ldexp(found[i], shift);
@@ -280,10 +282,10 @@ static int roots_ranged(const double *c, int degree, double lo, double hi, doubl
     /* A coefficient that may decide small roots underflows: these roots are computed in another unit. For |y| >= 2^-60
      * it is far below the largest term (2^-60 to the power 12). */
     double edge = ldexp(1.0, shift - 60), all[3 * ROOTS_MAX_DEGREE];
-    int count = roots_shifted(scaled, degree, shift, lo, fmin(hi, nextafter(-edge, -INFINITY)), all);
+    int count = roots_shifted(scaled, degree, shift, lo, math_min(hi, nextafter(-edge, -INFINITY)), all);
     if (lo <= edge && hi >= -edge)
-        count += roots_ranged(c, degree, fmax(lo, -edge), fmin(hi, edge), all + count);
-    count += roots_shifted(scaled, degree, shift, fmax(lo, nextafter(edge, INFINITY)), hi, all + count);
+        count += roots_ranged(c, degree, math_max(lo, -edge), math_min(hi, edge), all + count);
+    count += roots_shifted(scaled, degree, shift, math_max(lo, nextafter(edge, INFINITY)), hi, all + count);
     count = drop_pairs(all, count, degree);
     memcpy(out, all, (size_t)count * sizeof *out);
     return count;

@@ -197,10 +197,10 @@ struct vec3 spherical_triangle_point(const struct spherical_triangle *seen, stru
     double u = t - cos_alpha, v = s + sin_alpha * seen->cos_ab;
     double q = ((v * t - u * s) * cos_alpha - v) / ((v * s + u * t) * sin_alpha);
     q = q < 1 ? limited(q, seen->cos_ac, 1) : 1; /* on the arc; at its end a, where q may be 0 / 0 */
-    struct vec3 end = vec3_add_scaled(vec3_scale(seen->a, q), seen->across, sqrt(fmax(0, (1 - q) * (1 + q))));
+    struct vec3 end = vec3_add_scaled(vec3_scale(seen->a, q), seen->across, sqrt(math_max(0, (1 - q) * (1 + q))));
     double cos_end = vec3_dot(end, seen->b), z = 1 - xi.y * (1 - cos_end);
     struct vec3 aside = vec3_add_scaled(end, seen->b, -cos_end);
-    double length = vec3_length(aside), along = length > 0 ? sqrt(fmax(0, (1 - z) * (1 + z))) / length : 0;
+    double length = vec3_length(aside), along = length > 0 ? sqrt(math_max(0, (1 - z) * (1 + z))) / length : 0;
     return triangle_in_direction(seen, vec3_add_scaled(vec3_scale(seen->b, z), aside, along));
 }
 

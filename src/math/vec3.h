@@ -3,6 +3,8 @@
 #ifndef GRAY_MATH_VEC3_H
 #define GRAY_MATH_VEC3_H
 
+#include "math/portable.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -48,7 +50,7 @@ static inline double vec3_max_abs(struct vec3 a) {
     double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z), max = x > y ? x : y;
     return max > z ? max : z;
 }
-/* By comparison, which is one instruction; fmin and fmax are function calls because of NaN. */
+/* By comparison, which is one instruction; math_min and math_max also look for NaN. */
 static inline struct vec3 vec3_min(struct vec3 a, struct vec3 b) {
     return (struct vec3){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }

@@ -339,8 +339,8 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
             items[kept++] = items[i];
     /* On a closed mesh entries and exits alternate, whatever was rounded. */
     if (mesh->closed) {
-        double size =
-            fmax(vec3_max_abs(ray->origin), fmax(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
+        double size = math_max(vec3_max_abs(ray->origin),
+                               math_max(vec3_max_abs(mesh->bounds.min), vec3_max_abs(mesh->bounds.max)));
         alternate(items, kept, mesh->outward, size * 0x1p-46 / vec3_max_abs(ray->direction));
     }
     scratch->used = out->first + kept;

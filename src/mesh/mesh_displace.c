@@ -190,8 +190,8 @@ static bool refuse(const struct division *d, const struct mesh_displacement *by,
     double longest = 0;
     for (uint32_t f = 0; f < d->face_count; f++)
         for (int k = 0; k < 3; k++)
-            longest =
-                fmax(longest, edge_length(d, d->faces[f].corners[k].vertex, d->faces[f].corners[(k + 1) % 3].vertex));
+            longest = math_max(longest,
+                               edge_length(d, d->faces[f].corners[k].vertex, d->faces[f].corners[(k + 1) % 3].vertex));
     if (by->edge > 0)
         return error_set(error, ERROR_SCENE, "edge = %g needs more than %d triangles; edge = %.3g is possible",
                          by->edge, DISPLACED_TRIANGLES, longest * 1.01);

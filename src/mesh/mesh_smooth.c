@@ -142,7 +142,7 @@ static double unit_of(const struct mesh_input *input) {
     double largest = 0;
     for (uint32_t i = 0; i < input->vertex_count; i++)
         for (int k = 0; k < 3; k++)
-            largest = fmax(largest, fabs(input->vertices[i][k]));
+            largest = math_max(largest, fabs(input->vertices[i][k]));
     int exponent = 0;
     if (largest > 0)
         (void)frexp(largest, &exponent);
@@ -172,7 +172,7 @@ static void face_normals(struct smoothing *s) {
         double length = 0;
         for (uint32_t c = first; c < end; c++) {
             s->face_of[c] = f;
-            length = fmax(length, vec3_max_abs(vec3_sub(position(s, c), base)));
+            length = math_max(length, vec3_max_abs(vec3_sub(position(s, c), base)));
         }
         for (uint32_t c = first + 1; c + 1 < end; c++)
             sum = vec3_add(sum, vec3_cross(vec3_sub(position(s, c), base), vec3_sub(position(s, c + 1), base)));

@@ -353,7 +353,7 @@ bool mesh_weld_near(const double (*vertices)[3], uint32_t count, double distance
     size_t slots = 16;
     double largest = 0;
     for (size_t i = 0; i < 3 * (size_t)count; i++)
-        largest = fmax(largest, fabs(vertices[i / 3][i % 3]));
+        largest = math_max(largest, fabs(vertices[i / 3][i % 3]));
     /* Closer than the spacing of doubles is equal, and cells have no neighbours there. */
     if (distance < largest * 0x1p-50)
         return mesh_weld(vertices, count, same);

@@ -40,13 +40,13 @@ static double steps_needed(const double (*points)[3], double tolerance) {
         for (int i = 0; i < 4; i++) {
             struct vec3 p = point_of(points, 4 * j + i);
             if (i < 2)
-                uu = fmax(uu, second(p, point_of(points, 4 * j + i + 1), point_of(points, 4 * j + i + 2)));
+                uu = math_max(uu, second(p, point_of(points, 4 * j + i + 1), point_of(points, 4 * j + i + 2)));
             if (j < 2)
-                vv = fmax(vv, second(p, point_of(points, 4 * j + i + 4), point_of(points, 4 * j + i + 8)));
+                vv = math_max(vv, second(p, point_of(points, 4 * j + i + 4), point_of(points, 4 * j + i + 8)));
             if (i < 3 && j < 3)
-                uv = fmax(uv, vec3_length(vec3_add(
-                                  vec3_sub(p, point_of(points, 4 * j + i + 1)),
-                                  vec3_sub(point_of(points, 4 * j + i + 5), point_of(points, 4 * j + i + 4)))));
+                uv = math_max(uv, vec3_length(vec3_add(
+                                      vec3_sub(p, point_of(points, 4 * j + i + 1)),
+                                      vec3_sub(point_of(points, 4 * j + i + 5), point_of(points, 4 * j + i + 4)))));
         }
     return sqrt((6 * uu + 2 * 9 * uv + 6 * vv) / (8 * tolerance));
 }
@@ -75,7 +75,7 @@ static struct vec3 patch_normal(const double (*points)[3], uint32_t i, uint32_t 
     patch_point(points, i, j, n, &normal);
     double size = 0;
     for (int k = 1; k < 16; k++)
-        size = fmax(size, vec3_length(vec3_sub(point_of(points, k), point_of(points, 0))));
+        size = math_max(size, vec3_length(vec3_sub(point_of(points, k), point_of(points, 0))));
     if (vec3_length(normal) > 0x1p-40 * size * size)
         return normal;
     const uint32_t fine = 4096;
@@ -131,7 +131,7 @@ bool patch_tessellate(struct arena *arena, const struct patch_input *in, struct 
     if (!(size > 0))
         return error_set(error, ERROR_SCENE, "%s: all points of the patches are the same", in->name);
     for (uint32_t k = 0; k < in->count; k++)
-        steps = fmax(steps, steps_needed(in->points + 16 * (size_t)k, tolerance));
+        steps = math_max(steps, steps_needed(in->points + 16 * (size_t)k, tolerance));
     steps = ceil(steps);
     if (!(steps <= FINEST && steps * steps * in->count <= MAX_CELLS))
         return error_set(error, ERROR_SCENE,

@@ -87,8 +87,10 @@ static bool is_ear(const struct clipper *clipper, uint32_t tip, enum ear_class e
         return ear_class == EAR_ANY || area == 0 || (ear_class == EAR_BLOCKED && area > 0);
     if (!(area > 0))
         return false;
-    double x0 = fmin(ear[0]->x, fmin(ear[1]->x, ear[2]->x)), x1 = fmax(ear[0]->x, fmax(ear[1]->x, ear[2]->x));
-    double y0 = fmin(ear[0]->y, fmin(ear[1]->y, ear[2]->y)), y1 = fmax(ear[0]->y, fmax(ear[1]->y, ear[2]->y));
+    double x0 = math_min(ear[0]->x, math_min(ear[1]->x, ear[2]->x)),
+           x1 = math_max(ear[0]->x, math_max(ear[1]->x, ear[2]->x));
+    double y0 = math_min(ear[0]->y, math_min(ear[1]->y, ear[2]->y)),
+           y1 = math_max(ear[0]->y, math_max(ear[1]->y, ear[2]->y));
     for (uint32_t k = 0; k < clipper->shadow_cache; k++) {
         uint32_t q = c[k].listed;
         if (c[q].x < x0 || c[q].x > x1 || c[q].y < y0 || c[q].y > y1)

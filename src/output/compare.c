@@ -42,7 +42,7 @@ static void add_pixel(struct comparison *c, uint32_t x, uint32_t y) {
     pixel(c->b, x, y, b);
     for (int k = 0; k < c->channels; k++) {
         double gap = fabs(a[k] - b[k]);
-        largest = fmax(largest, gap);
+        largest = math_max(largest, gap);
         c->sum += gap;
         c->relative += gap * gap / (b[k] * b[k] + 0.01);
     }
@@ -62,7 +62,7 @@ static double *make_luma(const struct comparison *c, const struct image *image, 
     for (size_t i = 0; out && i < count; i++) {
         struct rgba t = image_texel(image, (uint32_t)(i % c->width), (uint32_t)(i / c->width));
         double value = 0.2126 * t.r + 0.7152 * t.g + 0.0722 * t.b;
-        out[i] = c->white > 1 ? value : el_pow(fmin(value, 1), 1 / 2.2);
+        out[i] = c->white > 1 ? value : el_pow(math_min(value, 1), 1 / 2.2);
     }
     return out;
 }
@@ -122,7 +122,7 @@ static void row_light(void *context, uint32_t y, float *line) {
 static void row_bytes(void *context, uint32_t y, uint8_t *line) {
     const struct comparison *c = context;
     for (uint32_t i = 0; i < 3 * c->width; i++)
-        line[i] = (uint8_t)(c->largest > 0 ? 255 * fmin(difference_at(c, i, y) / c->largest, 1) + 0.5 : 0);
+        line[i] = (uint8_t)(c->largest > 0 ? 255 * math_min(difference_at(c, i, y) / c->largest, 1) + 0.5 : 0);
 }
 
 static bool write_difference(const struct options *options, struct comparison *c, struct error *error) {

@@ -12,6 +12,7 @@
 #include "image/exr.h"
 #include "image/picture_file.h"
 #include "output/statistics_internal.h"
+#include "session/standard_streams.h"
 #include "session/text.h"
 
 #include <stdarg.h>
@@ -522,12 +523,12 @@ static void report_statistics(struct output_session *output, const struct pictur
         return;
     case STATISTICS_TEXT:
         if (begin_report(output)) {
-            statistics_print_text(stderr, picture->name, &picture->request, &report);
+            statistics_print_text(standard_error(), picture->name, &picture->request, &report);
             end_report(output);
         }
         return;
     case STATISTICS_JSON:
-        statistics_print_json(stdout, picture->name, &picture->request, &report);
+        statistics_print_json(standard_output(), picture->name, &picture->request, &report);
         return;
     }
 }
@@ -641,17 +642,17 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
         shown = output->options->verbose;
         break;
     case LINE_OUTPUT:
-        text_print(stdout, text);
-        (void)fflush(stdout);
+        text_print(standard_output(), text);
+        (void)fflush(standard_output());
         return;
     }
     if (!shown || !begin_report(output))
         return;
     progress_hide(&output->progress);
     if (kind == LINE_DETAIL)
-        text_print_line(stderr, text);
+        text_print_line(standard_error(), text);
     else
-        text_print_message(stderr,
+        text_print_message(standard_error(),
                            kind == LINE_ERROR     ? TEXT_ERROR
                            : kind == LINE_WARNING ? TEXT_WARNING
                                                   : TEXT_NOTICE,
@@ -669,7 +670,8 @@ void output_say(struct output_session *output, enum line_kind kind, const char *
 }
 
 bool output_flush_streams(struct output_session *output, struct error *error) {
-    bool written = fflush(stdout) == 0 && !ferror(stdout) && (!output->control || !atomic_load(&output->control->lost));
+    bool written = fflush(standard_output()) == 0 && !ferror(standard_output()) &&
+                   (!output->control || !atomic_load(&output->control->lost));
     return written || error_set(error, ERROR_MACHINE, "gray: standard output cannot be written");
 }
 

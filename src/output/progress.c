@@ -27,7 +27,7 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
 void progress_hide(struct progress *progress) {
     if (progress->columns == 0)
         return;
-    (void)fprintf(stderr, "\r%*s\r", progress->columns, "");
+    (void)fprintf(standard_error(), "\r%*s\r", progress->columns, "");
     progress->columns = 0;
 }
 
@@ -53,7 +53,7 @@ static void add_estimate(struct progress *progress, struct state *state, const s
     if (!(state->share > 0) || state->left < 0)
         return;
     double whole = state->elapsed + state->left, last = progress->writing;
-    state->share = progress->share = fmax(progress->share, state->share * whole / (whole + last));
+    state->share = progress->share = math_max(progress->share, state->share * whole / (whole + last));
     state->left += last;
 }
 
@@ -63,7 +63,7 @@ static void describe(const struct state *state, bool line, char out[160]) {
     char elapsed[48], left[48], rest[64] = "";
     const char *after = line ? " after " : "  ";
     text_duration(state->elapsed, elapsed, sizeof elapsed);
-    text_duration(fmax(state->left, 0), left, sizeof left);
+    text_duration(math_max(state->left, 0), left, sizeof left);
     if (state->left >= 0 && (line || state->elapsed > 1))
         (void)snprintf(rest, sizeof rest, ", about %s left", left);
     if (state->count == 0 && state->unshot > 0)
@@ -73,7 +73,7 @@ static void describe(const struct state *state, bool line, char out[160]) {
     else if (state->counts)
         (void)snprintf(out, 160, "%u of %u tiles%s%s", state->done, state->count, after, elapsed);
     else
-        (void)snprintf(out, 160, "%*.0f %%%s%s%s", line ? 0 : 3, 100 * fmax(state->share, 0), after, elapsed, rest);
+        (void)snprintf(out, 160, "%*.0f %%%s%s%s", line ? 0 : 3, 100 * math_max(state->share, 0), after, elapsed, rest);
 }
 
 /* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
@@ -91,7 +91,8 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
 
 static void draw_bar(struct progress *progress, const struct state *state, const char *text) {
     char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], name[64];
-    double share = state->counts ? fmin((double)state->done / fmax(state->count, 1), 1) : fmax(state->share, 0);
+    double share =
+        state->counts ? math_min((double)state->done / math_max(state->count, 1), 1) : math_max(state->share, 0);
     /* In a narrow terminal the remaining time is more useful than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
     memset(cells, '.', (size_t)bar);
@@ -104,8 +105,9 @@ static void draw_bar(struct progress *progress, const struct state *state, const
         (void)snprintf(line, sizeof line, "%s: %s", name, text);
     int columns = (int)strlen(line) < limit ? (int)strlen(line) : limit;
     error_stream_begin_line(progress->stream);
-    (void)fprintf(stderr, "\r%-*.*s", columns > progress->columns ? columns : progress->columns, columns, line);
-    (void)fflush(stderr);
+    (void)fprintf(standard_error(), "\r%-*.*s", columns > progress->columns ? columns : progress->columns, columns,
+                  line);
+    (void)fflush(standard_error());
     progress->columns = columns;
 }
 
@@ -113,24 +115,24 @@ static void print_line(const struct progress *progress, const char *after_name, 
     char line[4096 + 160];
     (void)snprintf(line, sizeof line, "%s%s%s", progress->name, after_name, text);
     error_stream_begin_line(progress->stream);
-    text_print_scene_line(stderr, line);
+    text_print_scene_line(standard_error(), line);
 }
 
 static void print_json(const struct progress *progress, const char *event, const struct state *state) {
     error_stream_begin_line(progress->stream);
-    (void)fputs("{\"picture\":", stderr);
-    text_print_json(stderr, progress->name);
-    (void)fprintf(stderr,
+    (void)fputs("{\"picture\":", standard_error());
+    text_print_json(standard_error(), progress->name);
+    (void)fprintf(standard_error(),
                   ",\"event\":\"%s\",\"width\":%u,\"height\":%u,\"tiles_done\":%u,\"tiles\":%u,\"seconds\":%.3f", event,
                   progress->width, progress->height, state->done, state->count, state->elapsed);
     if (state->share >= 0)
-        (void)fprintf(stderr, ",\"share\":%.4f", state->share);
+        (void)fprintf(standard_error(), ",\"share\":%.4f", state->share);
     if (state->unshot > 0)
-        (void)fprintf(stderr, ",\"unshot\":%.4f", state->unshot);
+        (void)fprintf(standard_error(), ",\"unshot\":%.4f", state->unshot);
     if (state->left >= 0)
-        (void)fprintf(stderr, ",\"left\":%.3f", state->left);
-    (void)fprintf(stderr, ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
-    (void)fflush(stderr);
+        (void)fprintf(standard_error(), ",\"left\":%.3f", state->left);
+    (void)fprintf(standard_error(), ",\"processor\":%.4f}\n", clock_seconds(CLOCK_PROCESS_CPUTIME_ID));
+    (void)fflush(standard_error());
 }
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised) {
@@ -151,7 +153,7 @@ static const double pauses[] = {
     [PROGRESS_NONE] = HUGE_VAL, [PROGRESS_BAR] = 0.1, [PROGRESS_LINES] = 10, [PROGRESS_JSON] = 0.2};
 
 static double pause_of(const struct progress *progress, double now) {
-    return fmax(pauses[progress->mode], progress->mode == PROGRESS_LINES ? 0.1 * (now - progress->begun) : 0);
+    return math_max(pauses[progress->mode], progress->mode == PROGRESS_LINES ? 0.1 * (now - progress->begun) : 0);
 }
 
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,

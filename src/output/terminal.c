@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "image/png_write.h"
+#include "session/standard_streams.h"
 
 #include <math.h>
 #include <poll.h>
@@ -32,8 +33,8 @@ static bool answers_sixel(void) {
     raw = before;
     raw.c_lflag &= (tcflag_t) ~(ICANON | ECHO);
     (void)tcsetattr(STDIN_FILENO, TCSANOW, &raw);
-    (void)fputs("\033[c", stdout);
-    (void)fflush(stdout);
+    (void)fputs("\033[c", standard_output());
+    (void)fflush(standard_output());
     struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
     while (used + 1 < sizeof answer && poll(&in, 1, 150) > 0 && read(STDIN_FILENO, answer + used, 1) == 1)
         if (answer[used++] == 'c')
@@ -174,9 +175,9 @@ void terminal_sixel(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t h
 
 /* The largest size with the picture's aspect ratio within these limits, at least 1 x 1. */
 static void fit(const struct film *film, double widest, double highest, uint32_t *width, uint32_t *height) {
-    double scale = fmin(1, fmin(widest / film->width, highest / film->height));
-    *width = (uint32_t)fmax(1, floor(film->width * scale));
-    *height = (uint32_t)fmax(1, floor(film->height * scale));
+    double scale = math_min(1, math_min(widest / film->width, highest / film->height));
+    *width = (uint32_t)math_max(1, floor(film->width * scale));
+    *height = (uint32_t)math_max(1, floor(film->height * scale));
 }
 
 void terminal_draw(struct terminal *terminal, const struct film *film, const struct tone *tone) {
@@ -186,7 +187,7 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     double across = blocks ? terminal->columns : terminal->columns * terminal->cell_width;
     double down = blocks ? 2 * lines : lines * terminal->cell_height;
     /* As large as the window allows with two lines for the progress. */
-    fit(film, fmin(across, PIXELS_MAX), fmin(down, PIXELS_MAX), &width, &height);
+    fit(film, math_min(across, PIXELS_MAX), math_min(down, PIXELS_MAX), &width, &height);
     uint8_t *rgb = mem_alloc_zero((size_t)width * height, 3);
     if (!rgb)
         return;
@@ -196,13 +197,13 @@ void terminal_draw(struct terminal *terminal, const struct film *film, const str
     if (terminal->moves && terminal->rows > 0)
         (void)printf("\033[%dA\r", terminal->rows);
     if (blocks)
-        terminal_blocks(stdout, rgb, width, height);
+        terminal_blocks(standard_output(), rgb, width, height);
     else if (terminal->graphics == TERMINAL_KITTY)
-        terminal_kitty(stdout, rgb, width, height, ((int)width + terminal->cell_width - 1) / terminal->cell_width,
-                       rows);
+        terminal_kitty(standard_output(), rgb, width, height,
+                       ((int)width + terminal->cell_width - 1) / terminal->cell_width, rows);
     else
-        terminal_sixel(stdout, rgb, width, height);
-    (void)fflush(stdout);
+        terminal_sixel(standard_output(), rgb, width, height);
+    (void)fflush(standard_output());
     terminal->rows = rows;
     mem_free(rgb);
 }

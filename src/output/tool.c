@@ -12,10 +12,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,18 +31,27 @@ struct tool {
     const struct file_interrupt *interrupt; /* or NULL */
 };
 
+/* It inherits no descriptor from 3 on. */
+static int leave_others(posix_spawn_file_actions_t *actions) {
+#if defined(__GLIBC__)
+    return posix_spawn_file_actions_addclosefrom_np(actions, 3);
+#else
+    (void)actions;
+    return syscall(SYS_close_range, 3u, ~0u, CLOSE_RANGE_CLOEXEC) == 0 ? 0 : errno;
+#endif
+}
+
 static int describe(const struct tool *tool, posix_spawn_file_actions_t *actions) {
     int failure = posix_spawn_file_actions_addchdir_np(actions, tool->folder);
     if (failure == 0 && tool->input >= 0)
         failure = posix_spawn_file_actions_adddup2(actions, tool->input, STDIN_FILENO);
     for (int descriptor = tool->input >= 0; descriptor <= 2 && failure == 0; descriptor++)
         failure = posix_spawn_file_actions_addopen(actions, descriptor, "/dev/null", O_RDWR, 0);
-    return failure ? failure : posix_spawn_file_actions_addclosefrom_np(actions, 3);
+    return failure ? failure : leave_others(actions);
 }
 
-/* Its output is discarded. It inherits no other descriptor, and signals have their default actions. PATH is that of the
- * user; a relative entry refers to the new folder, which contains no program. Errors: it is not on PATH, it cannot be
- * started. */
+/* Its output is discarded, and signals have their default actions. PATH is that of the user; a relative entry refers to
+ * the new folder, which contains no program. Errors: it is not on PATH, it cannot be started. */
 static bool start(const struct tool *tool, pid_t *child, struct error *error) {
     const char *name = tool->arguments[0];
     posix_spawn_file_actions_t actions;

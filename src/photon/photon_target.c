@@ -79,7 +79,8 @@ static struct specular_object specular_object_make(const struct world *world, ui
     specular_object.radius = vec3_length(vec3_sub(box->max, specular_object.middle));
     if (!geometry->csg && geometry->shape.kind == SHAPE_SPHERE && still) {
         double stretch = linear == LINEAR_NONE ? 1 : world->linear_maps[linear].stretch;
-        specular_object.radius = fmin(specular_object.radius, geometry->shape.sphere.radius * stretch * (1 + 0x1p-30));
+        specular_object.radius =
+            math_min(specular_object.radius, geometry->shape.sphere.radius * stretch * (1 + 0x1p-30));
     }
     return specular_object;
 }
@@ -358,13 +359,13 @@ static void fit_distant_target(struct photon_target *target, const struct specul
             high[k] = max > high[k] ? max : high[k];
         }
     }
-    target->size = fmax(high[0] - low[0], high[1] - low[1]);
+    target->size = math_max(high[0] - low[0], high[1] - low[1]);
     target->corner[0] = low[0];
     target->corner[1] = low[1];
     double depth = vec3_length(vec3_sub(specular_objects->scene.max, specular_objects->scene.min));
     target->behind = box_min(&specular_objects->scene, direction) - depth * 0x1p-6;
     for (uint32_t i = 0; i < specular_objects->count; i++)
-        target->behind = fmin(target->behind, box_min(&specular_objects->list[i].box, direction) - depth * 0x1p-6);
+        target->behind = math_min(target->behind, box_min(&specular_objects->list[i].box, direction) - depth * 0x1p-6);
 }
 
 static void estimate_flux(struct photon_target *target, const struct specular_objects *specular_objects) {
@@ -398,7 +399,7 @@ static uint32_t light_parts(const struct light *light, const struct specular_obj
     for (uint32_t i = 0; i < specular_objects->count; i++) {
         const struct box *box = &specular_objects->list[i].box;
         struct vec3 inside = vec3_min(vec3_max(light->position, box->min), box->max);
-        nearest = fmin(nearest, vec3_length(vec3_sub(inside, light->position)));
+        nearest = math_min(nearest, vec3_length(vec3_sub(inside, light->position)));
     }
     return extent > 0.1 * nearest ? PARTS : 1;
 }
@@ -411,7 +412,7 @@ static struct light_photon start_from_environment(const struct photon_target *ta
     struct vec3 axes[2], direction = photon.direction;
     frame_tangents(direction, &axes[0], &axes[1]);
     const double at[2] = {xi.x, xi.y};
-    double area = 1, before = fmin(box_min(&target->across, direction), box_min(&target->scene, direction));
+    double area = 1, before = math_min(box_min(&target->across, direction), box_min(&target->scene, direction));
     photon.origin = vec3_scale(direction, before - target->size * 0x1p-6);
     for (int k = 0; k < 2; k++) {
         double low = box_min(&target->across, axes[k]), width = -box_min(&target->across, vec3_negate(axes[k])) - low;

@@ -70,7 +70,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
     /* Single wavelengths have negative components. */
     const struct colour left = colour_abs(path->left);
     for (int i = 0; i < branching->count; i++) {
-        to[i] = fmax(mean(colour_mul(left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
+        to[i] = math_max(mean(colour_mul(left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
     /* All photons should have equal power: that after the strongest object of the cell. */
@@ -194,7 +194,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
             double on = 0;
             for (int i = 0; i < branching.count; i++)
                 on += mean(branching.branches[i].weight);
-            on = fmax(on, 0);
+            on = math_max(on, 0);
             double share = branching.diffuse / (branching.diffuse + on);
             if (draw(&path) < share) {
                 path.left = colour_scale(path.left, 1 / share);

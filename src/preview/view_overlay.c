@@ -74,15 +74,15 @@ static struct film_rectangle rectangle_of(const struct camera_frame *frame, cons
         if (!camera_project(frame, p, &at[0], &at[1]))
             return all;
         for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], at[k]);
-            high[k] = fmax(high[k], at[k]);
+            low[k] = math_min(low[k], at[k]);
+            high[k] = math_max(high[k], at[k]);
         }
     }
     /* One more pixel, because of rounding. */
-    low[0] = fmin(fmax(floor(low[0]) - 1 - film->x0, 0), film->width);
-    low[1] = fmin(fmax(floor(low[1]) - 1 - film->y0, 0), film->height);
-    high[0] = fmin(fmax(ceil(high[0]) + 1 - film->x0, low[0]), film->width);
-    high[1] = fmin(fmax(ceil(high[1]) + 1 - film->y0, low[1]), film->height);
+    low[0] = math_min(math_max(floor(low[0]) - 1 - film->x0, 0), film->width);
+    low[1] = math_min(math_max(floor(low[1]) - 1 - film->y0, 0), film->height);
+    high[0] = math_min(math_max(ceil(high[0]) + 1 - film->x0, low[0]), film->width);
+    high[1] = math_min(math_max(ceil(high[1]) + 1 - film->y0, low[1]), film->height);
     return (struct film_rectangle){(uint32_t)low[0], (uint32_t)low[1], (uint32_t)high[0], (uint32_t)high[1]};
 }
 

@@ -405,7 +405,7 @@ bool patches_divide(struct patches *patches, struct key_map *edges, uint32_t lim
 /* At most so long are the edges of patches of a primitive in the beginning: small objects have some patches, too. */
 static double edge_limit(const struct patches *patches, uint32_t primitive) {
     const struct box *box = &patches->world->boxes[primitive];
-    return fmin(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2);
+    return math_min(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2);
 }
 
 static bool divide_long(struct patches *patches, uint32_t limit, struct error *error) {
@@ -507,7 +507,7 @@ bool patches_index_space(struct patches *patches, struct pool *pool, struct erro
         (void)longest_edge(c, &length);
         boxes[i] = (struct box){vec3_min(c[0], vec3_min(c[1], c[2])), vec3_max(c[0], vec3_max(c[1], c[2]))};
         double margin = patches->curved[patch_at(patches, i)->primitive] ? curved_part : 0x1p-20;
-        double far = fmax(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max));
+        double far = math_max(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max));
         boxes[i] = box_grow(boxes[i], margin * length + 0x1p-40 * far);
     }
     bool ok = boxes ? box_tree_build(&patches->tree, boxes, count, pool, error) : error_no_memory(error, "patches");

@@ -113,10 +113,10 @@ static double contrast(const struct radiosity *radiosity, uint32_t a, uint32_t b
         const struct side_light *x = &radiosity->sides[2 * a + back], *y = &radiosity->sides[2 * b + back];
         /* Patches at the border of another solid are partly inside of it. */
         if ((x->buried > 0) != (y->buried > 0) || (x->buried > 0 && x->buried < 1 && y->buried < 1))
-            largest = fmax(largest, border_contrast);
+            largest = math_max(largest, border_contrast);
         double level = colour_max_abs(x->light) + colour_max_abs(y->light) + mean;
         if (x->area > 0 && y->area > 0 && level > 0)
-            largest = fmax(largest, colour_max_abs(colour_sub(x->light, y->light)) / level);
+            largest = math_max(largest, colour_max_abs(colour_sub(x->light, y->light)) / level);
     }
     return largest;
 }
@@ -129,7 +129,7 @@ static bool mark_edges(const struct radiosity *radiosity, double limit, struct k
         const uint32_t *vertex = patch_at(patches, i / 3)->vertex;
         uint32_t a = vertex[i % 3], b = vertex[(i + 1) % 3];
         double length = vec3_length(vec3_sub(patch_vertex_at(patches, a)->point, patch_vertex_at(patches, b)->point));
-        double share = fmin(length / patches->edge, 1);
+        double share = math_min(length / patches->edge, 1);
         if (share * FINEST > 1 && contrast(radiosity, a, b, mean) * sqrt(share) > limit && !patches_mark(edges, a, b))
             return false;
     }
@@ -396,7 +396,7 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
             double own = power_of(side, side->unshot);
             all += power_of(side, side->light);
             unshot += own;
-            largest = fmax(largest, own);
+            largest = math_max(largest, own);
         }
         radiosity->left = all > 0 ? unshot / all : 0;
         show_unshot(radiosity, radiosity->left);

@@ -398,7 +398,7 @@ static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
     struct sample2 disc = sample_disc(xi);
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
-    double height = sqrt(fmax(0, 1 - disc.x * disc.x - disc.y * disc.y));
+    double height = sqrt(math_max(0, 1 - disc.x * disc.x - disc.y * disc.y));
     return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
 }
 

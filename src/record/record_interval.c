@@ -65,7 +65,7 @@ static struct expr_interval of_constant(const struct expr_node *node) {
 }
 
 static struct expr_interval meet(struct expr_interval a, struct expr_interval b) {
-    struct expr_interval out = {fmax(a.low, b.low), fmin(a.high, b.high), a.may_be_nan && b.may_be_nan};
+    struct expr_interval out = {math_max(a.low, b.low), math_min(a.high, b.high), a.may_be_nan && b.may_be_nan};
     return out.low <= out.high ? out : a; /* empty intersection: no point takes this path */
 }
 

@@ -658,7 +658,7 @@ static bool takes_symbols(lua_State *L) {
 }
 
 #define MATH_FUNCTION(name, of_symbols)                                                                                \
-    static int math_##name(lua_State *L) {                                                                             \
+    static int recorded_##name(lua_State *L) {                                                                             \
         if (!takes_symbols(L))                                                                                         \
             return lua_tocfunction(L, lua_upvalueindex(1))(L);                                                         \
         return of_symbols;                                                                                             \
@@ -720,7 +720,7 @@ void symbols_open(lua_State *L) {
     recorder_of(L)->symbol_metatable = lua_topointer(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &symbol_key);
     /* Functions of Lua that accept recorded numbers, too. */
-#define WRAP_FUNCTION(name, of_symbols) wrap_function(L, "math", #name, math_##name);
+#define WRAP_FUNCTION(name, of_symbols) wrap_function(L, "math", #name, recorded_##name);
     MATH_FUNCTIONS(WRAP_FUNCTION)
     wrap_function(L, LUA_GNAME, "type", type_of);
     wrap_function(L, LUA_GNAME, "tonumber", to_number);

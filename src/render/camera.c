@@ -181,7 +181,7 @@ struct camera_view camera_view_of_eye(const struct camera_frame *frame, int eye)
 
 /* The step of `count` of that length that `x` is in; what is beyond the last one belongs to it. */
 static double step_at(double x, double length, double count) {
-    return fmin(fmax(floor(x / length), 0), count - 1);
+    return math_min(math_max(floor(x / length), 0), count - 1);
 }
 
 struct camera_view camera_view_at(const struct camera_frame *frame, double x, double y) {

@@ -66,8 +66,8 @@ static bool has_edge(const struct contour_sample *a, const struct contour_sample
     if (a->primitive == WORLD_NOTHING)
         return false;
     struct vec3 apart = vec3_sub(b->point, a->point);
-    double off = fmin(fabs(vec3_dot(apart, a->normal)), fabs(vec3_dot(apart, b->normal)));
-    return vec3_dot(a->normal, b->normal) < crease_cosine || off > gap * fmax(a->pixel, b->pixel);
+    double off = math_min(fabs(vec3_dot(apart, a->normal)), fabs(vec3_dot(apart, b->normal)));
+    return vec3_dot(a->normal, b->normal) < crease_cosine || off > gap * math_max(a->pixel, b->pixel);
 }
 
 /* Updates the pixels of a part that are near an edge that crosses (x, y). */
@@ -156,6 +156,6 @@ double contour_coverage(const struct contour *contour, int64_t x, int64_t y) {
     if (!(contour->width > 0))
         return 0;
     double squared = (double)contour->squared[(y - contour->tile.y0) * FILM_TILE + x - contour->tile.x0];
-    double overlap = contour->width / 2 + 0.5 - sqrt(squared), max = fmin(contour->width, 1);
+    double overlap = contour->width / 2 + 0.5 - sqrt(squared), max = math_min(contour->width, 1);
     return overlap > max ? max : overlap > 0 ? overlap : 0;
 }

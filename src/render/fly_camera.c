@@ -81,7 +81,7 @@ void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds)
 }
 
 void fly_camera_near(struct fly_camera *fly_camera, double distance) {
-    fly_camera->speed = fmin(fmax(0.7 * distance, 0.01 * fly_camera->usual), fly_camera->usual);
+    fly_camera->speed = math_min(math_max(0.7 * distance, 0.01 * fly_camera->usual), fly_camera->usual);
 }
 
 struct camera fly_camera_current(const struct fly_camera *fly_camera) {
@@ -130,7 +130,7 @@ void fly_camera_zoom(struct fly_camera *fly_camera, double steps) {
 /* How far the centre is along the view, at least a little. */
 static double depth_of_centre(const struct fly_camera *fly_camera) {
     struct vec3 to = vec3_sub(fly_camera->centre, fly_camera->pose.position);
-    return fmax(vec3_dot(to, forward_of(&fly_camera->pose)), 0.01 * fly_camera->speed);
+    return math_max(vec3_dot(to, forward_of(&fly_camera->pose)), 0.01 * fly_camera->speed);
 }
 
 /* World units across the height of the picture, at the depth of the centre. */
@@ -175,16 +175,16 @@ void fly_camera_frame(struct fly_camera *fly_camera, const struct box *box, doub
     struct pose *pose = &fly_camera->pose;
     struct vec3 right = rotate(pose->turn, vec3_make(1, 0, 0)), up = rotate(pose->turn, vec3_make(0, 1, 0));
     double radius = box_is_empty(box) ? 0 : 0.5 * vec3_length(vec3_sub(box->max, box->min)), distance = 0;
-    double high = room * el_tan(0.5 * fmin(pose->fov, 120) * degree), wide = high * aspect;
+    double high = room * el_tan(0.5 * math_min(pose->fov, 120) * degree), wide = high * aspect;
     if (!(radius > 0) || !isfinite(radius))
         return;
     fly_camera->centre = vec3_scale(vec3_add(box->min, box->max), 0.5);
     for (unsigned i = 0; i < 8; i++) {
         struct vec3 from = vec3_sub(box_corner(box, i), fly_camera->centre);
-        double aside = fmax(fabs(vec3_dot(from, right)) / wide, fabs(vec3_dot(from, up)) / high);
-        distance = fmax(distance, aside - vec3_dot(from, forward_of(pose)));
+        double aside = math_max(fabs(vec3_dot(from, right)) / wide, fabs(vec3_dot(from, up)) / high);
+        distance = math_max(distance, aside - vec3_dot(from, forward_of(pose)));
     }
-    pose->position = vec3_add_scaled(fly_camera->centre, forward_of(pose), -fmax(distance, 1.01 * radius));
+    pose->position = vec3_add_scaled(fly_camera->centre, forward_of(pose), -math_max(distance, 1.01 * radius));
 }
 
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees) {

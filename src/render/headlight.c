@@ -51,8 +51,8 @@ static struct colour describe(const struct headlight *headlight, const struct hi
 
 /* From blue for 0 over green to red for 1. */
 static struct colour heat(const struct headlight *headlight, double share) {
-    double t = fmin(fmax(share, 0), 1), high = fmax(2 * t - 1, 0);
-    return colour_scale(colour_make(high, fmin(2 * t, 1) - high, fmax(1 - 2 * t, 0)), headlight->brightness);
+    double t = math_min(math_max(share, 0), 1), high = math_max(2 * t - 1, 0);
+    return colour_scale(colour_make(high, math_min(2 * t, 1) - high, math_max(1 - 2 * t, 0)), headlight->brightness);
 }
 
 /* What a surface reflects of the stored light, and its mirrors of the light at the eye. False: it has none. */
@@ -135,13 +135,13 @@ static struct colour shade(const struct headlight *headlight, const struct ray *
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
     struct colour colour = bsdf->albedo;
     double share =
-        glossy * fmax(0, 1 - colour_max_abs(colour)); /* what a coat reflects does not hide the colour below */
+        glossy * math_max(0, 1 - colour_max_abs(colour)); /* what a coat reflects does not hide the colour below */
     for (int i = 0; i < bsdf->count; i++) {
         if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
             colour = colour_add_scaled(colour, bsdf->lobes[i].weight, share);
     }
     double largest = colour_max_abs(colour), facing = fabs(vec3_dot(bsdf->side, to_eye));
-    double light = headlight->brightness * (ambient + (1 - ambient) * facing) / fmax(1, largest);
+    double light = headlight->brightness * (ambient + (1 - ambient) * facing) / math_max(1, largest);
     return colour_add(colour_scale(colour, light), bsdf->emission);
 }
 
@@ -174,7 +174,7 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
 static void store(struct film_pixel *pixel, struct colour colour) {
     const double parts[3] = {colour.r, colour.g, colour.b};
     for (int c = 0; c < 3; c++)
-        pixel->rgb[c] = isfinite(parts[c]) ? (float)fmin(fmax(parts[c], 0), 1e30) : 0;
+        pixel->rgb[c] = isfinite(parts[c]) ? (float)math_min(math_max(parts[c], 0), 1e30) : 0;
 }
 
 /* Other lenses: a ray through the middle of each pixel. */

@@ -127,8 +127,8 @@ static bool find_strata(const struct medium_mix *mix, const struct medium_line *
             if (!box_clip(&box, &ray, &from, &to))
                 continue;
         }
-        out->from = fmin(out->from, from);
-        out->to = fmax(out->to, to);
+        out->from = math_min(out->from, from);
+        out->to = math_max(out->to, to);
         if (!medium->density || !(to < INFINITY))
             out->rate += (e.r + e.g + e.b) / 3;
     }
@@ -143,7 +143,7 @@ static double stratum_at(const struct strata *strata, double u, double *pdf) {
     }
     double t = -el_log(1 - u * whole) / strata->rate;
     *pdf = strata->rate * el_exp(-strata->rate * t) / whole;
-    return strata->from + fmin(t, length);
+    return strata->from + math_min(t, length);
 }
 
 struct colour media_in_scattering(struct integrator_state *state, const struct ray *ray, double distance,

@@ -73,7 +73,7 @@ static double surface_depth(struct overlay_drawing *drawing, struct world_scratc
     *depth = INFINITY;
     if (camera_ray_through(&drawing->camera, px, py, (struct sample2){0.5, 0.5}, NULL, &ray) &&
         world_nearest(drawing->job->world, &ray, scratch, &hit))
-        *depth = (float)fmax(0, depth_of(drawing, hit.point));
+        *depth = (float)math_max(0, depth_of(drawing, hit.point));
     return (double)*depth;
 }
 
@@ -84,8 +84,8 @@ static bool cut(double from, double delta, double low, double high, double *t0, 
     if (delta == 0)
         return from >= low && from <= high;
     double a = (low - from) / delta, b = (high - from) / delta;
-    *t0 = fmax(*t0, fmin(a, b));
-    *t1 = fmin(*t1, fmax(a, b));
+    *t0 = math_max(*t0, math_min(a, b));
+    *t1 = math_min(*t1, math_max(a, b));
     return *t0 < *t1;
 }
 
@@ -94,8 +94,8 @@ static void line(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
     const struct film *film = drawing->job->film;
     double t0 = 0, t1 = 1, dx = b.x - a.x, dy = b.y - a.y;
     double left = eye > 0 ? drawing->camera.width : 0, right = eye < 0 ? drawing->camera.width : INFINITY;
-    left = fmax(left, film->x0);
-    right = fmin(right, (double)film->x0 + film->width);
+    left = math_max(left, film->x0);
+    right = math_min(right, (double)film->x0 + film->width);
     if (!isfinite(dx) || !isfinite(dy) || !cut(a.x, dx, left, right, &t0, &t1) ||
         !cut(a.y, dy, film->y0, (double)film->y0 + film->height, &t0, &t1))
         return;
@@ -104,7 +104,7 @@ static void line(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
     drawing->strokes[(size_t)box * drawing->room + drawing->stroke_count[box]++] =
         (struct stroke){{a.x + t0 * dx - film->x0, a.y + t0 * dy - film->y0, from + t0 * (to - from)},
                         {delta * dx, delta * dy, delta * (to - from)},
-                        ceil(fmax(fabs(dx), fabs(dy)) * delta),
+                        ceil(math_max(fabs(dx), fabs(dy)) * delta),
                         box};
 }
 
@@ -125,7 +125,7 @@ static void edge(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
     struct place3 from, to;
     if (drawing->planar) {
         /* Before the eye. */
-        double near = 1e-6 * fmax(vec3_length(vec3_sub(b, a)), vec3_length(vec3_sub(a, drawing->camera.eye)));
+        double near = 1e-6 * math_max(vec3_length(vec3_sub(b, a)), vec3_length(vec3_sub(a, drawing->camera.eye)));
         double da = depth_of(drawing, a), db = depth_of(drawing, b);
         if (da < near && db < near)
             return;
@@ -192,8 +192,8 @@ static void draw_stroke(struct overlay_drawing *drawing, struct world_scratch *s
     const struct colour *colour = &drawing->boxes[stroke->box].colour;
     if (!cut(stroke->from.y, stroke->delta.y, top, bottom, &t0, &t1))
         return;
-    double last = fmin(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
-    for (double i = fmax(0, floor(t0 * stroke->steps) - 1); i <= last; i++) {
+    double last = math_min(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
+    for (double i = math_max(0, floor(t0 * stroke->steps) - 1); i <= last; i++) {
         double t = stroke->steps > 0 ? i / stroke->steps : 0, depth = stroke->from.depth + t * stroke->delta.depth;
         double x = floor(stroke->from.x + t * stroke->delta.x), y = floor(stroke->from.y + t * stroke->delta.y);
         bool another = x < last_x || x > last_x || y < last_y || y > last_y;

@@ -339,8 +339,9 @@ static void end_check(struct film *film, const struct film *own, const struct wo
     uint32_t checks = 0;
     for (uint32_t n = 0; n < range.begin; n = path_next_check(n))
         checks++;
-    /* Who reads samples that follow sees that state: no store moves before an exchange. */
-    (void)atomic_exchange(worker->tile_state, FILM_TILE_TAKEN);
+    /* Who reads samples that follow sees that state. */
+    atomic_store_explicit(worker->tile_state, FILM_TILE_TAKEN, memory_order_relaxed);
+    atomic_thread_fence(memory_order_release);
     copy_pixels(film, own, part);
     if (range.begin < range.end)
         atomic_store_explicit(worker->tile_state, (uint8_t)(FILM_TILE_BEGUN + checks % FILM_CHECKS),

@@ -19,7 +19,7 @@ static bool find_view(const struct world_lights *lights, uint32_t light, const s
     out->middle = vec3_dot(to, direction);
     out->apart = vec3_length(vec3_sub(to, vec3_scale(direction, out->middle)));
     /* On the line itself any small distance will do. */
-    out->apart = fmax(out->apart, 0x1p-20 * vec3_length(to));
+    out->apart = math_max(out->apart, 0x1p-20 * vec3_length(to));
     double first = 0, last = end;
     if (!light_cut(&lights->lights[light], ray->origin, direction, &first, &last))
         return false;
@@ -59,13 +59,13 @@ static double light_on_line(const struct world_lights *lights, const struct aime
     if (!find_view(lights, aimed->light, ray, end, &view))
         return 0;
     for (int i = 0; i < POINTS; i++) {
-        double t = fmax(point_of_view(&view, (i + 0.5) / POINTS), 0);
+        double t = math_max(point_of_view(&view, (i + 0.5) / POINTS), 0);
         sum += light_bounds_importance(&aimed->bounds, vec3_add_scaled(ray->origin, direction, t), vec3_all(0)) /
                view_pdf(&view, t);
     }
     /* Dimmed by what is on the way over the point nearest to the lamp. */
     if (haze > 0)
-        sum *= el_exp(-haze * (fmin(fmax(view.middle, 0), end) + view.apart));
+        sum *= el_exp(-haze * (math_min(math_max(view.middle, 0), end) + view.apart));
     return sum;
 }
 
@@ -141,7 +141,7 @@ static struct colour aimed_light(const struct path_tracer *tracer, struct integr
     shadow.part = (struct light_part){tracer->aimed_lights[number].light, 0};
     if (!find_view(lights, shadow.part.light, &path->ray, distance, &view))
         return colour_all(0);
-    double t = fmin(fmax(point_of_view(&view, u.y), 0), distance);
+    double t = math_min(math_max(point_of_view(&view, u.y), 0), distance);
     struct vec3 direction = vec3_normalize(path->ray.direction);
     struct vec3 point = vec3_add_scaled(path->ray.origin, direction, t);
     path->scatter = (struct light_receiver){point, point, {0, 0, 0}, WORLD_NOTHING};

@@ -85,7 +85,7 @@ static double median_of_neighbours(struct channel (*pixels)[3], struct film_rect
 
 /* The relative variance of a channel. */
 static double relative_variance(const struct channel *of, double median) {
-    double low = of->mean - sqrt(of->samples), mean = fmin(of->mean, fmax(low, median));
+    double low = of->mean - sqrt(of->samples), mean = math_min(of->mean, math_max(low, median));
     double square = of->mean * of->mean, unsure = of->samples < square ? of->samples / square : 1;
     return (of->halves + (of->samples - of->halves) * unsure) * (1 / (mean * mean + dark));
 }
@@ -97,7 +97,7 @@ static const double usual = 3;
 /* From the sums over pixels of their relative variances and of the squares of these. */
 static double noise_of(double sum, double squares, double pixels) {
     double mean = sum / pixels, error = sqrt(squares) / pixels, share = pixels / (SIDE * SIDE);
-    double excess = fmax(error - usual * mean / sqrt(pixels), 0);
+    double excess = math_max(error - usual * mean / sqrt(pixels), 0);
     return sqrt(mean + (1 - share) * error + share * excess);
 }
 
@@ -149,7 +149,7 @@ uint32_t path_samples_kept(const struct film *film, struct film_rectangle tile, 
 }
 
 uint32_t path_minimum_samples(double wanted) {
-    return (uint32_t)fmin(fmax(16, ceil(1.25 / wanted)), PATH_SAMPLES_MAX);
+    return (uint32_t)math_min(math_max(16, ceil(1.25 / wanted)), PATH_SAMPLES_MAX);
 }
 
 uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit) {
@@ -157,7 +157,7 @@ uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, ui
     if (samples < 2 || samples >= limit || !(needed < limit))
         return samples < 2 ? 0 : limit;
     uint32_t count = samples;
-    while (count < fmax(needed, path_minimum_samples(wanted)) && count < limit)
+    while (count < math_max(needed, path_minimum_samples(wanted)) && count < limit)
         count = path_next_check(count);
     return count < limit ? count : limit;
 }

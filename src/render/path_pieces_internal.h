@@ -256,7 +256,7 @@ static void pass_medium(const struct path_tracer *tracer, struct integrator_stat
  * that of a horizon. */
 static double depth_in_medium(const struct medium *medium, double before, double end) {
     const struct medium_mix mix = {1, {medium}};
-    double haze = medium_mix_haze(&mix), depth = haze > 0 ? fmin(end, 4 / haze) : end;
+    double haze = medium_mix_haze(&mix), depth = haze > 0 ? math_min(end, 4 / haze) : end;
     return depth < INFINITY ? before + depth : 0;
 }
 

@@ -89,7 +89,7 @@ static void watch_ray(struct path_watch *watch, const struct observer *observer,
     watch->rays[watch->count++] = (struct watched_ray){.weight = path->weight, .light = path->light};
     watch_arrival(watch, path, 0);
     OBSERVE(observer, OBSERVED_RAY_BEGIN,
-            .begin = {&path->ray, hit, NULL, distance, fmin(colour_max_abs(path->weight), 1),
+            .begin = {&path->ray, hit, NULL, distance, math_min(colour_max_abs(path->weight), 1),
                       path->kind == RAY_BELOW ? watch->scatterings : 0});
 }
 

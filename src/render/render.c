@@ -461,9 +461,9 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
     uint32_t done = renderer->pass.end, left = limit - done;
     double fitting = time_left(renderer, now) / 2 / seconds;
     if (renderer->job->settings.passes)
-        fitting = fmin(fitting, shown_every / seconds);
+        fitting = math_min(fitting, shown_every / seconds);
     uint32_t count = done < left ? done : left;
-    return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
+    return fitting < (double)count ? (uint32_t)math_max(fitting, 1) : count;
 }
 
 /* The next pass, when all workers have ended the one before. */
@@ -471,7 +471,7 @@ static enum work_answer next_pass(void *context, struct work_queue *queue) {
     struct renderer *renderer = context;
     struct sample_pass *pass = &renderer->pass;
     double now = clock_now();
-    double seconds = fmax((now - renderer->passes_begun) / (pass->end - renderer->job->kept_samples), 1e-9);
+    double seconds = math_max((now - renderer->passes_begun) / (pass->end - renderer->job->kept_samples), 1e-9);
     if (queue->out > 0)
         return WORK_LATER;
     if (renderer_is_done(renderer) || pass->end == pass->limit || !atomic_load(&renderer->unsatisfied) ||

@@ -58,7 +58,7 @@ static struct colour sample_depth(struct renderer *renderer, struct worker *work
     if (!renderer_middle_ray(renderer, (double)at->x + 0.5, (double)at->y + 0.5, &ray) ||
         !world_nearest(renderer->job->world, &ray, &worker->scratch, &hit))
         return colour_all(0);
-    return colour_all(fmin(hit.t, (double)FLT_MAX));
+    return colour_all(math_min(hit.t, (double)FLT_MAX));
 }
 
 /* Through a lens, in another projection, in one of several views. */

@@ -30,7 +30,7 @@ static struct colour toon_light(struct integrator_state *state, const struct hit
                                 uint64_t key) {
     int steps = state->job->settings.toon_steps;
     struct colour light = matt_light(state, hit, bsdf, key), shiny;
-    double max = largest(light), step = fmin(floor(max * steps + 0.5) / steps, 1);
+    double max = largest(light), step = math_min(floor(max * steps + 0.5) / steps, 1);
     struct colour colour = colour_mul(state->job->ambient, bsdf->ambient);
     if (max > 0)
         colour = colour_add(colour, colour_mul(bsdf->albedo, colour_scale(light, step / max)));

@@ -98,7 +98,7 @@ bool subsurface_walk(struct subsurface_walk *walk) {
         ray->direction = phase_sample(&medium.phase, vec3_negate(ray->direction), (struct sample2){u[2], u[3]});
         ray->skip_primitive = ray->skip_part = 0;
     }
-    double depth = fmax(vec3_dot(vec3_sub(begin, ray->origin), walk->normal), 0), g = walk->under.g;
+    double depth = math_max(vec3_dot(vec3_sub(begin, ray->origin), walk->normal), 0), g = walk->under.g;
     walk->weight = colour_mul(walk->weight, colour_make(share_from(depth, e.r, a.r, g), share_from(depth, e.g, a.g, g),
                                                         share_from(depth, e.b, a.b, g)));
     return whole > 0;

@@ -96,11 +96,11 @@ static void measure(struct outline *outline) {
         double across = 0;
         for (int k = 0; k < count; k++) {
             double x = outline->x[corners[k]] - outline->x[a], y = outline->y[corners[k]] - outline->y[a];
-            outline->length = fmax(outline->length, sqrt(x * x + y * y));
-            across = fmax(across, fabs(dx * y - dy * x));
+            outline->length = math_max(outline->length, sqrt(x * x + y * y));
+            across = math_max(across, fabs(dx * y - dy * x));
         }
         if (edge > 0)
-            outline->width = fmin(outline->width, across / edge);
+            outline->width = math_min(outline->width, across / edge);
     }
     if (!(outline->length > 0))
         outline->width = 0;
@@ -110,10 +110,10 @@ static void measure(struct outline *outline) {
 static bool is_outside(const struct view *view, const struct outline *outline, double margin) {
     double left = INFINITY, right = -INFINITY, top = INFINITY, bottom = -INFINITY, more = margin + outline->bend;
     for (int i = 0; i < CORNERS; i++) {
-        left = fmin(left, outline->x[i]);
-        right = fmax(right, outline->x[i]);
-        top = fmin(top, outline->y[i]);
-        bottom = fmax(bottom, outline->y[i]);
+        left = math_min(left, outline->x[i]);
+        right = math_max(right, outline->x[i]);
+        top = math_min(top, outline->y[i]);
+        bottom = math_max(bottom, outline->y[i]);
     }
     return right < view->left - more || left > view->right + more || bottom < view->top - more ||
            top > view->bottom + more;
@@ -134,8 +134,8 @@ static enum outline_kind project(const struct view *view, const struct vec3 corn
         before += seen && isfinite(out->x[i]) && isfinite(out->y[i]);
         out->x[i] += view->shift;
         out->y[i] += view->shift_down;
-        near = fmin(near, depth);
-        far = fmax(far, depth);
+        near = math_min(near, depth);
+        far = math_max(far, depth);
     }
     if (before < CORNERS)
         return view->planar && !(far > 0) ? OUTLINE_NOWHERE : OUTLINE_TO_SPLIT;
@@ -182,35 +182,35 @@ static void draw(struct thin_drawing *drawing, const struct view *view, const st
     int corners[2 * CORNERS], count = convex_corners(outline, corners);
     double more = drawing->margin + outline->bend + 0.01, top = INFINITY, bottom = -INFINITY;
     for (int i = 0; i < count; i++) {
-        top = fmin(top, outline->y[corners[i]]);
-        bottom = fmax(bottom, outline->y[corners[i]]);
+        top = math_min(top, outline->y[corners[i]]);
+        bottom = math_max(bottom, outline->y[corners[i]]);
     }
     /* The rows that it may touch. */
-    double first = fmax(fmax(map->y0, view->top), floor(top - more)),
-           last = fmin(fmin((double)map->y0 + map->height, view->bottom) - 1, floor(bottom + more));
+    double first = math_max(math_max(map->y0, view->top), floor(top - more)),
+           last = math_min(math_min((double)map->y0 + map->height, view->bottom) - 1, floor(bottom + more));
     if (!(first <= last))
         return;
     atomic_store_explicit(&drawing->found, true, memory_order_relaxed);
     /* The nearest drawing of a pixel stays: numbers of nearness compare like their bits. */
     uint32_t bits = bits_of((float)(outline->nearness * (1 + 1e-6))) & ~THIN_FLAGS;
     bits |= outline->length <= small ? THIN_SMALL : outline->width < line ? THIN_LINE : 0;
-    double x_min = fmax(map->x0, view->left), x_max = fmin((double)map->x0 + map->width, view->right) - 1;
+    double x_min = math_max(map->x0, view->left), x_max = math_min((double)map->x0 + map->width, view->right) - 1;
     for (double y = first; y <= last; y++) {
         double left = INFINITY, right = -INFINITY, above = y - more, below = y + 1 + more;
         /* The extent of the hull over the height of a row, edge by edge. */
         for (int i = 0; i < count; i++) {
             int a = corners[i], b = corners[(i + 1) % count];
             double ay = outline->y[a], by = outline->y[b], dy = by - ay, dx = outline->x[b] - outline->x[a];
-            if (fmax(ay, by) < above || fmin(ay, by) > below)
+            if (math_max(ay, by) < above || math_min(ay, by) > below)
                 continue;
             double t0 = dy != 0 ? limited((above - ay) / dy, 0, 1) : 0,
                    t1 = dy != 0 ? limited((below - ay) / dy, 0, 1) : 1;
             double x0 = outline->x[a] + t0 * dx, x1 = outline->x[a] + t1 * dx;
-            left = fmin(left, fmin(x0, x1));
-            right = fmax(right, fmax(x0, x1));
+            left = math_min(left, math_min(x0, x1));
+            right = math_max(right, math_max(x0, x1));
         }
-        double end = fmin(x_max, floor(right + more));
-        for (double x = fmax(x_min, floor(left - more)); x <= end; x++)
+        double end = math_min(x_max, floor(right + more));
+        for (double x = math_max(x_min, floor(left - more)); x <= end; x++)
             raise(&map->nearness[(size_t)(y - map->y0) * map->width + (size_t)(x - map->x0)], bits);
     }
 }
@@ -233,7 +233,7 @@ static bool is_long(const struct vec3 corners[CORNERS]) {
     double lengths[3], longest = 0, sum = 0;
     for (int k = 0; k < 3; k++) {
         lengths[k] = vec3_length(vec3_sub(corners[1 << k], corners[0]));
-        longest = fmax(longest, lengths[k]);
+        longest = math_max(longest, lengths[k]);
         sum += lengths[k];
     }
     return longest > 2 * (sum - longest);

@@ -46,12 +46,12 @@ struct time_estimate_work time_estimate_work(const struct time_estimate *estimat
     for (uint32_t i = 0; i < estimate->count; i++) {
         const struct tile_cost *tile = &estimate->tiles[i];
         double part = part_of(tile);
-        double rest = part > 0 ? cost_of(tile) / part * fmax(1 - part, 0)
+        double rest = part > 0 ? cost_of(tile) / part * math_max(1 - part, 0)
                                : tile->pixels * neighbouring_cost(estimate, i, done / pixels);
         left += rest;
-        longest = fmax(longest, rest);
+        longest = math_max(longest, rest);
     }
-    return (struct time_estimate_work){done, fmax(left, estimate->waiting * longest)};
+    return (struct time_estimate_work){done, math_max(left, estimate->waiting * longest)};
 }
 
 /* --- what workers report --- */
@@ -90,7 +90,7 @@ static void report(struct renderer *renderer, double now) {
     struct time_estimate_work work = time_estimate_work(&renderer->time_estimate);
     double limit = renderer->job->settings.time_limit;
     if (limit > 0)
-        work = (struct time_estimate_work){now - progress->begun, fmax(renderer->begun + limit - now, 0)};
+        work = (struct time_estimate_work){now - progress->begun, math_max(renderer->begun + limit - now, 0)};
     progress_estimate_report(progress, work.done, work.left, now);
 }
 

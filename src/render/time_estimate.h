@@ -3,6 +3,8 @@
 #ifndef GRAY_RENDER_TIME_ESTIMATE_H
 #define GRAY_RENDER_TIME_ESTIMATE_H
 
+#include "math/portable.h"
+
 #include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -24,16 +26,16 @@ static inline void progress_estimate_reset(struct progress_estimate *estimate, b
 static inline void progress_estimate_report(struct progress_estimate *estimate, double done, double left, double now) {
     if (!(done > 0))
         return;
-    estimate->share = fmax(estimate->share, done / (done + left));
+    estimate->share = math_max(estimate->share, done / (done + left));
     estimate->ends = now + (now - estimate->begun) * left / done;
 }
 /* 0..1; negative while nothing is known. */
 static inline double progress_estimate_share(const struct progress_estimate *estimate) {
-    return estimate->begun > 0 ? fmin(fmax(estimate->share, 0), 1) : -1;
+    return estimate->begun > 0 ? math_min(math_max(estimate->share, 0), 1) : -1;
 }
 /* Seconds left; negative: not known yet. */
 static inline double progress_estimate_left(const struct progress_estimate *estimate, double now) {
-    return estimate->ends > 0 ? fmin(fmax(estimate->ends - now, 0), 1e9) : -1;
+    return estimate->ends > 0 ? math_min(math_max(estimate->ends - now, 0), 1e9) : -1;
 }
 
 /* What the tiles of a picture have cost so far; from it follows what the rest will cost. */

@@ -35,8 +35,8 @@ static double brightest_of_scene(const struct render_job *job) {
         if (light->visible && own > max)
             max = own;
     }
-    max = fmax(max, lit + world->emission_bound);
-    return fmax(max, medium_brightest(world_outside(world)));
+    max = math_max(max, lit + world->emission_bound);
+    return math_max(max, medium_brightest(world_outside(world)));
 }
 
 /* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: this
@@ -50,7 +50,7 @@ static double cutoff_weight(const struct render_job *job) {
     if (tone->exposure > 0)
         cutoff /= el_exp2(tone->exposure);
     if (tone->curve == TONE_FUNCTION)
-        cutoff /= fmax(tone_table_slope(tone->table), 1);
+        cutoff /= math_max(tone_table_slope(tone->table), 1);
     if (tone->srgb)
         cutoff /= 12.92; /* the slope of the transfer function in the dark */
     return brightest > 1 ? cutoff / brightest : cutoff;
@@ -525,7 +525,7 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
             sample_patch(&part, x, y);
         }
         renderer_tile_goes_on(renderer, worker,
-                              fmin(0.5, (double)(y + PATCH - area.y0) / (double)(2 * (area.y1 - area.y0))));
+                              math_min(0.5, (double)(y + PATCH - area.y0) / (double)(2 * (area.y1 - area.y0))));
     }
     if (settings->show_refined && part.has_first)
         show_refined(&part, tile);

@@ -249,9 +249,9 @@ static struct colour follow_layers(struct integrator_state *state, const struct 
     const double side = at->bsdf->glossy_samples ? at->bsdf->glossy_samples : GLOSSY_SAMPLES, all = side * side;
     const double share = rough_share(branches, count);
     const bool is_coarse = path->rough || state->job->settings.coarse;
-    const double chance = is_coarse ? fmin(4 * share, 1) : 1;
-    const double rays = is_coarse ? 1 : fmin(all, fmax(1, ceil(2 * all * share / state->sampler.side)));
-    const uint32_t n = (uint32_t)fmax(2, ceil(sqrt(rays))), cells = n * n;
+    const double chance = is_coarse ? math_min(4 * share, 1) : 1;
+    const double rays = is_coarse ? 1 : math_min(all, math_max(1, ceil(2 * all * share / state->sampler.side)));
+    const uint32_t n = (uint32_t)math_max(2, ceil(sqrt(rays))), cells = n * n;
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
     struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
     struct colour sum = {0, 0, 0};
@@ -266,7 +266,7 @@ static struct colour follow_layers(struct integrator_state *state, const struct 
         candidates.begin = candidates.end;
         candidates.end = cells - candidates.begin < batch ? cells : candidates.begin + batch;
         find_candidates(at, branches, count, &facets, &candidates);
-        double here = fmax(1, floor(rays * (candidates.end - candidates.begin) / cells));
+        double here = math_max(1, floor(rays * (candidates.end - candidates.begin) / cells));
         sum = colour_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
     }
     return colour_scale(sum, 1 / chance);

@@ -9,7 +9,6 @@
 #include "sandbox/hints.h"
 #include "sandbox/sandbox.h"
 
-#include <assert.h>
 #include <lauxlib.h>
 #include <limits.h>
 #include <lualib.h>
@@ -367,6 +366,31 @@ static const char *search_elsewhere(struct sandbox *sandbox, const char *file) {
     return found;
 }
 
+/* The file of one of our modules. False: there is none of this name. */
+static bool module_of_library(const struct sandbox *sandbox, const char *name, char file[PATH_SIZE]) {
+    const char *library = sandbox->options->library_folder;
+    if (!library || strpbrk(name, "./\\"))
+        return false;
+    int length = snprintf(file, PATH_SIZE, "%s/%s.lua", library, name);
+    return (size_t)length < PATH_SIZE && file_is_regular(file);
+}
+
+static bool is_same_file(const char *one, const char *other) {
+    char a[PATH_SIZE], b[PATH_SIZE];
+    return file_canonical(one, a, sizeof a) && file_canonical(other, b, sizeof b) && strcmp(a, b) == 0;
+}
+
+/* A file of the scene with the name of one of our modules is loaded in its place, with a notice. */
+static void note_shadowed(struct sandbox *sandbox, const char *module, const char *found) {
+    char file[PATH_SIZE], where[PATH_SIZE + 32], text[3 * PATH_SIZE];
+    if (!module_of_library(sandbox, module, file) || is_same_file(found, file))
+        return;
+    sandbox_where(sandbox, where, sizeof where);
+    snprintf(text, sizeof text, "%s'%s' is %s, which hides the module of the library with this name", where, module,
+             found);
+    sandbox_message(sandbox, SCRIPT_NOTICE, text);
+}
+
 /* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 also wrote the
  * extension .lua. */
 static int search_module(lua_State *L) {
@@ -401,6 +425,7 @@ static int search_module(lua_State *L) {
         if (!found)
             no_module(sandbox, module);
     }
+    note_shadowed(sandbox, module, plain_path(found));
     if (files_load(L, plain_path(found)) != LUA_OK)
         return lua_error(L); /* the message names the file and its line */
     lua_pushstring(L, plain_path(found));
@@ -500,19 +525,12 @@ static const char hidden = 0; /* likewise: our modules whose names files of the 
 /* The file of one of our modules, if `require` of the script would find another file first. */
 static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
     const struct sandbox *sandbox = sandbox_of(L);
-    const char *folder = sandbox->options->library_folder;
-    char found[PATH_SIZE], other[PATH_SIZE], own[PATH_SIZE];
-    assert(folder); /* no other code has this `require` */
-    if (strpbrk(name, "./\\"))
-        return false;
-    int length = snprintf(file, PATH_SIZE, "%s/%s.lua", folder, name);
-    if ((size_t)length >= PATH_SIZE || !file_is_regular(file))
+    char found[PATH_SIZE];
+    if (!module_of_library(sandbox, name, file))
         return false;
     lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
     bool has_path = lua_getfield(L, -1, LUA_LOADLIBNAME) == LUA_TTABLE && lua_getfield(L, -1, "path") == LUA_TSTRING;
-    bool taken = has_path && files_on_path(sandbox, lua_tostring(L, -1), name, found) &&
-                 file_canonical(found, other, sizeof other) && file_canonical(file, own, sizeof own) &&
-                 strcmp(other, own) != 0;
+    bool taken = has_path && files_on_path(sandbox, lua_tostring(L, -1), name, found) && !is_same_file(found, file);
     lua_settop(L, 1);
     return taken;
 }

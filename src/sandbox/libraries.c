@@ -6,12 +6,15 @@
 #include "sandbox/libraries_internal.h"
 
 #include "math/elementary.h"
+#include "math/exact.h"
 #include "sandbox/embedded.h"
 #include "sandbox/sandbox.h"
 
 #include <assert.h>
 #include <lauxlib.h>
 #include <lualib.h>
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -167,6 +170,23 @@ static void set_function(lua_State *L, const char *library, const char *name, lu
     lua_pop(L, 1);
 }
 
+void libraries_take_nan(lua_State *L) {
+    for (int k = 1; k <= lua_gettop(L); k++)
+        if (lua_type(L, k) == LUA_TNUMBER && isnan(lua_tonumber(L, k))) {
+            lua_pushnumber(L, invalid());
+            lua_replace(L, k);
+        }
+}
+
+/* string.pack: the bytes of a NaN are the same on every machine. Upvalue 1: Lua's own. */
+static int pack(lua_State *L) {
+    libraries_take_nan(L);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, 1);
+    return 1;
+}
+
 void libraries_open(lua_State *L) {
     static const luaL_Reg libraries[] = {
         {LUA_GNAME, luaopen_base},        {LUA_LOADLIBNAME, luaopen_package}, {LUA_COLIBNAME, luaopen_coroutine},
@@ -181,6 +201,11 @@ void libraries_open(lua_State *L) {
     embedded_open(L);
     set_function(L, "os", "exit", end_script);
     set_function(L, LUA_GNAME, "warn", warn);
+    lua_getglobal(L, LUA_STRLIBNAME);
+    lua_getfield(L, -1, "pack");
+    lua_pushcclosure(L, pack, 1);
+    lua_setfield(L, -2, "pack");
+    lua_pop(L, 1);
     if (sandbox_of(L)->options->no_sandbox)
         return;
     for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)
@@ -234,3 +259,42 @@ LIBM_TWO(pow)
 LIBM_ONE(sinh)
 LIBM_ONE(cosh)
 LIBM_ONE(tanh)
+
+/* Makes Lua write a NaN as "nan" on every machine.
+ *
+ * Of 0/0 x86-64 makes a NaN with a sign and ARM one without; the C library writes the sign as "-nan", and a script can
+ * read it. Lua turns every number into text by snprintf, or by its checked form where Lua was compiled so, with a
+ * format of one conversion: tostring, "..", string.format. Here a NaN loses its sign first. */
+
+static int write_text(char *text, size_t size, const char *format, va_list arguments) {
+    const char *conversion = format[0] == '%' ? format + 1 + strspn(format + 1, "-+ #0123456789.") : "";
+    bool one_number = conversion[0] && strchr("aAeEfFgG", conversion[0]) && !conversion[1];
+    if (one_number) {
+        va_list copy;
+        va_copy(copy, arguments);
+        double number = va_arg(copy, double);
+        va_end(copy);
+        if (isnan(number) && signbit(number))
+            return snprintf(text, size, format, -number);
+    }
+    return vsnprintf(text, size, format, arguments);
+}
+
+__attribute__((visibility("default"))) int snprintf(char *text, size_t size, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = write_text(text, size, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+__attribute__((visibility("default"))) int __snprintf_chk(char *text, size_t size, int flag, size_t room,
+                                                          const char *format, ...);
+int __snprintf_chk(char *text, size_t size, int flag, size_t room, const char *format, ...) {
+    (void)flag;
+    va_list arguments;
+    va_start(arguments, format);
+    int length = write_text(text, size < room ? size : room, format, arguments);
+    va_end(arguments);
+    return length;
+}

@@ -9,5 +9,7 @@
 void libraries_open(lua_State *L);
 /* Whether Lua's library has this function but the sandbox does not. */
 bool libraries_lack(const char *library, const char *name);
+/* Arguments that are NaN become the one NaN that every machine writes alike. */
+void libraries_take_nan(lua_State *L);
 
 #endif

@@ -7,6 +7,7 @@
 #include "sandbox/streams_internal.h"
 
 #include "base/fault.h"
+#include "sandbox/libraries_internal.h"
 #include "sandbox/sandbox.h"
 
 #include <errno.h>
@@ -152,6 +153,7 @@ static int counted_write(lua_State *L) {
     for (int k = 1; k <= lua_gettop(L); k++)
         size += lua_type(L, k) == LUA_TSTRING ? (size_t)lua_rawlen(L, k) : lua_type(L, k) == LUA_TNUMBER ? 24 : 0;
     limits_output(L, size);
+    libraries_take_nan(L);
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
     lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);

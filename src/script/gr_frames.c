@@ -50,7 +50,7 @@ static bool count_frames(struct script_context *context, const struct script_val
                          args[FRAMES_COUNT].given ? "count and seconds exclude each other"
                                                   : "count or seconds is missing");
     double count = args[FRAMES_COUNT].given ? args[FRAMES_COUNT].number
-                                            : fmax(1, floor(args[FRAMES_SECONDS].number * plan->frame.rate + 0.5));
+                                            : math_max(1, floor(args[FRAMES_SECONDS].number * plan->frame.rate + 0.5));
     if (count > limit)
         return error_set(error, ERROR_SCENE, "%.15g frames are more than %.15g (--picture-count allows more)", count,
                          limit);

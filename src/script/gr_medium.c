@@ -119,7 +119,7 @@ static bool read_box(const struct script_value *args, struct box *box, struct er
     }
     if (args[MEDIUM_TOP].given && !(args[MEDIUM_TOP].number > box->min.y))
         return error_set(error, ERROR_SCENE, "top is below the box, so nothing is left of the medium");
-    box->max.y = args[MEDIUM_TOP].given ? fmin(box->max.y, args[MEDIUM_TOP].number) : box->max.y;
+    box->max.y = args[MEDIUM_TOP].given ? math_min(box->max.y, args[MEDIUM_TOP].number) : box->max.y;
     return true;
 }
 

@@ -214,7 +214,7 @@ static bool gr_scale(struct script_context *context, const struct script_value *
                      struct error *error) {
     (void)result;
     struct vec3 factors = step_of(args);
-    double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
+    double min = math_min(math_min(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
     if (!isfinite(1 / min)) {
         context_warn_once(context, WARNED_OTHER, "a factor is %g, so nothing under this node is drawn", min);
         scene_note_change(&context->scene);
@@ -300,7 +300,7 @@ static bool gr_pose(struct script_context *context, const struct script_value *a
         return error_set(error, ERROR_SCENE, "the quaternion must not be 0");
     struct vec3 factors = scale->given ? scale->vector : vec3_all(1);
     /* A node of no size has no inverse; it is not drawn. */
-    double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
+    double min = math_min(math_min(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
     bool singular = !isfinite(1 / min);
     const struct transform steps[NODE_STEPS] = {
         [NODE_TRANSLATE] = transform_translate(args[POSE_TRANSLATE].vector),

@@ -89,7 +89,7 @@ double models_light_at(const struct model *model, struct vec3 point, double near
     for (size_t i = 0; i < model->lights.count; i++) {
         const struct model_light *light = &model_lights(model)[i];
         double far = vec3_length(vec3_sub(affine_point(&light->model_from_light, vec3_all(0)), point));
-        double distance = light->kind == MODEL_LIGHT_DIRECTIONAL ? 1 : fmax(far, near);
+        double distance = light->kind == MODEL_LIGHT_DIRECTIONAL ? 1 : math_max(far, near);
         sum += colour_max_abs(light->intensity) * colour_of_lumens / (distance * distance);
     }
     return sum;

@@ -352,7 +352,7 @@ static void set_numbers(const struct script_value *args, struct openpbr *out, st
     struct colour extinction =
         colour_make(absorption(colour.r, depth), absorption(colour.g, depth), absorption(colour.b, depth));
     struct colour rest = colour_sub(extinction, out->transmission_scattering);
-    phong->absorption = colour_sub(rest, colour_all(fmin(fmin(fmin(rest.r, rest.g), rest.b), 0)));
+    phong->absorption = colour_sub(rest, colour_all(math_min(math_min(math_min(rest.r, rest.g), rest.b), 0)));
 }
 
 static bool openpbr(struct script_context *context, const struct script_value *args, struct script_result *result,

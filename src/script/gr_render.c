@@ -405,7 +405,7 @@ static struct vec3 turntable_middle(const struct render_request *request, struct
     struct vec3 centre = bounded ? vec3_scale(vec3_add(box.min, box.max), 0.5) : vec3_all(0);
     double length = vec3_dot(view, view);
     double along = length > 0 ? vec3_dot(vec3_sub(centre, camera->eye), view) / length : 0;
-    return vec3_add_scaled(camera->eye, view, fmax(along, 0));
+    return vec3_add_scaled(camera->eye, view, math_max(along, 0));
 }
 
 /* Rotates the camera, and the poses that it moves to, about the line of `up` through the centre. */

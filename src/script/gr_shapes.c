@@ -91,7 +91,7 @@ static bool gr_cone(struct script_context *context, const struct script_value *a
                     struct error *error) {
     struct vec3 from = vector_or(&args[CONE_FROM], 0, 0, 0), to = vector_or(&args[CONE_TO], 0, 1, 0);
     double first = number_or(&args[CONE_FROM_RADIUS], 0), second = number_or(&args[CONE_RADIUS], 1);
-    if (!ends_are_fine(from, to, error) || !length_is_fine(fmax(first, second), "the larger radius", error))
+    if (!ends_are_fine(from, to, error) || !length_is_fine(math_max(first, second), "the larger radius", error))
         return false;
     struct node *node = shape_node(context, args, "cone", error);
     struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
@@ -233,7 +233,7 @@ static bool gr_quadric(struct script_context *context, const struct script_value
     for (int i = 0; i < 10; i++) {
         quadric->c[i] = number_or(&args[QUADRIC_XX + i], 0);
         if (i < 9)
-            largest = fmax(largest, fabs(quadric->c[i]));
+            largest = math_max(largest, fabs(quadric->c[i]));
     }
     bool none = true;
     for (int i = 0; i < 9; i++)
@@ -267,7 +267,7 @@ static const struct script_parameter torus_parameters[] = {
 static bool gr_torus(struct script_context *context, const struct script_value *args, struct script_result *result,
                      struct error *error) {
     double major = number_or(&args[TORUS_MAJOR], 1), minor = number_or(&args[TORUS_MINOR], 0.25);
-    if (!length_is_fine(minor, "minor", error) || !length_is_fine(fmax(major, minor), "major", error))
+    if (!length_is_fine(minor, "minor", error) || !length_is_fine(math_max(major, minor), "major", error))
         return false;
     if (minor < 1e-6 * major)
         return error_set(error, ERROR_SCENE, "minor must be at least a millionth of major: %g, %g", minor, major);

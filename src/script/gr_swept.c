@@ -363,8 +363,8 @@ static bool gr_height_field(struct script_context *context, const struct script_
         return false;
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < (size_t)in.columns * in.rows; i++) {
-        low = fmin(low, in.heights[i]);
-        high = fmax(high, in.heights[i]);
+        low = math_min(low, in.heights[i]);
+        high = math_max(high, in.heights[i]);
     }
     in.floor = args[FIELD_FLOOR].given ? args[FIELD_FLOOR].number : low - (high > low ? (high - low) / 10 : 0.1);
     struct shape shape = {.kind = SHAPE_HEIGHT_FIELD,

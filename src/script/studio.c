@@ -67,14 +67,14 @@ struct framed studio_frame(struct node *root, const struct framing *framing) {
 
     /* The scene is measured at its middle; its nearest side must fit, too. */
     double slope = el_tan(framing->fov * (PI / 360));
-    double distance = fmax(half.y / tall, half.x / (wide * framing->aspect)) / slope;
-    double near = half.z + fmax(half.y, half.x / framing->aspect) / (edge * slope);
-    distance = fmax(distance, near);
+    double distance = math_max(half.y / tall, half.x / (wide * framing->aspect)) / slope;
+    double near = half.z + math_max(half.y, half.x / framing->aspect) / (edge * slope);
+    distance = math_max(distance, near);
     struct vec3 target = along_axes(&axes, middle);
     return (struct framed){.eye = vec3_add_scaled(target, axes.back, distance),
                            .target = target,
                            .distance = distance,
-                           .view_height = 2 * fmax(half.y / tall, half.x / (wide * framing->aspect))};
+                           .view_height = 2 * math_max(half.y / tall, half.x / (wide * framing->aspect))};
 }
 
 static bool shines(const struct material *material) {
@@ -174,6 +174,6 @@ double studio_ground(const struct settings *settings, struct vec3 view) {
     double light = integrator_traits(settings->integrator).sky_lights ? even_sky : ambient[linear];
     for (int i = 0; i < STUDIO_LIGHTS; i++)
         light += facing * before_even * soft_lights[i].light[linear] *
-                 fmax(vec3_normalize(along_axes(&axes, soft_lights[i].to)).y, 0);
+                 math_max(vec3_normalize(along_axes(&axes, soft_lights[i].to)).y, 0);
     return even_sky / light;
 }

@@ -99,8 +99,8 @@ bool picture_request_enlarge(const struct picture_request *request, uint32_t wid
     out->height = height;
     out->full_width = (uint32_t)full_width;
     out->full_height = (uint32_t)full_height;
-    out->x0 = (uint32_t)fmin(floor(across * request->x0 + 0.5), full_width - width);
-    out->y0 = (uint32_t)fmin(floor(down * request->y0 + 0.5), full_height - height);
+    out->x0 = (uint32_t)math_min(floor(across * request->x0 + 0.5), full_width - width);
+    out->y0 = (uint32_t)math_min(floor(down * request->y0 + 0.5), full_height - height);
     out->shown = (struct film_rectangle){out->x0, out->y0, out->x0 + width, out->y0 + height};
     out->layers = out->in_window = 0;
     return true;

@@ -1,5 +1,5 @@
-/* Both FILE pointers are replaced by streams with our own write function (fopencookie, glibc), so that all text of the
- * program uses it.
+/* Streams with our own write function (fopencookie, glibc and musl) take the place of stdout and stderr for text of the
+ * program: not every C library allows an assignment to these.
  *
  * Text of a scene is written at once, without a buffer, as by io.stderr. A write to a pipe whose reader has stopped
  * waits, with the stream locked; the program checks that the pipe accepts text before it locks the stream. */
@@ -15,6 +15,16 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+static FILE *replaced[2]; /* by standard_streams_begin, or NULL */
+
+FILE *standard_output(void) {
+    return replaced[0] ? replaced[0] : stdout;
+}
+
+FILE *standard_error(void) {
+    return replaced[1] ? replaced[1] : stderr;
+}
 
 static bool is_ending(void) {
     sigset_t pending;
@@ -70,20 +80,16 @@ void standard_streams_begin(struct standard_streams *streams) {
         return;
     }
     (void)fflush(NULL);
-    streams->before[0] = stdout;
-    streams->before[1] = stderr;
-    stdout = out;
-    stderr = err;
+    replaced[0] = out;
+    replaced[1] = err;
 }
 
-void standard_streams_end(struct standard_streams *streams) {
-    if (!streams->before[0])
-        return;
-    (void)fclose(stdout);
-    (void)fclose(stderr);
-    stdout = streams->before[0];
-    stderr = streams->before[1];
-    streams->before[0] = NULL;
+void standard_streams_end(void) {
+    for (int i = 0; i < 2; i++) {
+        if (replaced[i])
+            (void)fclose(replaced[i]);
+        replaced[i] = NULL;
+    }
 }
 
 /* Standard error, shared with scenes. */
@@ -113,7 +119,7 @@ void error_stream_begin_line(struct error_stream *stream) {
     if (!stream)
         return;
     if (atomic_exchange(&stream->open, 0))
-        (void)fputc('\n', stderr);
+        (void)fputc('\n', standard_error());
     atomic_fetch_add(&stream->lines, 1);
 }
 

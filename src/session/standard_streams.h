@@ -22,15 +22,17 @@ struct standard_stream {
 /* Zero value: not begun. */
 struct standard_streams {
     struct standard_stream out, err;
-    bool ended;      /* set when the signal has been read: from then on writes wait only briefly */
-    FILE *before[2]; /* the original stdout and stderr */
+    bool ended; /* set when the signal has been read: from then on writes wait only briefly */
 };
 
-/* Replaces stdout and stderr. SIGINT, SIGTERM and SIGHUP must be blocked. The struct must stay until
- * standard_streams_end. Without memory nothing is replaced. */
+/* Where the program writes what a supervisor may print: stdout and stderr, or what is in their place. */
+FILE *standard_output(void);
+FILE *standard_error(void);
+/* Puts streams in the place of stdout and stderr. SIGINT, SIGTERM and SIGHUP must be blocked. The struct must stay
+ * until standard_streams_end. Without memory nothing is replaced. */
 void standard_streams_begin(struct standard_streams *streams);
 /* Writes buffered text, and restores the streams. Also for a process created by fork. */
-void standard_streams_end(struct standard_streams *streams);
+void standard_streams_end(void);
 
 /* Standard error, which the program and its scenes share. Both write to it directly, one at a time, under a lock. The
  * program ends a line that a scene has left unfinished, and the scene's guard (base/terminal_text.h) begins a new one

@@ -5,6 +5,7 @@
 #include "math/colour.h"
 
 #include "base/terminal_text.h"
+#include "session/standard_streams.h"
 
 #include <poll.h>
 #include <stdarg.h>
@@ -83,7 +84,7 @@ void text_print_message(FILE *stream, enum text_kind kind, const char *text) {
     size_t line = strcspn(text, "\n");
     const char *word = kinds[kind].word, *at = memmem(text, line, word, strlen(word)),
                *rest = at ? at + strlen(word) : NULL;
-    bool is_terminal = stream == stderr && isatty(STDERR_FILENO), continued = kind == TEXT_ERROR;
+    bool is_terminal = stream == standard_error() && isatty(STDERR_FILENO), continued = kind == TEXT_ERROR;
     bool coloured = has_colour(is_terminal);
     if (!coloured && (at || !is_terminal)) {
         print_cleaned(stream, text, continued);

@@ -59,7 +59,7 @@ static bool may_be_inside(struct extent *search, const struct box *cell) {
         for (uint32_t i = 0; i < node->count; i++) {
             const struct blob_element *e = &search->blob->elements[tree->order[node->first + i]];
             double distance = vec3_length(vec3_sub(middle, axis_point(e, middle)));
-            sum += field(e, e->strength > 0 ? fmax(0, distance - extent) : distance + extent);
+            sum += field(e, e->strength > 0 ? math_max(0, distance - extent) : distance + extent);
             search->work++;
         }
         n++;
@@ -97,14 +97,14 @@ static void extent_along(struct extent *search, const struct box *cell, int dept
 /* k (1 - x^2)^2 = threshold. */
 static double extent_of_one(const struct blob *blob) {
     const struct blob_element *e = &blob->elements[0];
-    return e->radius * sqrt(fmax(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
+    return e->radius * sqrt(math_max(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
 }
 
 static double furthest(const struct blob *blob, struct vec3 g) {
     const struct blob_element *e = &blob->elements[0];
     if (blob->count == 1)
         return e->strength >= blob->threshold
-                   ? fmax(vec3_dot(g, e->a), vec3_dot(g, e->b)) + extent_of_one(blob) * vec3_length(g)
+                   ? math_max(vec3_dot(g, e->a), vec3_dot(g, e->b)) + extent_of_one(blob) * vec3_length(g)
                    : vec3_dot(g, e->a);
     struct extent search = {.blob = blob, .g = g, .furthest = -INFINITY};
     extent_along(&search, &blob->bounds, 0);
@@ -135,7 +135,7 @@ static bool check(const struct blob_input *in, struct error *error) {
     for (uint32_t i = 0; i < in->count; i++) {
         const struct blob_element *e = &in->elements[i];
         if (!vec3_finite(e->a) || !vec3_finite(e->b) || !(e->radius > 0x1p-300) ||
-            !(fmax(fmax(vec3_max_abs(e->a), vec3_max_abs(e->b)), e->radius) < 0x1p300))
+            !(math_max(math_max(vec3_max_abs(e->a), vec3_max_abs(e->b)), e->radius) < 0x1p300))
             return error_set(error, ERROR_SCENE, "element %u of the blob has no usable size", i + 1);
         if (!isfinite(e->strength) || e->strength == 0)
             return error_set(error, ERROR_SCENE, "element %u of the blob has the strength %g", i + 1, e->strength);
@@ -171,7 +171,7 @@ const struct blob *blob_build(struct arena *arena, const struct blob_input *in, 
     find_bounds(blob);
     blob->middle =
         box_is_empty(&adding) ? elements[0].a : vec3_add(vec3_scale(adding.min, 0.5), vec3_scale(adding.max, 0.5));
-    blob->size = fmax(vec3_max_abs(all.min), vec3_max_abs(all.max));
+    blob->size = math_max(vec3_max_abs(all.min), vec3_max_abs(all.max));
     return blob;
 }
 
@@ -218,8 +218,8 @@ static bool add_stretch(const struct line *line, const struct blob *blob, uint32
         if (!(distance < e->radius))
             return true;
         double half = sqrt((e->radius - distance) * (e->radius + distance) / dd);
-        lo = fmax(lo, foot - half);
-        hi = fmin(hi, foot + half);
+        lo = math_max(lo, foot - half);
+        hi = math_min(hi, foot + half);
     } else if (!(vec3_length(p) < e->radius)) {
         return true;
     }

@@ -131,7 +131,7 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
         boxes[i] = box_empty();
         for (int k = 0; k < 4; k++) {
             boxes[i] = box_add_point(boxes[i], control(piece, k));
-            widest = fmax(widest, fabs(piece->c[3][k]));
+            widest = math_max(widest, fabs(piece->c[3][k]));
         }
         boxes[i].min = vec3_sub(boxes[i].min, vec3_all(widest / 2));
         boxes[i].max = vec3_add(boxes[i].max, vec3_all(widest / 2));
@@ -198,14 +198,14 @@ static bool piece_crossings(const void *shape, uint32_t part, const struct line 
     double widest = 0;
     for (int k = 0; k < 4; k++) {
         p[k] = across(vec3_sub(control(piece, k), origin), line->direction);
-        widest = fmax(widest, fabs(piece->c[3][k]));
+        widest = math_max(widest, fabs(piece->c[3][k]));
         sum_p = vec3_add(sum_p, p[k]);
     }
     /* All of it beyond a straight edge that is farther than the ribbon reaches. */
     struct vec3 outer = vec3_normalize(sum_p);
     double nearest = INFINITY;
     for (int k = 0; k < 4; k++)
-        nearest = fmin(nearest, vec3_dot(p[k], outer));
+        nearest = math_min(nearest, vec3_dot(p[k], outer));
     if (nearest > 0.5 * (1 + 0x1p-30) * widest)
         return true;
     /* A corner at the beginning: towards it on the piece before, away from it on this one. */
@@ -259,10 +259,10 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
     facing = vec3_normalize(facing);
     struct vec3 side = vec3_cross(along, facing);
     double off = width > 0 ? vec3_dot(vec3_sub(point, middle), side) / width : 0;
-    off = fmin(fmax(off, -rim), rim);
+    off = math_min(math_max(off, -rim), rim);
     struct vec3 round = vec3_add(vec3_scale(side, 2 * off), vec3_scale(facing, sqrt(1 - 4 * off * off)));
     struct vec3 normal = curve->flat ? facing : round;
-    double size = fmax(vec3_max_abs(curve->bounds.min), vec3_max_abs(curve->bounds.max));
+    double size = math_max(vec3_max_abs(curve->bounds.min), vec3_max_abs(curve->bounds.max));
     *out = (struct surface){.point = vec3_add_scaled(curve->flat ? point : middle, normal, width / 2),
                             .normal = normal,
                             .shading_normal = normal,

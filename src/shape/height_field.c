@@ -36,7 +36,26 @@ static double height(const struct height_field *f, uint32_t column, uint32_t row
 /* ---- building ---- */
 
 static struct range range_join(struct range a, struct range b) {
-    return (struct range){fmin(a.lo, b.lo), fmax(a.hi, b.hi)};
+    return (struct range){math_min(a.lo, b.lo), math_max(a.hi, b.hi)};
+}
+
+/* Of the four corners of a cell. */
+static struct range range_of_corners(const struct height_field *f, uint32_t column, uint32_t row) {
+    struct range r = {INFINITY, -INFINITY};
+    for (uint32_t k = 0; k < 4; k++) {
+        double h = height(f, column + (k & 1), row + (k >> 1));
+        r = range_join(r, (struct range){h, h});
+    }
+    return r;
+}
+
+/* Of the four cells of the level below, of which some may lie outside. */
+static struct range range_of_parts(const struct level *below, uint32_t column, uint32_t row) {
+    struct range r = {INFINITY, -INFINITY};
+    for (uint32_t j = 2 * row; j < 2 * row + 2 && j < below->rows; j++)
+        for (uint32_t i = 2 * column; i < 2 * column + 2 && i < below->columns; i++)
+            r = range_join(r, below->ranges[(size_t)j * below->columns + i]);
+    return r;
 }
 
 static bool build_levels(struct height_field *f, struct arena *arena) {
@@ -46,22 +65,10 @@ static bool build_levels(struct height_field *f, struct arena *arena) {
         *level = (struct level){columns, rows, arena_alloc_array(arena, (size_t)columns * rows, sizeof *level->ranges)};
         if (!level->ranges)
             return false;
-        /* The range of a cell is that of its four corners, or of the four cells below it. */
         for (uint32_t j = 0; j < rows; j++)
-            for (uint32_t i = 0; i < columns; i++) {
-                struct range r = {INFINITY, -INFINITY};
-                const struct level *below = level - 1;
-                for (uint32_t k = 0; k < 4; k++) {
-                    uint32_t di = k & 1, dj = k >> 1;
-                    if (f->level_count == 0) {
-                        double h = height(f, i + di, j + dj);
-                        r = range_join(r, (struct range){h, h});
-                    } else if (2 * i + di < below->columns && 2 * j + dj < below->rows) {
-                        r = range_join(r, below->ranges[(size_t)(2 * j + dj) * below->columns + 2 * i + di]);
-                    }
-                }
-                level->ranges[(size_t)j * columns + i] = r;
-            }
+            for (uint32_t i = 0; i < columns; i++)
+                level->ranges[(size_t)j * columns + i] =
+                    f->level_count == 0 ? range_of_corners(f, i, j) : range_of_parts(level - 1, i, j);
         if (columns == 1 && rows == 1)
             break;
         columns = (columns + 1) / 2;
@@ -114,7 +121,7 @@ const struct height_field *height_field_build(struct arena *arena, const struct 
     }
     if (in->open)
         f->floor = f->lo;
-    f->size = fmax(1, fmax(fabs(f->floor), fmax(fabs(f->lo), fabs(f->hi))));
+    f->size = math_max(1, math_max(fabs(f->floor), math_max(fabs(f->lo), fabs(f->hi))));
     return f;
 }
 
@@ -170,11 +177,11 @@ static void extent_along(const struct height_field *f, struct vec3 g, int k, uin
     uint32_t right = g.x > 0, behind = g.z > 0;
     if (k == 0) {
         for (uint32_t n = 0; n < 4; n++)
-            *found = fmax(*found, vec3_dot(g, point_at(f, i + (n & 1), j + (n >> 1))));
+            *found = math_max(*found, vec3_dot(g, point_at(f, i + (n & 1), j + (n >> 1))));
         return;
     }
     struct range r = level->ranges[(size_t)j * level->columns + i];
-    double x = fmin(1, ldexp(i + right, k) / f->columns), z = fmin(1, ldexp(j + behind, k) / f->rows);
+    double x = math_min(1, ldexp(i + right, k) / f->columns), z = math_min(1, ldexp(j + behind, k) / f->rows);
     if (vec3_dot(g, vec3_make(x, g.y > 0 ? r.hi : r.lo, z)) <= *found)
         return;
     for (uint32_t n = 0; n < 4; n++)
@@ -182,7 +189,7 @@ static void extent_along(const struct height_field *f, struct vec3 g, int k, uin
 }
 
 static double furthest(const struct height_field *f, struct vec3 g) {
-    double found = f->open ? -INFINITY : fmax(g.x, 0) + g.y * f->floor + fmax(g.z, 0);
+    double found = f->open ? -INFINITY : math_max(g.x, 0) + g.y * f->floor + math_max(g.z, 0);
     extent_along(f, g, f->level_count - 1, 0, 0, &found);
     return found;
 }
@@ -229,7 +236,7 @@ static double phi(const struct cell_traversal *w, double s, uint32_t column, uin
     return (w->y + s * w->dy) - (plane.h0 + plane.a * (w->x + s * w->dx - column) + plane.b * (w->z + s * w->dz - row));
 }
 
-/* For numbers; fmin and fmax are function calls because of NaN. */
+/* For numbers: math_min and math_max also look for NaN. */
 static inline double lesser(double a, double b) {
     return a < b ? a : b;
 }
@@ -436,7 +443,7 @@ bool height_field_nearest(const struct height_field *f, const struct ray *ray, s
 
 /* The cell at a place of the unit square, and where in it. */
 static uint32_t cell_at(double position, uint32_t cells, double *inside) {
-    double scaled = fmin(fmax(position, 0), 1) * cells;
+    double scaled = math_min(math_max(position, 0), 1) * cells;
     uint32_t cell = (uint32_t)scaled;
     if (cell >= cells)
         cell = cells - 1;
@@ -465,7 +472,7 @@ static void corner_slopes(const struct height_field *f, uint32_t column, uint32_
 static void describe_ground(const struct height_field *f, uint32_t triangle, struct vec3 p, struct surface *out) {
     uint32_t cell = triangle / 2, column = cell % f->columns, row = cell / f->columns;
     bool upper = triangle % 2;
-    double x = fmin(fmax(p.x * f->columns - column, 0), 1), z = fmin(fmax(p.z * f->rows - row, 0), 1);
+    double x = math_min(math_max(p.x * f->columns - column, 0), 1), z = math_min(math_max(p.z * f->rows - row, 0), 1);
     struct triangle_plane plane = triangle_plane(f, column, row, upper);
     p.y = plane.h0 + plane.a * x + plane.b * z;
     double x_slope = plane.a * f->columns, z_slope = plane.b * f->rows;
@@ -489,8 +496,8 @@ static void describe_ground(const struct height_field *f, uint32_t triangle, str
 void height_field_describe(const struct height_field *f, const struct ray *ray, const struct crossing *crossing,
                            struct surface *out) {
     struct vec3 p = ray_at(ray, crossing->t), n = {0, 0, 0};
-    p.x = fmin(fmax(p.x, 0), 1);
-    p.z = fmin(fmax(p.z, 0), 1);
+    p.x = math_min(math_max(p.x, 0), 1);
+    p.z = math_min(math_max(p.z, 0), 1);
     *out = (struct surface){.has_uv = true, .error = 0x1p-46 * f->size};
     if (crossing->part >= GROUND) {
         describe_ground(f, crossing->part - GROUND, p, out);

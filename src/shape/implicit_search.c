@@ -50,7 +50,7 @@ struct search {
 /* The larger one of a share of the size, and of the tolerance at s. */
 static double room_at(const struct search *search, double share, double s) {
     const double room = search->solid->size * share;
-    return search->tolerance > 0 ? fmax(room, search->tolerance * line_t(&search->line, s)) : room;
+    return search->tolerance > 0 ? math_max(room, search->tolerance * line_t(&search->line, s)) : room;
 }
 
 /* Slopes along the line. */
@@ -386,11 +386,11 @@ static void march(struct search *search, uint32_t number, double s0, double s1) 
         clear = clear < INFINITY ? clear : 0; /* or NaN */
         double step = clear > smallest ? clear : smallest, longer = 1.9 * clear / (1 - trend);
         bool is_longer = longer > step;
-        part.b = fmin(part.a + (is_longer ? longer : step), s1);
+        part.b = math_min(part.a + (is_longer ? longer : step), s1);
         part.fb = value_at(search, program, part.b);
         bool changes = (part.fa < 0) != (part.fb < 0);
         if (is_longer && (changes || !(fabs(part.fa) + fabs(part.fb) >= lipschitz * (part.b - part.a)))) {
-            part.b = fmin(part.a + step, s1);
+            part.b = math_min(part.a + step, s1);
             part.fb = value_at(search, program, part.b);
             changes = (part.fa < 0) != (part.fb < 0);
         }
@@ -400,7 +400,7 @@ static void march(struct search *search, uint32_t number, double s0, double s1) 
             smallest_steps = 0;
         }
         trend = (fabs(part.fb) - fabs(part.fa)) / (lipschitz * (part.b - part.a));
-        trend = trend > -1 && !changes ? fmin(trend, 0.8) : -1; /* or NaN */
+        trend = trend > -1 && !changes ? math_min(trend, 0.8) : -1; /* or NaN */
         if (changes)
             pass_change(search, number, &part);
         if (search->has_waiting && search->waiting.t < line_t(&search->line, part.b) && !search->is_done)

@@ -48,7 +48,7 @@ static bool check_points(const struct lathe_input *in, struct error *error) {
         if (in->points[i][0] < 0 && in->kind != SPLINE_BEZIER)
             return error_set(error, ERROR_SCENE, "point %u of the profile has the negative radius %g", i + 1,
                              in->points[i][0]);
-        top = fmax(top, fmax(fabs(in->points[i][0]), fabs(in->points[i][1])));
+        top = math_max(top, math_max(fabs(in->points[i][0]), fabs(in->points[i][1])));
     }
     if (!(top > 0x1p-300 && top < 0x1p300))
         return error_set(error, ERROR_SCENE, "the profile has no extent, or is too large");
@@ -148,7 +148,7 @@ const struct lathe *lathe_build(struct arena *arena, const struct lathe_input *i
             boxes[i] = box_add_point(boxes[i], vec3_make(c->p[k], c->q[k], 0));
         profile = box_join(profile, boxes[i]);
     }
-    double size = fmax(vec3_max_abs(profile.min), vec3_max_abs(profile.max));
+    double size = math_max(vec3_max_abs(profile.min), vec3_max_abs(profile.max));
     if (!settle_radii(all, size, error))
         return NULL;
     if (!part_tree_build(arena, boxes, all->count, 2, &lathe->tree)) {
@@ -235,13 +235,13 @@ static bool hyperbola_meets(const struct hyperbola *hy, const struct box *box) {
         lo = -INFINITY, hi = INFINITY;
     } else {
         double a = lo / hy->d, b = hi / hy->d;
-        lo = fmin(a, b), hi = fmax(a, b);
+        lo = math_min(a, b), hi = math_max(a, b);
     }
     if (hy->c == 0)
         return box->min.x <= hy->h;
     /* Distances from the axis over that range of s. */
     lo = (lo - hy->foot) * hy->c, hi = (hi - hy->foot) * hy->c;
-    double far = fmax(-lo, hi), near = lo > 0 ? lo : hi < 0 ? -hi : 0;
+    double far = math_max(-lo, hi), near = lo > 0 ? lo : hi < 0 ? -hi : 0;
     double outer = (box->max.x - hy->h) * (box->max.x + hy->h);
     double inner = box->min.x > hy->h ? (box->min.x - hy->h) * (box->min.x + hy->h) : 0;
     /* The foot may be far away: rounding in the distances is relative to that. */
@@ -284,7 +284,7 @@ static double bracketed_root(const struct search *f, double sign, double lo, dou
     const struct hyperbola *hy = f->hy;
     const double *p = f->piece->p, *q = f->piece->q;
     struct bracket b = {.lo = lo, .hi = hi, .last_step = hi - lo, .rising = g_lo < 0};
-    b.x = lo + (hi - lo) * fmin(fmax(g_lo / (g_lo - g_hi), 0.0625), 0.9375);
+    b.x = lo + (hi - lo) * math_min(math_max(g_lo / (g_lo - g_hi), 0.0625), 0.9375);
     for (int i = 0; i < 120; i++) {
         double x = b.x;
         double r = radius_at(f->piece, x), w = width(hy, r);
@@ -305,14 +305,14 @@ static double bracketed_root(const struct search *f, double sign, double lo, dou
 /* Bounds of a product of two ranges. */
 static void product_range(double a0, double a1, double b0, double b1, double *lo, double *hi) {
     double p = a0 * b0, q = a0 * b1, r = a1 * b0, s = a1 * b1;
-    *lo = fmin(fmin(p, q), fmin(r, s));
-    *hi = fmax(fmax(p, q), fmax(r, s));
+    *lo = math_min(math_min(p, q), math_min(r, s));
+    *hi = math_max(math_max(p, q), math_max(r, s));
 }
 
 static void slope_range(const double b[4], double *lo, double *hi) {
     double p = b[1] - b[0], q = b[2] - b[1], r = b[3] - b[2];
-    *lo = 3 * fmin(p, fmin(q, r));
-    *hi = 3 * fmax(p, fmax(q, r));
+    *lo = 3 * math_min(p, math_min(q, r));
+    *hi = 3 * math_max(p, math_max(q, r));
 }
 
 struct span {
@@ -336,18 +336,18 @@ static bool may_turn(const struct hyperbola *hy, double sign, const struct span 
     double dy0, dy1, dr0, dr1, a0, a1, b0, b1;
     slope_range(span->q, &dy0, &dy1);
     slope_range(span->p, &dr0, &dr1);
-    double r0 = fmin(span->p[0], span->p[3]), r1 = fmax(span->p[0], span->p[3]);
+    double r0 = math_min(span->p[0], span->p[3]), r1 = math_max(span->p[0], span->p[3]);
     double w0 = width(hy, r0), w1 = width(hy, r1);
     product_range(hy->c * w0, hy->c * w1, dy0, dy1, &a0, &a1);
     double k0 = sign * hy->d * r0, k1 = sign * hy->d * r1;
-    product_range(fmin(k0, k1), fmax(k0, k1), dr0, dr1, &b0, &b1);
+    product_range(math_min(k0, k1), math_max(k0, k1), dr0, dr1, &b0, &b1);
     *none = false;
     if (a0 - b1 >= 0 || a1 - b0 <= 0)
         return false;
-    double y0 = hy->c * fmin(span->q[0], span->q[3]) - hy->c * hy->y_foot;
-    double y1 = hy->c * fmax(span->q[0], span->q[3]) - hy->c * hy->y_foot;
+    double y0 = hy->c * math_min(span->q[0], span->q[3]) - hy->c * hy->y_foot;
+    double y1 = hy->c * math_max(span->q[0], span->q[3]) - hy->c * hy->y_foot;
     double m0 = sign * hy->d * w0, m1 = sign * hy->d * w1;
-    *none = y0 - fmax(m0, m1) > 0 || y1 - fmin(m0, m1) < 0;
+    *none = y0 - math_max(m0, m1) > 0 || y1 - math_min(m0, m1) < 0;
     return true;
 }
 
@@ -496,7 +496,7 @@ bool lathe_contains(const struct lathe *lathe, struct vec3 point) {
     bool inside = false;
     for (uint32_t i = 0; i < lathe->outline.count; i++) {
         const struct outline_piece *c = &lathe->outline.pieces[i];
-        if ((c->q[0] > point.y) == (c->q[3] > point.y) || fmax(c->p[0], c->p[3]) <= r)
+        if ((c->q[0] > point.y) == (c->q[3] > point.y) || math_max(c->p[0], c->p[3]) <= r)
             continue;
         double b[4], roots[3], x = (point.y - c->q[0]) / (c->q[3] - c->q[0]);
         for (int k = 0; k < 4; k++)
@@ -518,7 +518,7 @@ void lathe_describe(const struct lathe *lathe, const struct ray *ray, const stru
     struct vec3 point = {r * radial.x, y, r * radial.z}, n = outward(c, x, radial);
     if (lathe->closed && (vec3_dot(n, ray->direction) < 0) != crossing->enter)
         n = vec3_negate(n);
-    double size = fmax(vec3_max_abs(lathe->bounds.min), vec3_max_abs(lathe->bounds.max));
+    double size = math_max(vec3_max_abs(lathe->bounds.min), vec3_max_abs(lathe->bounds.max));
     *out = (struct surface){.point = point,
                             .normal = n,
                             .shading_normal = n,

@@ -44,8 +44,7 @@ static void build(struct builder *b, uint32_t first, uint32_t count) {
         box = box_join(box, b->boxes[b->order[first + i].part]);
     struct part_node *node = &b->nodes[b->node_count++];
     struct vec3 size = vec3_sub(box.max, box.min);
-    *node = (struct part_node){.box = box_grow(box, b->pad),
-                               .first = first};
+    *node = (struct part_node){.box = box_grow(box, b->pad), .first = first};
     if (count <= b->leaf_size) {
         node->count = count;
     } else {
@@ -77,7 +76,7 @@ bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t coun
     /* Rounding grows with the largest coordinate, and so do the boxes. */
     for (uint32_t i = 0; i < count; i++) {
         b.order[i] = (struct part_middle){.part = i};
-        b.pad = fmax(b.pad, fmax(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max)));
+        b.pad = math_max(b.pad, math_max(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max)));
     }
     b.pad *= 0x1p-40;
     build(&b, 0, count);

@@ -141,7 +141,7 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
         *why = count ? "the first outline has no area" : "there is no outline";
         return false;
     }
-    double largest = fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
+    double largest = math_max(vec3_max_abs(box.min), vec3_max_abs(box.max));
     for (uint32_t i = 0; i < count; i++)
         if (fabs(vec3_dot(n, vec3_sub(points[i], points[0]))) > 1e-6 * size) {
             *why = "its points do not lie in one plane";
@@ -154,8 +154,8 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
     double x_lo = INFINITY, x_hi = -INFINITY, z_lo = INFINITY, z_hi = -INFINITY;
     for (uint32_t i = 0; i < count; i++) {
         struct vec3 p = vec3_sub(points[i], points[0]);
-        x_lo = fmin(x_lo, vec3_dot(p, x)), x_hi = fmax(x_hi, vec3_dot(p, x));
-        z_lo = fmin(z_lo, vec3_dot(p, z)), z_hi = fmax(z_hi, vec3_dot(p, z));
+        x_lo = math_min(x_lo, vec3_dot(p, x)), x_hi = math_max(x_hi, vec3_dot(p, x));
+        z_lo = math_min(z_lo, vec3_dot(p, z)), z_hi = math_max(z_hi, vec3_dot(p, z));
     }
     double(*planar_points)[2] = arena_alloc_array(arena, count, sizeof *planar_points);
     struct vec3 *corners = arena_alloc_array(arena, count, sizeof *corners);
@@ -208,8 +208,8 @@ static void polygon_extent(const struct polygon *polygon, struct vec3 g, double 
     *hi = -INFINITY;
     for (uint32_t i = 0; i < polygon->ends[polygon->outlines - 1]; i++) {
         double at = vec3_dot(g, polygon->corners[i]);
-        *lo = fmin(*lo, at);
-        *hi = fmax(*hi, at);
+        *lo = math_min(*lo, at);
+        *hi = math_max(*hi, at);
     }
 }
 
@@ -271,9 +271,9 @@ void planar_describe(const struct planar *f, const struct ray *ray, const struct
                             .has_uv = true,
                             .dpdu = f->u,
                             .dpdv = f->v};
-    double largest = fmax(vec3_max_abs(f->origin), vec3_max_abs(p));
+    double largest = math_max(vec3_max_abs(f->origin), vec3_max_abs(p));
     if (f->kind == PLANAR_POLYGON)
-        largest = fmax(largest, f->polygon->largest);
+        largest = math_max(largest, f->polygon->largest);
     out->error = 0x1p-48 * largest;
     coordinates(f, p, &out->u, &out->v);
     if (f->kind == PLANAR_DISC)
@@ -288,8 +288,8 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         plane_extent(f->normal, g, lo, hi);
         return;
     case PLANAR_PARALLELOGRAM:
-        *lo += fmin(u, 0) + fmin(v, 0);
-        *hi += fmax(u, 0) + fmax(v, 0);
+        *lo += math_min(u, 0) + math_min(v, 0);
+        *hi += math_max(u, 0) + math_max(v, 0);
         return;
     case PLANAR_DISC: {
         double extent = disc_extent(u, v);
@@ -298,8 +298,8 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         return;
     }
     case PLANAR_TRIANGLE:
-        *lo += fmin(fmin(u, v), 0);
-        *hi += fmax(fmax(u, v), 0);
+        *lo += math_min(math_min(u, v), 0);
+        *hi += math_max(math_max(u, v), 0);
         return;
     case PLANAR_POLYGON:
         polygon_extent(f->polygon, g, lo, hi);

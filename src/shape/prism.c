@@ -35,7 +35,7 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
         uint32_t count = in->curve_starts[k + 1] - in->curve_starts[k];
         for (uint32_t i = 0; i < count; i++)
             if (!isfinite(points[i][0]) || !isfinite(points[i][1]) ||
-                fmax(fabs(points[i][0]), fabs(points[i][1])) > 0x1p300) {
+                math_max(fabs(points[i][0]), fabs(points[i][1])) > 0x1p300) {
                 error_set(error, ERROR_SCENE, "point %u of curve %u of the outline is not a usable number", i + 1,
                           k + 1);
                 return NULL;
@@ -103,8 +103,8 @@ void prism_extent(const struct prism *prism, struct vec3 g, double *lo, double *
         outline_range(sum, lo, hi);
     }
     double bottom = g.y * prism->bounds.min.y, top = g.y * prism->bounds.max.y;
-    *lo += fmin(bottom, top);
-    *hi += fmax(bottom, top);
+    *lo += math_min(bottom, top);
+    *hi += math_max(bottom, top);
 }
 
 uint32_t prism_scratch_need(const struct prism *prism) {
@@ -232,7 +232,7 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
                     struct surface *out) {
     struct vec3 p = ray_at(ray, crossing->t), n = {0, 0, 0}, min = prism->bounds.min, max = prism->bounds.max;
     struct vec3 size = vec3_sub(max, min);
-    double extent = fmax(vec3_max_abs(min), vec3_max_abs(max));
+    double extent = math_max(vec3_max_abs(min), vec3_max_abs(max));
     *out = (struct surface){.has_uv = true, .error = 0x1p-48 * extent};
     if (crossing->part < SIDES) {
         bool top = crossing->part == TOP;
@@ -246,7 +246,8 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
         const struct outline_piece *c = &prism->outline.pieces[crossing->part - SIDES];
         double dp, dq, by_length = c->to > c->from ? 1 / (c->to - c->from) : 0;
         outline_tangent(c, crossing->u, &dp, &dq);
-        p = vec3_make(cubic_value(c->p, crossing->u), fmin(fmax(p.y, min.y), max.y), cubic_value(c->q, crossing->u));
+        p = vec3_make(cubic_value(c->p, crossing->u), math_min(math_max(p.y, min.y), max.y),
+                      cubic_value(c->q, crossing->u));
         n = vec3_normalize(vec3_make(dq, 0, -dp));
         if ((vec3_dot(n, ray->direction) < 0) != crossing->enter)
             n = vec3_negate(n);

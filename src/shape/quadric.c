@@ -135,8 +135,8 @@ bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *
     struct vec3 half = vec3_scale(vec3_sub(own.max, own.min), 0.5), box_centre = vec3_add(own.min, half);
     double box_middle = vec3_dot(g, box_centre);
     double box_extent = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
-    *lo = fmax(middle - extent, box_middle - box_extent);
-    *hi = fmin(middle + extent, box_middle + box_extent);
+    *lo = math_max(middle - extent, box_middle - box_extent);
+    *hi = math_min(middle + extent, box_middle + box_extent);
     return true;
 }
 
@@ -250,7 +250,7 @@ void quadric_describe(const struct quadric *q, const struct ray *ray, const stru
         double slack = quadric_magnitude(q, p) / sqrt(gg), far = vec3_max_abs(p);
         out->point = p;
         out->normal = gg > 0 ? gradient : vec3_negate(ray->direction);
-        out->error = 0x1p-49 * (fmin(slack, 0x1p23 * far) + far);
+        out->error = 0x1p-49 * (math_min(slack, 0x1p23 * far) + far);
         describe_image(q, out);
     }
     out->shading_normal = out->pattern_normal = out->normal;

@@ -52,7 +52,7 @@ bool revolved_quadric_contains(const struct revolved_quadric *c, struct vec3 poi
 }
 
 static void describe_end(const struct revolved_quadric *c, struct vec3 f, bool high, struct surface *out) {
-    double s = high ? c->hi : c->lo, radius = sqrt(fmax((c->a * s + c->b) * s + c->c, 0));
+    double s = high ? c->hi : c->lo, radius = sqrt(math_max((c->a * s + c->b) * s + c->c, 0));
     struct vec3 w = vec3_add_scaled(f, c->axis, -vec3_dot(f, c->axis)), x, z;
     double size = vec3_max_abs(c->base) + fabs(s) + radius;
     out->point = vec3_add(vec3_add_scaled(c->base, c->axis, s), w);
@@ -86,7 +86,7 @@ static void describe_side(const struct revolved_quadric *c, const struct ray *ra
     }
     double size = vec3_max_abs(c->base) + vec3_max_abs(f);
     double slack = gg > 0 ? magnitude / sqrt(gg) : INFINITY, near_tip = sqrt(magnitude) * 0x1p23;
-    out->error = 0x1p-49 * (fmin(slack, near_tip) + size);
+    out->error = 0x1p-49 * (math_min(slack, near_tip) + size);
     out->point = vec3_add(c->base, f);
     out->normal = gg > 0 ? gradient : vec3_negate(ray->direction);
 
@@ -97,7 +97,7 @@ static void describe_side(const struct revolved_quadric *c, const struct ray *ra
     bool limited = isfinite(c->lo) && isfinite(c->hi);
     double length = limited ? c->hi - c->lo : 1;
     out->u = 0.5 - el_atan2(q, p) / TURN; /* to the right, seen from outside */
-    out->v = limited ? fmin(fmax((s - c->lo) / length, 0), 1) : s;
+    out->v = limited ? math_min(math_max((s - c->lo) / length, 0), 1) : s;
     out->dpdu = vec3_scale(vec3_sub(vec3_scale(x, sine), vec3_scale(z, cosine)), TURN * radius);
     double widening = radius > 0 ? (c->a * s + c->b / 2) / radius : 0;
     struct vec3 outward = vec3_add(vec3_scale(x, cosine), vec3_scale(z, sine));
@@ -124,9 +124,9 @@ static void extend_by_circle(const struct revolved_quadric *c, double s, double 
     double rounding = 0x1p-48 * (fabs(c->a) * s * s + fabs(c->b * s) + fabs(c->c));
     if (!(s >= c->lo && s <= c->hi && square >= -rounding))
         return;
-    double extent = across * sqrt(fmax(square, 0));
-    *lo = fmin(*lo, along * s - extent);
-    *hi = fmax(*hi, along * s + extent);
+    double extent = across * sqrt(math_max(square, 0));
+    *lo = math_min(*lo, along * s - extent);
+    *hi = math_max(*hi, along * s + extent);
 }
 
 void revolved_quadric_extent(const struct revolved_quadric *c, struct vec3 g, double *lo, double *hi) {
@@ -199,7 +199,7 @@ struct revolved_quadric revolved_quadric_paraboloid(double radius, double height
  * The slope follows from the rim; differences of squares are products, so that nothing cancels. */
 
 struct revolved_quadric revolved_quadric_one_sheet(double waist, double rim, double lo, double hi, bool open) {
-    double extent = fmax(fabs(lo), fabs(hi)), slope = (rim - waist) / extent * ((rim + waist) / extent);
+    double extent = math_max(fabs(lo), fabs(hi)), slope = (rim - waist) / extent * ((rim + waist) / extent);
     return revolved_quadric_upright(slope, 0, waist * waist, lo, hi, open);
 }
 

@@ -30,7 +30,7 @@ struct oriented_box oriented_box_of_quadric(const struct revolved_quadric *quadr
         double low, high;
         revolved_quadric_extent(quadric, directions[k], &low, &high);
         box.corner = vec3_add_scaled(box.corner, directions[k], low);
-        box.edges[k] = vec3_scale(directions[k], fmax(high - low, 0));
+        box.edges[k] = vec3_scale(directions[k], math_max(high - low, 0));
     }
     return box;
 }
@@ -78,14 +78,14 @@ struct oriented_box shape_part_box(const struct shape_part *part) {
     struct vec3 directions[3];
     double radius = 0;
     for (int k = 0; k < 4; k++)
-        radius = fmax(radius, part->tube[3][k]);
+        radius = math_max(radius, part->tube[3][k]);
     directions_of_tube(part, directions);
     for (int d = 0; d < 3; d++) {
         double low = INFINITY, high = -INFINITY;
         for (int k = 0; k < 4; k++) {
             double along = vec3_dot(point_of_tube(part, k), directions[d]);
-            low = fmin(low, along);
-            high = fmax(high, along);
+            low = math_min(low, along);
+            high = math_max(high, along);
         }
         box.corner = vec3_add_scaled(box.corner, directions[d], low - radius);
         box.edges[d] = vec3_scale(directions[d], high - low + 2 * radius);

@@ -33,7 +33,7 @@ static struct vec3 scaled(struct vec3 a, int exponent) {
 }
 
 static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2]) {
-    double extent = fmax(vec3_max_abs(f), radius), speed = vec3_max_abs(d);
+    double extent = math_max(vec3_max_abs(f), radius), speed = vec3_max_abs(d);
     if (!(speed > 0) || !vec3_finite(d) || !vec3_finite(f) || !isfinite(radius))
         return false;
     int extent_exponent, speed_exponent;

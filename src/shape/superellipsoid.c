@@ -21,7 +21,7 @@ struct norm {
 };
 
 static struct norm norm_of(double a, double b, double p) {
-    double max = fmax(a, b), min = fmin(a, b);
+    double max = math_max(a, b), min = math_min(a, b);
     if (!(max > 0))
         return (struct norm){0, 1, 1};
     double ratio = min / max, power = ratio > 0 ? el_pow(ratio, p) : 0, sum = 1 + power;
@@ -72,8 +72,8 @@ static bool line_in_box(const struct ray *ray, struct measured_line *line) {
             continue;
         }
         double near = (d > 0 ? -1 - o : 1 - o) / d, far = (d > 0 ? 1 - o : -1 - o) / d;
-        line->lo = fmax(line->lo, near);
-        line->hi = fmin(line->hi, far);
+        line->lo = math_max(line->lo, near);
+        line->hi = math_min(line->hi, far);
     }
     return line->lo < line->hi;
 }
@@ -116,7 +116,7 @@ struct range {
 };
 
 static struct range range_of(double a, double b) {
-    return (struct range){fmin(a, b), fmax(a, b)};
+    return (struct range){math_min(a, b), math_max(a, b)};
 }
 
 /* Products and sums in which infinity times zero is ignored. */
@@ -129,7 +129,7 @@ static struct range range_add_scaled(struct range sum, struct range a, double sc
     if (scale == 0)
         return sum;
     double p = a.lo * scale, q = a.hi * scale;
-    struct range out = {sum.lo + fmin(p, q), sum.hi + fmax(p, q)};
+    struct range out = {sum.lo + math_min(p, q), sum.hi + math_max(p, q)};
     return (struct range){isnan(out.lo) ? -INFINITY : out.lo, isnan(out.hi) ? INFINITY : out.hi};
 }
 
@@ -239,8 +239,9 @@ bool superellipsoid_contains(const struct superellipsoid *s, struct vec3 point) 
 static struct vec3 outward(const struct superellipsoid *s, struct vec3 p) {
     struct norm section = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(section.value, fabs(p.y), 2 / s->n);
     double min = 0x1p-200, max = 0x1p200;
-    double gx = fmin(fmax(all.da, min), max) * fmin(fmax(section.da, min), max), gy = fmin(all.db, max * max);
-    double gz = fmin(fmax(all.da, min), max) * fmin(fmax(section.db, min), max);
+    double gx = math_min(math_max(all.da, min), max) * math_min(math_max(section.da, min), max),
+           gy = math_min(all.db, max * max);
+    double gz = math_min(math_max(all.da, min), max) * math_min(math_max(section.db, min), max);
     return vec3_normalize(vec3_make(copysign(gx, p.x), copysign(gy, p.y), copysign(gz, p.z)));
 }
 
@@ -262,7 +263,7 @@ void superellipsoid_describe(const struct superellipsoid *s, const struct ray *r
 
     /* By direction, as on the sphere. With r = 1 / N(direction) the point is r direction. */
     double radius = vec3_length(p), ring = sqrt(p.x * p.x + p.z * p.z);
-    double y = radius > 0 ? fmin(fmax(p.y / radius, -1), 1) : 1, across = radius > 0 ? ring / radius : 0;
+    double y = radius > 0 ? math_min(math_max(p.y / radius, -1), 1) : 1, across = radius > 0 ? ring / radius : 0;
     double cosine = ring > 0 ? p.x / ring : 1, sine = ring > 0 ? p.z / ring : 0;
     out->u = 0.5 - el_atan2(p.z, p.x) / TURN;
     out->v = 0.5 + el_asin(y) / (TURN / 2);
@@ -279,7 +280,7 @@ void superellipsoid_describe(const struct superellipsoid *s, const struct ray *r
 
 /* The reach of a norm's unit ball is the dual norm, with 1/p + 1/p' = 1; of a star it is that of its hull, p = 1. */
 static double dual(double a, double b, double p) {
-    return p > 1 ? norm_of(a, b, p / (p - 1)).value : fmax(a, b);
+    return p > 1 ? norm_of(a, b, p / (p - 1)).value : math_max(a, b);
 }
 
 void superellipsoid_extent(const struct superellipsoid *s, struct vec3 g, double *lo, double *hi) {

@@ -124,7 +124,7 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
         for (int d = 0; d < 3; d++)
             points[i][d] = in->points[i][d];
         points[i][3] = in->radii[i];
-        widest = fmax(widest, in->radii[i]);
+        widest = math_max(widest, in->radii[i]);
         if (!(in->radii[i] >= 0)) {
             error_set(error, ERROR_SCENE, "radius %u of the sweep is %g, not at least 0", i + 1, in->radii[i]);
             return NULL;
@@ -302,7 +302,7 @@ static struct stretch cover(const struct view *view, struct polynomial d, struct
     int total = 2 * d.degree - 2; /* = 2 (b.degree - 1) + d.degree */
     double largest = 0;
     for (int k = 0; k <= total; k++)
-        largest = fmax(largest, fmax(4 * fabs(left[k]), right[k]));
+        largest = math_max(largest, math_max(4 * fabs(left[k]), right[k]));
     for (int k = 0; k <= total; k++) {
         left[k] = 4 * left[k] - right[k];
         if (fabs(left[k]) < 0x1p-48 * largest) /* rounding: where the derivative of the path is zero, everything is zero
@@ -351,14 +351,14 @@ static bool piece_crossings(const void *shape, uint32_t part, const struct line 
         q = vec3_add_scaled(q, view.direction, -b[k]);
         p[0][k] = q.x, p[1][k] = q.y, p[2][k] = q.z;
         r[k] = piece->c[3][k * step];
-        widest = fmax(widest, fabs(r[k]));
+        widest = math_max(widest, fabs(r[k]));
         sum = vec3_add(sum, q);
     }
     /* All of it beyond a straight edge that is farther than the balls reach. */
     struct vec3 outer = vec3_normalize(sum);
     double nearest = INFINITY;
     for (int k = 0; k <= b_degree; k++)
-        nearest = fmin(nearest, p[0][k] * outer.x + p[1][k] * outer.y + p[2][k] * outer.z);
+        nearest = math_min(nearest, p[0][k] * outer.x + p[1][k] * outer.y + p[2][k] * outer.z);
     if (nearest > (1 + 0x1p-30) * widest)
         return true;
     square_of(r, b_degree, d);
@@ -454,7 +454,7 @@ void sweep_describe(const struct sweep_path *sweep, const struct ray *ray, const
     if (!(vec3_max_abs(n) > 0)) /* a ball that is a point */
         n = vec3_normalize(vec3_scale(ray->direction, crossing->enter ? -1 : 1));
     struct vec3 point = vec3_add_scaled(centre, n, radius);
-    double size = fmax(vec3_max_abs(sweep->bounds.min), vec3_max_abs(sweep->bounds.max));
+    double size = math_max(vec3_max_abs(sweep->bounds.min), vec3_max_abs(sweep->bounds.max));
     *out = (struct surface){.point = point,
                             .normal = n,
                             .shading_normal = n,

@@ -74,8 +74,8 @@ int torus_crossings(const struct torus *torus, const struct ray *ray, struct cro
     if (torus->major > 0x1p-23 * torus->minor) {
         if (d.y != 0) {
             double bottom = (-torus->minor - o.y) / d.y, top = (torus->minor - o.y) / d.y;
-            lo = fmax(lo, fmin(bottom, top));
-            hi = fmin(hi, fmax(bottom, top));
+            lo = math_max(lo, math_min(bottom, top));
+            hi = math_min(hi, math_max(bottom, top));
         } else if (!(fabs(o.y) < torus->minor)) {
             return 0;
         }

@@ -282,11 +282,11 @@ void viewer_fit_resolution(struct viewer *viewer, double now, double seconds, do
     if (!viewer->pass.view.plain || viewer->pass.view.divide != divide)
         return;
     double side = divide * sqrt(now - viewer->pass.began);
-    double needed = fmin(fmax(fmin(side / sqrt(seconds), MIDDLE_DIVIDE), side / sqrt(limit)), 1.5 * divide);
+    double needed = math_min(math_max(math_min(side / sqrt(seconds), MIDDLE_DIVIDE), side / sqrt(limit)), 1.5 * divide);
     if (needed > divide)
         divide = needed < DIVIDE_LIMIT ? (uint32_t)ceil(needed) : DIVIDE_LIMIT;
     else if (ceil(margin * needed) < divide)
-        divide = (uint32_t)fmax(1, ceil(margin * needed));
+        divide = (uint32_t)math_max(1, ceil(margin * needed));
     viewer->pass.divide = divide;
 }
 

@@ -21,14 +21,14 @@ void viewer_resize(struct viewer *viewer, int width, int height, double density)
     double w = viewer->request.width, h = viewer->request.height;
     if (width < 1 || height < 1)
         return;
-    double fit = fmin(width / w, height / h);
+    double fit = math_min(width / w, height / h);
     if (layout->width == 0 && viewer->built > 0) /* the picture had to wait for the window */
         viewer->built = clock_now();
     *layout = (struct window_layout){.width = width,
                                      .height = height,
                                      .density = density,
-                                     .shown_width = fmax(1, floor(w * fit + 0.5)),
-                                     .shown_height = fmax(1, floor(h * fit + 0.5))};
+                                     .shown_width = math_max(1, floor(w * fit + 0.5)),
+                                     .shown_height = math_max(1, floor(h * fit + 0.5))};
     layout->left = floor((width - layout->shown_width) / 2);
     layout->top = floor((height - layout->shown_height) / 2);
     viewer->display.hud_dirty = true;
@@ -549,7 +549,7 @@ static void draw_light(const struct drawing *drawing, const struct light_info *l
                     LINE_COLOUR_SELECTED);
     }
     if (has & LIGHT_HAS_CONE) {
-        double along = light->cos_outer, aside = sqrt(fmax(0, 1 - along * along));
+        double along = light->cos_outer, aside = sqrt(math_max(0, 1 - along * along));
         draw_circle(drawing, vec3_add_scaled(at, light->direction, extent * along), light->direction, extent * aside,
                     LINE_COLOUR_SELECTED);
     }
@@ -604,9 +604,9 @@ static void cube_point(const struct viewer *viewer, const struct camera_frame *f
     struct vec3 p = vec3_scale(cube_axes[axis], sign);
     p = vec3_add_scaled(p, cube_axes[(axis + 1) % 3], uv[0]);
     p = vec3_add_scaled(p, cube_axes[(axis + 2) % 3], uv[1]);
-    out[0] = fmin(layout->left + layout->shown_width, layout->width) - cube_margin * layout->density +
+    out[0] = math_min(layout->left + layout->shown_width, layout->width) - cube_margin * layout->density +
              size * vec3_dot(p, frame->unit_right);
-    out[1] = fmax(layout->top, 0) + cube_margin * layout->density + size * vec3_dot(p, frame->unit_down);
+    out[1] = math_max(layout->top, 0) + cube_margin * layout->density + size * vec3_dot(p, frame->unit_down);
 }
 
 static bool faces_eye(const struct camera_frame *frame, int face) {

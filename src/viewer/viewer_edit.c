@@ -97,10 +97,10 @@ static const struct light_info *selected_light(const struct viewer *viewer) {
 static bool marker_point(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
                          double *y, bool *seen) {
     const struct window_layout *layout = &viewer->window.layout;
-    double margin = mark_margin * layout->density, left = fmax(layout->left, 0) + margin,
-           top = fmax(layout->top, 0) + margin,
-           right = fmin(layout->left + layout->shown_width, layout->width) - margin,
-           bottom = fmin(layout->top + layout->shown_height, layout->height) - margin;
+    double margin = mark_margin * layout->density, left = math_max(layout->left, 0) + margin,
+           top = math_max(layout->top, 0) + margin,
+           right = math_min(layout->left + layout->shown_width, layout->width) - margin,
+           bottom = math_min(layout->top + layout->shown_height, layout->height) - margin;
     if (left >= right || top >= bottom)
         return false;
     *seen = viewer_project(viewer, frame, point, x, y) && *x >= left && *x <= right && *y >= top && *y <= bottom;
@@ -108,10 +108,10 @@ static bool marker_point(const struct viewer *viewer, const struct camera_frame 
         return true;
     struct vec3 toward = vec3_sub(point, frame->eye);
     double dx = vec3_dot(toward, frame->unit_right), dy = vec3_dot(toward, frame->unit_down);
-    double wide = (right - left) / 2, high = (bottom - top) / 2, size = fmax(fabs(dx), fabs(dy));
+    double wide = (right - left) / 2, high = (bottom - top) / 2, size = math_max(fabs(dx), fabs(dy));
     dx = size > 0 ? dx / size : 0;
     dy = size > 0 ? dy / size : 1;
-    double extent = fmin(wide / fmax(fabs(dx), 1e-9), high / fmax(fabs(dy), 1e-9));
+    double extent = math_min(wide / math_max(fabs(dx), 1e-9), high / math_max(fabs(dy), 1e-9));
     *x = left + wide + extent * dx;
     *y = top + high + extent * dy;
     return isfinite(*x) && isfinite(*y);
@@ -120,7 +120,8 @@ static bool marker_point(const struct viewer *viewer, const struct camera_frame 
 bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
                          double *y, bool *seen) {
     const struct light_info *light = viewer_light(viewer, number);
-    if (!light || !(fmax(light->colour.r, fmax(light->colour.g, light->colour.b)) > 0)) /* a removed light is black */
+    if (!light ||
+        !(math_max(light->colour.r, math_max(light->colour.g, light->colour.b)) > 0)) /* a removed light is black */
         return false;
     if (light->has_position)
         return marker_point(viewer, frame, light->position, x, y, seen);
@@ -142,7 +143,7 @@ static uint32_t light_at(const struct viewer *viewer, double x, double y) {
             continue;
         double apart = sqrt((u - x) * (u - x) + (v - y) * (v - y));
         number = apart < best ? i : number;
-        best = fmin(apart, best);
+        best = math_min(apart, best);
     }
     return number;
 }
@@ -447,7 +448,7 @@ bool viewer_handle(const struct viewer *viewer, const struct camera_frame *frame
 /* The distance of a point from a line on the screen. */
 static double distance_from(const double p[2], const double a[2], const double b[2]) {
     double x = b[0] - a[0], y = b[1] - a[1], length = x * x + y * y;
-    double t = length > 0 ? fmin(fmax(((p[0] - a[0]) * x + (p[1] - a[1]) * y) / length, 0), 1) : 0;
+    double t = length > 0 ? math_min(math_max(((p[0] - a[0]) * x + (p[1] - a[1]) * y) / length, 0), 1) : 0;
     double u = p[0] - a[0] - t * x, v = p[1] - a[1] - t * y;
     return sqrt(u * u + v * v);
 }

@@ -604,7 +604,8 @@ static void describe_setting(const struct viewer *viewer, int index, struct wind
                    row->option + dashes);
     if (number)
         memcpy(&field->numbers[0], &bits, sizeof bits);
-    form_set_range(field, fmin(row->low, field->numbers[0]), fmax(row->high, field->numbers[0]), number ? "" : "#");
+    form_set_range(field, math_min(row->low, field->numbers[0]), math_max(row->high, field->numbers[0]),
+                   number ? "" : "#");
     if (words)
         (void)snprintf(field->text, sizeof field->text, "%s", row->words);
     form_set_help(field, row->help);
@@ -624,7 +625,7 @@ static void add_settings(const struct viewer *viewer, struct window_form *form) 
 static void change_setting(struct viewer *viewer, int index, double number) {
     const struct setting *row = &setting_table[index];
     if (row->kind == SETTING_NUMBER || row->kind == SETTING_WHOLE || row->kind == SETTING_CAUSTICS)
-        number = fmin(fmax(number, row->low), row->high);
+        number = math_min(math_max(number, row->low), row->high);
     viewer->setting = (struct viewer_setting){index, number};
     viewer->action = VIEWER_CHANGE_SETTING;
 }

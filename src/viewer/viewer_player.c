@@ -154,8 +154,8 @@ void viewer_player_end_pass(struct viewer *viewer, double now) {
     double took = now - viewer->pass.began, whole = now - player->requested_at;
     if (player->requested_at <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != viewer->pass.divide)
         return;
-    double beside = fmax(0, whole - took);
-    const double seconds = fmax(pass_min, period_of(viewer) - beside - clock_step);
+    double beside = math_max(0, whole - took);
+    const double seconds = math_max(pass_min, period_of(viewer) - beside - clock_step);
     viewer_fit_resolution(viewer, now, seconds, seconds);
     player->requested_at = 0;
 }

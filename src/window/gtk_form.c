@@ -43,7 +43,7 @@ static void show_values(struct gui *gui, struct form_row *row) {
             gtk_spin_button_set_value(GTK_SPIN_BUTTON(row->inputs[i]), field->numbers[i]);
         break;
     case FIELD_COLOUR: {
-        double top = fmax(1, fmax(field->numbers[0], fmax(field->numbers[1], field->numbers[2])));
+        double top = math_max(1, math_max(field->numbers[0], math_max(field->numbers[1], field->numbers[2])));
         const struct tone srgb = {.srgb = true};
         double shown[3];
         for (int i = 0; i < 3; i++)
@@ -93,9 +93,9 @@ static void colour_changed(GtkWidget *widget, gpointer data) {
     double factor = gtk_spin_button_get_value(GTK_SPIN_BUTTON(row->inputs[1]));
     const double parts[3] = {(double)colour.red, (double)colour.green, (double)colour.blue};
     for (int i = 0; i < 3; i++)
-        row->field.numbers[i] =
-            fmin(fmax((row->field.linear ? transfer_decode(srgb, parts[i]) : parts[i]) * factor, row->field.low),
-                 row->field.high);
+        row->field.numbers[i] = math_min(
+            math_max((row->field.linear ? transfer_decode(srgb, parts[i]) : parts[i]) * factor, row->field.low),
+            row->field.high);
     send_field(gui, row);
 }
 
@@ -198,7 +198,7 @@ static gboolean show_number(GtkSpinButton *button, gpointer data) {
 static GtkWidget *number_input(struct gui *gui, struct form_row *row, double low, double high) {
     bool share = high - low <= 1, whole = row->field.unit[0] == '#';
     double step = whole ? 1 : share ? 0.05 : 0.1;
-    GtkWidget *button = gtk_spin_button_new_with_range(fmax(low, -1e9), fmin(high, 1e9), step);
+    GtkWidget *button = gtk_spin_button_new_with_range(math_max(low, -1e9), math_min(high, 1e9), step);
     gtk_spin_button_set_digits(GTK_SPIN_BUTTON(button), whole ? 0 : 12);
     gtk_editable_set_width_chars(GTK_EDITABLE(button), 5);
     gtk_widget_set_hexpand(button, TRUE);

@@ -68,7 +68,8 @@ static bool update_state(struct window_channel *window) {
     struct window_shared *shared = window->memory.block;
     if (!shared || memcmp(&shared->state, &window->state, sizeof window->state) == 0)
         return false;
-    atomic_fetch_add_explicit(&shared->number, 1, memory_order_acq_rel);
+    atomic_fetch_add_explicit(&shared->number, 1, memory_order_relaxed);
+    atomic_thread_fence(memory_order_release); /* who reads some of the new state sees the odd number */
     memcpy(&shared->state, &window->state, sizeof window->state);
     atomic_fetch_add_explicit(&shared->number, 1, memory_order_release);
     return true;

@@ -55,8 +55,8 @@ static void add_face(struct junction *junction, const struct hit *hit, const str
 static void add_partner(struct junction *junction, uint32_t partner, double range) {
     const struct hit *hit = junction->hit;
     struct ray piece = *junction->ray;
-    piece.t_min = fmax(hit->t - range, piece.t_min);
-    piece.t_max = fmin(hit->t + range, piece.t_max);
+    piece.t_min = math_max(hit->t - range, piece.t_min);
+    piece.t_max = math_min(hit->t + range, piece.t_max);
     for (int i = 0; i < CROSSINGS && !ray_skips(&piece, partner); i++) {
         struct ray ray_object = primitive_ray(junction->world, partner, &piece);
         struct crossing crossing;
@@ -75,7 +75,7 @@ static void add_partner(struct junction *junction, uint32_t partner, double rang
 static bool find_faces(struct junction *junction) {
     const struct hit *hit = junction->hit;
     double across = fabs(vec3_dot(hit->view, hit->normal_geometric)) * vec3_length(junction->ray->direction);
-    double range = range_errors * hit->offset / fmax(across, 0x1p-20);
+    double range = range_errors * hit->offset / math_max(across, 0x1p-20);
     const struct box box = joint_bounds(hit);
     struct touching_query query;
     uint32_t partner;
@@ -151,8 +151,8 @@ static void choose(const struct junction *junction, const struct face *face, str
     if (face->primitive != hit->primitive || face->t != hit->t)
         world_describe(junction->world, junction->ray, face->primitive, &face->crossing, hit);
     for (int i = 0; i < junction->count; i++)
-        offset = fmax(offset, junction->faces[i].offset);
-    hit->offset = fmax(hit->offset, offset);
+        offset = math_max(offset, junction->faces[i].offset);
+    hit->offset = math_max(hit->offset, offset);
 }
 
 static void set_boundary(const struct junction *junction, const struct face *chosen, struct joint *joint) {
@@ -187,7 +187,7 @@ static void join_faces(const struct junction *junction, struct hit *hit, struct 
     } else if (!join_transparent(junction, hit, joint)) {
         joint->past = hit->t;
         for (int i = 0; i < junction->count; i++)
-            joint->past = fmax(joint->past, junction->faces[i].t);
+            joint->past = math_max(joint->past, junction->faces[i].t);
     }
 }
 
@@ -214,7 +214,7 @@ bool world_join(const struct world *world, const struct ray *ray, struct world_s
             return true;
         /* On to what is behind. */
         joint->passed = true;
-        joint->ray.t_min = fmax(joint->ray.t_min, joint->past);
+        joint->ray.t_min = math_max(joint->ray.t_min, joint->past);
         medium_stack_copy(&joint->before, &joint->behind);
         if (!world_nearest_surface(world, &joint->ray, scratch, hit))
             return false;
@@ -235,7 +235,7 @@ void world_join_path(const struct world *world, struct ray *ray, struct medium_s
     join_faces(&junction, hit, joint);
     if (joint->joined != JOINED_AWAY)
         return;
-    ray->t_min = fmax(ray->t_min, joint->past);
+    ray->t_min = math_max(ray->t_min, joint->past);
     medium_stack_copy(media, &joint->behind);
 }
 

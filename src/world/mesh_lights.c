@@ -29,9 +29,9 @@ static void add_triangle(struct mesh_light_collection *g, const struct mesh *mes
     mesh_triangle(mesh, number, corners, &slot);
     double size = 0;
     for (int i = 0; i < 3; i++) {
-        size = fmax(size, vec3_max_abs(corners[i]) * transform_stretch(map));
+        size = math_max(size, vec3_max_abs(corners[i]) * transform_stretch(map));
         corners[i] = affine_point(&map->forward, corners[i]);
-        size = fmax(size, vec3_max_abs(corners[i]));
+        size = math_max(size, vec3_max_abs(corners[i]));
     }
     if (!g->light->has_emission)
         emission = material_emission(
@@ -109,7 +109,7 @@ static struct colour emission_at(const struct world *world, const struct light_t
     ray.footprint.width = width;
     world_describe(world, &ray, t->primitive, &crossing, &hit);
     material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
-    return colour_scale(bsdf.emission, fmin(bsdf.opacity, 1));
+    return colour_scale(bsdf.emission, math_min(bsdf.opacity, 1));
 }
 
 bool mesh_lights_estimate(const struct world *world, struct light *light, struct arena *arena, struct pool *pool,

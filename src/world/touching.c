@@ -430,7 +430,7 @@ static bool warn_of_hidden(struct finder *f, struct flattening *flattening) {
         char text[256];
         (void)snprintf(text, sizeof text,
                        "lies in a face of '%.100s', which is first in the scene and hides it; move it out by %.0e",
-                       primitive_node(f->world, pair.a)->name, 1e-6 * fmax(vec3_max_abs(point), 0x1p-100));
+                       primitive_node(f->world, pair.a)->name, 1e-6 * math_max(vec3_max_abs(point), 0x1p-100));
         flatten_warn_once(flattening, primitive_node(f->world, pair.b), text);
         break;
     }

@@ -731,7 +731,7 @@ static bool make_materials(struct flattening *f) {
         world->material_has_medium[i] = surface_is_transparent(material);
         world->media.all[i] = medium_of(world, i);
         struct colour emission = material_emission_bound(world->authored.materials[i]);
-        world->emission_bound = fmax(world->emission_bound, fmax(fmax(emission.r, emission.g), emission.b));
+        world->emission_bound = math_max(world->emission_bound, math_max(math_max(emission.r, emission.g), emission.b));
     }
     return true;
 }

@@ -146,7 +146,7 @@ static double pattern_scale(const struct transform *map, const struct csg_leaf *
         a = affine_vector(&leaf->csg_from_leaf.inverse, a);
         b = affine_vector(&leaf->csg_from_leaf.inverse, b);
     }
-    return fmax(vec3_length(a), vec3_length(b));
+    return math_max(vec3_length(a), vec3_length(b));
 }
 
 /* --- plain triangles of the group --- */

@@ -174,9 +174,9 @@ static bool derive_triangle(struct derived *d, const struct planar *planar, bool
     if (!*ok)
         return false;
     for (int i = 0; i < 3; i++) {
-        size = fmax(size, vec3_max_abs(corners[i]) * transform_stretch(&d->map));
+        size = math_max(size, vec3_max_abs(corners[i]) * transform_stretch(&d->map));
         corners[i] = affine_point(&d->map.forward, corners[i]);
-        size = fmax(size, vec3_max_abs(corners[i]));
+        size = math_max(size, vec3_max_abs(corners[i]));
     }
     builder.one_sided = false;
     builder.primitive = d->primitive;
@@ -403,7 +403,7 @@ static struct box box_of_part(const struct light *light, uint32_t part) {
 /* Rays meet a lamp a little before its plane. */
 static struct box box_met(const struct light *light, uint32_t part) {
     struct box box = box_of_part(light, part);
-    double gap = 0x1p-38 * fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
+    double gap = 0x1p-38 * math_max(vec3_max_abs(box.min), vec3_max_abs(box.max));
     return box_grow(box, gap);
 }
 
@@ -666,7 +666,7 @@ double world_lights_visible(const struct world_lights *lights, const struct ray 
     struct bsdf bsdf;
     double share = 1;
     for (int i = 0; i < HOLE_LIMIT && share > 0 && next_surface(lights->world, &rest, scratch, &hit, &bsdf); i++) {
-        share *= 1 - fmin(bsdf.opacity, 1);
+        share *= 1 - math_min(bsdf.opacity, 1);
         rest.t_min = hit.t;
     }
     return share;
@@ -682,7 +682,7 @@ struct colour world_lights_seen_by(const struct world_lights *lights, const stru
     double share = 1;
     *t = 0;
     for (int i = 0; i < HOLE_LIMIT && share > 0 && next_surface(lights->world, &rest, scratch, &hit, &bsdf); i++) {
-        double opacity = fmin(bsdf.opacity, 1);
+        double opacity = math_min(bsdf.opacity, 1);
         if (opacity > 0 && world_lights_shows(lights, sample, &hit)) {
             struct colour radiance = world_lights_radiance(lights, receiver->primitive, &hit, bsdf.emission);
             sum = colour_add_scaled(sum, radiance, share * opacity);

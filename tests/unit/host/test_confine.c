@@ -107,17 +107,18 @@ TEST(hostile_a_confined_process_sets_no_limits_by_any_address) {
 
 static int try_memory(void) {
     int failed = 0;
-    void *page = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    long size = sysconf(_SC_PAGESIZE);
+    void *page = mmap(NULL, (size_t)size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     TRY(page != MAP_FAILED);
     for (int g = 0; g < GARBAGE; g++) {
         uint64_t execute = garbage[g] | PROT_READ | PROT_EXEC;
-        TRY(refused(syscall(SYS_mmap, NULL, 4096L, execute, (long)(MAP_PRIVATE | MAP_ANONYMOUS), -1L, 0L)));
-        TRY(refused(syscall(SYS_mprotect, page, 4096L, execute)));
-        TRY(refused(syscall(SYS_madvise, page, 4096L, garbage[g] | 100)));
-        TRY(refused(syscall(SYS_madvise, page, 4096L, garbage[g] | 101)));
-        TRY(syscall(SYS_madvise, page, 4096L, garbage[g] | MADV_DONTNEED) == 0);
+        TRY(refused(syscall(SYS_mmap, NULL, size, execute, (long)(MAP_PRIVATE | MAP_ANONYMOUS), -1L, 0L)));
+        TRY(refused(syscall(SYS_mprotect, page, size, execute)));
+        TRY(refused(syscall(SYS_madvise, page, size, garbage[g] | 100)));
+        TRY(refused(syscall(SYS_madvise, page, size, garbage[g] | 101)));
+        TRY(syscall(SYS_madvise, page, size, garbage[g] | MADV_DONTNEED) == 0);
     }
-    TRY(mprotect(page, 4096, PROT_READ) == 0);
+    TRY(mprotect(page, (size_t)size, PROT_READ) == 0);
     return failed;
 }
 

@@ -778,6 +778,20 @@ TEST(the_library_is_found_from_any_folder_and_through_the_environment) {
     free(variable);
 }
 
+TEST(a_copied_program_finds_the_library_of_the_tree_where_it_was_built) {
+    write_in_folder("scene.lua", "assert(require 'easing')\n");
+    CHECK_EQ_INT(shell("mkdir elsewhere && cp \"$gray\" elsewhere/program && elsewhere/program -q scene.lua"), 0);
+}
+
+TEST(a_moved_installation_finds_its_own_library) {
+    write_in_folder("scene.lua", "assert(require 'easing' == 'moved')\n");
+    CHECK_EQ_INT(
+        shell("mkdir -p moved/bin moved/share/gray/lua && cp \"$gray\" moved/bin && cd moved/share/gray/lua && "
+              "echo \"return 'moved'\" >easing.lua && touch readobj.lua && cd ../../../.. && "
+              "moved/bin/gray -q scene.lua"),
+        0);
+}
+
 TEST(definitions_reach_every_script) {
     write_in_folder("other.lua", "assert(n == 3 and word == 'a b')\n");
     static const char *const words[] = {"-D", "n=3", "-Dword=a b", "scene.lua", "other.lua", NULL};

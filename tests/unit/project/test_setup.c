@@ -134,6 +134,20 @@ TEST(a_user_who_may_not_install_gets_one_line_with_the_command) {
     check_file("log", NULL);
 }
 
+TEST(the_set_up_names_the_packages_of_other_systems) {
+    make_machine();
+    CHECK_EQ_INT(set_up(ALL, "", "--for fedora >../fedora"), 0);
+    check_file("fedora", "sudo dnf install make gcc glibc-devel pkgconf-pkg-config lua-devel libpng-devel zlib-devel "
+                         "libjpeg-turbo-devel jansson-devel freetype-devel openexr-devel libwebp-devel\n");
+    CHECK_EQ_INT(set_up(ALL, "", "--for arch --minimal >../arch"), 0);
+    check_file("arch", "sudo pacman -S --needed make gcc glibc pkgconf lua libpng zlib\n");
+    CHECK_EQ_INT(set_up(ALL, "", "--for alpine --minimal >../alpine"), 0);
+    check_file("alpine", "sudo apk add make gcc musl-dev pkgconf lua5.4-dev libpng-dev zlib-dev\n");
+    CHECK_EQ_INT(set_up(ALL, "", "--for"), 2);
+    check_file("err", "setup.sh: --for is fedora, arch or alpine\n");
+    check_file("log", NULL);
+}
+
 /* Every group has one line, and what apt-get prints is not shown. Of the tools this machine may have any. */
 TEST(the_set_up_prints_one_line_for_each_group) {
     make_machine();

@@ -50,6 +50,17 @@ TEST(an_option_without_effect_has_one_notice) {
     test_free_result(&result);
 }
 
+TEST(a_file_that_hides_a_module_of_the_library_has_one_notice) {
+    test_write_text(test_path("easing.lua"), "return 'mine'\n");
+    const char *scene = "assert(require 'easing' == 'mine')\nassert(require 'easing' == 'mine')\nrequire 'colour'\n";
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    const char *notice = "scene.lua:1: 'easing' is easing.lua, which hides the module of the library with this name\n";
+    const char *found = strstr(result.err, notice);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(found && !strstr(found + strlen(notice), "hides"));
+    test_free_result(&result);
+}
+
 #define PANE(fields)                                                                                                   \
     "local glass = gr.material{kd = {0, 0, 0}, ks = {1, 1, 1}, refract = 1, ior = 1.5} local s = gr.node('s')\n"       \
     "s:add_child(gr.instances{of = gr.square{name = 'pane', material = glass" fields                                   \

@@ -22,6 +22,14 @@ static const struct corner corners[] = {
     {"assert(math.ldexp(1, 20000) == math.huge and math.ldexp(1, -20000) == 0 and math.ldexp(3, 2) == 12)", NULL},
     {"math.randomseed(1e300) math.randomseed(1.5) math.randomseed(3) math.randomseed()", NULL},
     {"assert(string.format('%d %5.1f%%', 3.0, 2) == '3   2.0%')", NULL},
+    /* a NaN has no sign, on any machine */
+    {"local z = 0 for _, n in ipairs{z / z, -(z / z), math.huge - math.huge} do assert(tostring(n) == 'nan' and n .. "
+     "'' "
+     "== 'nan' and ('%g %5.1f %E'):format(n, n, n) == 'nan   nan NAN' and table.concat{n} == 'nan' and "
+     "('>d'):pack(n) == '\\x7f\\xf8\\0\\0\\0\\0\\0\\0' and ('>f'):pack(n) == '\\x7f\\xc0\\0\\0') end",
+     NULL},
+    {"assert(('<i4d'):pack(-7, 0.5) == '\\xf9\\xff\\xff\\xff\\0\\0\\0\\0\\0\\0\\xe0\\x3f' and -1 / 0 .. '' == '-inf')",
+     NULL},
     /* fractions of positions and counts are cut, toward zero; those of values stay */
     {"assert(('abcdef'):sub(1, 7 / 2) == 'abc' and ('abcdef'):sub(-2.5) == 'ef' and ('ab'):rep(5 / 2, '-') == 'ab-ab')",
      NULL},
