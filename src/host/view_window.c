@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "image/light_field_view.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 #include "output/view.h"
 #include "session/text.h"
 

@@ -5,8 +5,6 @@
 #include "math/elementary.h"
 #include "math/portable.h"
 
-#include "math/portable.h"
-
 #include <math.h>
 #include <string.h>
 

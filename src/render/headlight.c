@@ -92,13 +92,20 @@ static double unhidden_factor(struct vec3 point, struct vec3 normal, const struc
     return fabs(sum) / (2 * PI);
 }
 
+static bool is_of_patch(const struct headlight *headlight, const struct hit *hit) {
+    const struct patches *patches = &headlight->stored->patches;
+    uint32_t patch;
+    double shares[3];
+    return hit->primitive == patch_at(patches, headlight->patch)->primitive &&
+           patches_find(patches, hit, &patch, shares) && patch == headlight->patch;
+}
+
 /* The form factor from the surface to the patch: the middles of four equal parts of it are visible or not. */
 static double form_factor(const struct headlight *headlight, struct world_scratch *scratch, const struct ray *from,
                           const struct hit *hit, struct vec3 normal) {
     enum { PARTS = 4 };
     const struct patches *patches = &headlight->stored->patches;
     const struct world *world = headlight->job->world;
-    const uint32_t primitive = patch_at(patches, headlight->patch)->primitive;
     struct vec3 c[3];
     int visible = 0;
     patch_corners(patches, headlight->patch, c);
@@ -108,8 +115,9 @@ static double form_factor(const struct headlight *headlight, struct world_scratc
         for (int k = 0; k < 3; k++)
             to = vec3_add_scaled(to, c[k], share[k] / (share[0] + share[1] + share[2]));
         struct ray ray = hit_ray(hit, from, vec3_sub(to, hit->point), from->media);
-        struct hit met;
-        visible += !world_nearest_surface(world, &ray, scratch, &met) || met.t > 1 - 1e-6 || met.primitive == primitive;
+        struct hit occluder;
+        bool met = world_nearest_surface(world, &ray, scratch, &occluder) && occluder.t < 1 - 1e-6;
+        visible += !met || is_of_patch(headlight, &occluder);
     }
     return visible > 0 ? unhidden_factor(hit->point, normal, c) * visible / PARTS : 0;
 }
@@ -117,11 +125,7 @@ static double form_factor(const struct headlight *headlight, struct world_scratc
 /* The patch itself is white. */
 static struct colour show_factor(const struct headlight *headlight, struct world_scratch *scratch,
                                  const struct ray *from, const struct hit *hit, struct vec3 normal) {
-    const struct patches *patches = &headlight->stored->patches;
-    uint32_t patch;
-    double shares[3];
-    if (hit->primitive == patch_at(patches, headlight->patch)->primitive &&
-        patches_find(patches, hit, &patch, shares) && patch == headlight->patch)
+    if (is_of_patch(headlight, hit))
         return colour_all(headlight->brightness);
     double factor = form_factor(headlight, scratch, from, hit, normal);
     return factor > 0 ? heat(headlight, 1 + el_log2(factor) / 16) : colour_all(0);
