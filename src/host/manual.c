@@ -49,16 +49,18 @@ static int print_paged(const struct document *document) {
 }
 
 static void add_usage(struct document *document) {
-    document_lines(document, "gray [options] [--] scene.lua|model.glb ...\n"
-                             "gray merge [-o FILE] [options] PART ...\n"
-                             "gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
-                             "gray view [-o FILE] [--eye X,Y,Z] [--focus DISTANCE] [--aperture RADIUS] FIELD.lf|PANORAMA\n"
-                             "gray --man [TOPIC ...]\n"
-                             "gray --init [FOLDER]\n");
+    document_lines(document,
+                   "gray [options] [--] scene.lua|model.glb ...\n"
+                   "gray merge [-o FILE] [options] PART ...\n"
+                   "gray compare [-o DIFFERENCE.png] [--threshold LEVEL] PICTURE REFERENCE\n"
+                   "gray view [-o FILE] [--eye X,Y,Z] [--focus DISTANCE] [--aperture RADIUS] FIELD.lf|PANORAMA\n"
+                   "gray --man [TOPIC ...]\n"
+                   "gray --init [FOLDER]\n");
 }
 
 static void add_help(struct document *document) {
-    document_paragraph(document, "gray renders scenes that are written as Lua scripts, and models: OBJ, PLY, STL and glTF files.");
+    document_paragraph(
+        document, "gray renders scenes that are written as Lua scripts, and models: OBJ, PLY, STL and glTF files.");
     document_section(document, "Usage");
     add_usage(document);
     document_gap(document);

@@ -134,7 +134,8 @@ static bool make_thumbnail(struct model_work *work, const struct world *world, c
                                    .width = 2 * THUMBNAIL,
                                    .height = 2 * THUMBNAIL,
                                    .film = &film};
-    bool ok = render_headlight(&job, HEADLIGHT_SURFACES, false, work->process->pool, &statistics, error) &&
+    bool ok = render_headlight(&job, &(struct headlight_request){.state = FILM_TILE_DONE}, work->process->pool,
+                               &statistics, error) &&
               encode_thumbnail(&film, &tone, &work->made.thumbnail, error);
     mem_free(block);
     return ok;

@@ -14,6 +14,7 @@
 #include "host/in_process.h"
 #include "host/manual.h"
 #include "host/supervisor.h"
+#include "host/view_window.h"
 #include "image/animation.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
@@ -124,6 +125,8 @@ static bool choose_isa(const struct options *options) {
 
 static int perform(struct options *options, const struct program_parts *parts, struct arena *arena) {
     options->script.library_folder = find_library(arena);
+    if (options->window && options->script_count == 1 && view_is(options->scripts[0]))
+        options->action = ACTION_VIEW;
     switch (options->action) {
     case ACTION_HELP:
     case ACTION_MANUAL:
@@ -145,7 +148,7 @@ static int perform(struct options *options, const struct program_parts *parts, s
     case ACTION_COMPARE:
         return compare_run(options);
     case ACTION_VIEW:
-        return view_run(options);
+        return options->window ? view_window_run(options, parts->window) : view_run(options);
     case ACTION_RENDER:
         break;
     }
@@ -187,7 +190,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
         status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
-    } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
+    } else if (options.window && !parts->window && (options.action == ACTION_RENDER || options.action == ACTION_VIEW)) {
         status = exec_variant("gui", "gtk4 (Debian: libgtk-4-dev; tools/setup.sh --window)", argv);
     } else {
         status = perform(&options, parts, &arena);

@@ -180,6 +180,7 @@ static bool build_world(struct picture_work *work, const struct changed_scene *c
 static bool preview_build(void *context, const struct changed_scene *changed, struct error *error) {
     struct picture_work *work = context;
     world_destroy(&work->world);
+    work->process->radiosity.patches.world = NULL;
     arena_reset(&work->process->job);
     return build_world(work, changed, error);
 }
@@ -281,6 +282,7 @@ static void clear_picture(struct picture_work *work) {
         world_keep(&work->world, &process->world_cache);
     else
         world_destroy(&work->world);
+    process->radiosity.patches.world = NULL; /* of the solution until it is that of the next world */
     if (process->job.total > LARGE_JOB)
         arena_destroy(&process->job);
     else

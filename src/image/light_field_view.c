@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS_LIMIT = 64 };
+enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS_LIMIT = 64, PATCH = 7 };
 #define GOLDEN_ANGLE 2.39996322972865332
 
 /* A point of the lens: its share of the picture is the same for all. */
@@ -412,4 +412,72 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     mem_free(d.points);
     mem_free(d.weights);
     return ok;
+}
+
+/* --- distances --- */
+
+/* How much the cameras of a part of the grid differ where they show a patch around a pixel at a disparity: the variance
+ * of what they show, with bright light compressed. */
+static double difference_at(const struct drawing *d, const struct light_field_part *part, const double pixel[AXES],
+                            double disparity) {
+    const struct lens_point middle = {{0, 0}};
+    const uint32_t cameras = part->columns * part->rows;
+    double sum = 0;
+    for (int i = 0; i < PATCH * PATCH; i++) {
+        const double off[AXES] = {(i % PATCH - PATCH / 2) / d->ratio, (int)(i / PATCH - PATCH / 2) / d->ratio};
+        struct field_ray ray = ray_of(d, &middle, pixel[X] + off[X], pixel[Y] + off[Y]);
+        double mean[3] = {0, 0, 0}, square = 0;
+        for (uint32_t k = 0; k < cameras; k++) {
+            const uint32_t column = part->column + k % part->columns, row = part->row + k / part->columns;
+            struct pixel_sum seen = {.weight = 0};
+            struct tap taps[AXES];
+            taps[X] = tap_of(pixel_of(d, &ray, X, camera_at(d, X, column), disparity), d->size[X]);
+            taps[Y] = tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y]);
+            add_pixels(d, d->field->views[row * d->field->head.columns + column], taps, 1, &seen);
+            for (int c = 0; c < 3; c++) {
+                double light = math_max(0, seen.numbers[c] / seen.weight), value = light / (1 + light);
+                mean[c] += value / cameras;
+                square += value * value / cameras;
+            }
+        }
+        sum += square - (mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+    }
+    return sum;
+}
+
+/* The disparity where they agree best, from far away to a third of the distance of the screen. */
+static double find_agreement(const struct drawing *d, const struct light_field_part *part, const double pixel[AXES]) {
+    const double step = 3 * d->per_screen / (3 * STEPS_LIMIT);
+    double best = 0, smallest = INFINITY;
+    for (int i = 1; i <= 3 * STEPS_LIMIT; i++) {
+        double difference = difference_at(d, part, pixel, i * step);
+        best = difference < smallest ? i * step : best;
+        smallest = math_min(difference, smallest);
+    }
+    return best;
+}
+
+bool light_field_distance(struct light_field *field, const struct light_field_camera *camera, const double pixel[2],
+                          struct pool *pool, double *out, struct error *error) {
+    struct drawing d;
+    struct near_camera cameras[4];
+    struct light_field_part part;
+    uint32_t first[AXES], count[AXES];
+    prepare(&d, &field->head, camera);
+    d.field = field;
+    struct field_ray ray = ray_of(&d, &(struct lens_point){{0, 0}}, pixel[X], pixel[Y]);
+    for (int k = 0; k < AXES; k++) {
+        double u = limited(among_cameras(&d, k, ray.crossing[k]), 0, d.count[k] - 1);
+        first[k] = (uint32_t)math_max(0, floor_of(u) - 1);
+        count[k] = (uint32_t)math_min(4, d.count[k] - first[k]);
+    }
+    part = (struct light_field_part){first[X], first[Y], count[X], count[Y]};
+    error->text[0] = '\0';
+    if (!light_field_load_part(field, &part, pool, error))
+        return false;
+    d.disparity = 0;
+    double disparity = field->head.depth ? disparity_of(&d, &ray, cameras, find_cameras(&d, &ray, cameras))
+                                         : find_agreement(&d, &part, pixel);
+    *out = 1 / disparity - camera->z;
+    return disparity > 0 && *out > 0;
 }

@@ -21,5 +21,9 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
  * its size, gives the numbers of that view. Errors: those of light_field_load_part. */
 bool light_field_draw(struct light_field *field, const struct light_field_camera *camera, struct pool *pool,
                       float (*out)[3], struct error *error);
+/* How far from the eye the surface is that a pixel of the picture shows: by the depths of the field, else where the
+ * cameras around the eye agree best. Loads their views. False: nothing is there, or an error (error->text). */
+bool light_field_distance(struct light_field *field, const struct light_field_camera *camera, const double pixel[2],
+                          struct pool *pool, double *out, struct error *error);
 
 #endif

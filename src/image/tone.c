@@ -6,6 +6,7 @@
 #include "math/portable.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { TONE_STEPS = 128 }; /* of a doubling */
 
@@ -63,4 +64,29 @@ uint16_t tone_word(double c) {
     if (!(c > 0))
         return 0;
     return (uint16_t)(c < 1 ? floor(65535 * c + 0.5) : 65535);
+}
+
+/* The upper 16 bits of a float: its exponent and 7 bits of its fraction. */
+enum { FIRST_LIGHT = (127 - 16) << 7 };
+
+void tone_bytes_make(const struct tone *tone, struct tone_bytes *out) {
+    struct tone unexposed = *tone;
+    unexposed.exposure = 0;
+    out->scale = (float)el_exp2(tone->exposure);
+    for (uint32_t i = 0; i < TONE_BYTES; i++) {
+        uint32_t bits = (FIRST_LIGHT + i) << 16 | 0x8000; /* the middle */
+        float light;
+        memcpy(&light, &bits, sizeof light);
+        double c = tone_apply(&unexposed, (double)light);
+        out->bytes[i] = (uint8_t)(c > 0 ? floor(255 * math_min(c, 1) + 0.5) : 0);
+    }
+}
+
+uint8_t tone_byte(const struct tone_bytes *bytes, float light) {
+    uint32_t bits;
+    light *= bytes->scale;
+    light = light > 0x1p-16f ? light : 0x1p-16f; /* NaN too */
+    light = light < 0x1.fep15f ? light : 0x1.fep15f;
+    memcpy(&bits, &light, sizeof bits);
+    return bytes->bytes[(bits >> 16) - FIRST_LIGHT];
 }

@@ -41,5 +41,14 @@ static inline bool tone_is_plain(const struct tone *tone) {
 double tone_apply(const struct tone *tone, double c);
 /* floor(65535 c + 0.5) after clamping to [0,1]; NaN gives 0. */
 uint16_t tone_word(double c);
+/* The bytes of a display, of lights from 2^-16 to 2^16 of the exposure, 128 for each doubling: without powers, and at
+ * most one from those of a PNG file. */
+enum { TONE_BYTES = 32 << 7 };
+struct tone_bytes {
+    float scale;
+    uint8_t bytes[TONE_BYTES];
+};
+void tone_bytes_make(const struct tone *tone, struct tone_bytes *out);
+uint8_t tone_byte(const struct tone_bytes *bytes, float light);
 
 #endif

@@ -7,38 +7,21 @@
 #include "image/image.h"
 #include "image/light_field_view.h"
 #include "image/png_write.h"
-#include "light/sky.h"
 #include "math/elementary.h"
 #include "output/animation.h"
-#include "output/picture_files.h"
 #include "session/text.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS_LIMIT = 64, PANORAMA_WIDTH = 640, PANORAMA_HEIGHT = 480, PANORAMA_FOV = 50 };
-
-/* What is shown: a light field, or a sky around the eye. */
-struct show {
-    const struct options *options;
-    struct picture_files files;
-    struct pool *pool;
-    bool is_field;
-    struct light_field field;
-    struct image *image;
-    struct sky sky;
-    struct tone tone;
-    struct vec3 points[POINTS_LIMIT]; /* of the path */
-    uint32_t point_count, frames, width, height;
-    float (*light)[3]; /* of the picture */
-};
+enum { PANORAMA_WIDTH = 640, PANORAMA_HEIGHT = 480, PANORAMA_FOV = 50 };
 
 /* --- the command line --- */
 
 /* "X,Y,Z:X,Y,Z"; a number that is missing at the end is 0. */
-static bool read_points(struct show *show, const char *option, const char *text, uint32_t numbers,
+static bool read_points(struct view *view, const char *option, const char *text, uint32_t numbers,
                         struct error *error) {
-    for (const char *at = text; show->point_count < POINTS_LIMIT;) {
+    for (const char *at = text; view->point_count < VIEW_POINTS;) {
         double v[3] = {0, 0, 0};
         uint32_t count = 0;
         for (char *end; count < numbers; at = end + 1) {
@@ -49,7 +32,7 @@ static bool read_points(struct show *show, const char *option, const char *text,
             if (*end != ',')
                 break;
         }
-        show->points[show->point_count++] = vec3_make(v[0], v[1], v[2]);
+        view->points[view->point_count++] = vec3_make(v[0], v[1], v[2]);
         if (*at == '\0' && count >= 2)
             return true;
         if (*at != ':' || count < 2)
@@ -57,94 +40,109 @@ static bool read_points(struct show *show, const char *option, const char *text,
                              numbers == 3 ? "X,Y or X,Y,Z" : "LON,LAT");
         at++;
     }
-    return error_set(error, ERROR_USAGE, "%s: a path has at most %d points", option, POINTS_LIMIT);
+    return error_set(error, ERROR_USAGE, "%s: a path has at most %d points", option, VIEW_POINTS);
 }
 
-static bool check_options(const struct show *show, struct error *error) {
-    const struct options *options = show->options;
+static bool check_options(const struct view *view, struct error *error) {
+    const struct options *options = view->options;
     const char *of_field = options->eyes            ? "--eye"
                            : options->focus > 0     ? "--focus"
                            : options->aperture > 0  ? "--aperture"
                            : options->contact_sheet ? "--contact-sheet"
                                                     : NULL;
     const char *of_panorama = options->directions ? "--direction" : options->fov > 0 ? "--fov" : NULL;
-    const char *name = options->scripts[0], *wrong = show->is_field ? of_panorama : of_field;
+    const char *name = options->scripts[0], *wrong = view->is_field ? of_panorama : of_field;
     bool animates = options->animation != ANIMATION_NONE;
-    if (!options->output)
-        return error_set(error, ERROR_USAGE, "view needs -o FILE");
+    if (!options->output && !options->window)
+        return error_set(error, ERROR_USAGE, "view needs -o FILE, or -gui");
+    if (options->window && (options->output || options->contact_sheet || view->frames > 1))
+        return error_set(error, ERROR_USAGE, "-gui shows a view: no -o, --contact-sheet or --frames");
     if (wrong)
         return error_set(error, ERROR_USAGE, "%s is not for %.600s, which is a %s", wrong, name,
-                         show->is_field ? "light field" : "panorama");
-    if (show->frames > 1 && !animates && !output_name_numbered(options->output))
+                         view->is_field ? "light field" : "panorama");
+    if (view->frames > 1 && !animates && !output_name_numbered(options->output))
         return error_set(error, ERROR_USAGE, "-o %.600s: frames need an animation, such as x.gif, or a name with %%d",
                          options->output);
     if (animates && options_output_is_stream(options))
         return error_set(error, ERROR_USAGE, "-o -: an animation needs the name of a file");
-    return !options->contact_sheet || (!animates && !options->width && !options->eyes && show->frames == 1) ||
+    return !options->contact_sheet || (!animates && !options->width && !options->eyes && view->frames == 1) ||
            error_set(error, ERROR_USAGE, "--contact-sheet is one picture of all views: no --size, --eye or --frames");
 }
 
 /* --- the file --- */
 
-static bool open_panorama(struct show *show, struct error *error) {
-    const char *name = show->options->scripts[0];
+static bool open_panorama(struct view *view, struct error *error) {
+    const char *name = view->options->scripts[0];
     struct error reason = {0};
-    show->image = image_read(name, error);
-    if (!show->image)
+    view->image = image_read(name, error);
+    if (!view->image)
         return false;
-    show->sky = (struct sky){.kind = SKY_MAP, .image = show->image};
-    bool is_map = image_width(show->image) == 2 * image_height(show->image);
-    if (!is_map && !sky_from_cross(show->image, false, &show->sky, &reason))
+    view->sky = (struct sky){.kind = SKY_MAP, .image = view->image};
+    bool is_map = image_width(view->image) == 2 * image_height(view->image);
+    if (!is_map && !sky_from_cross(view->image, false, &view->sky, &reason))
         return error_set(error, ERROR_SCENE,
                          "%.600s: is %u x %u; a panorama is twice as wide as high, or a 4 x 3 cross of six faces", name,
-                         image_width(show->image), image_height(show->image));
-    show->tone.srgb = image_bits(show->image) == 32;
-    show->width = PANORAMA_WIDTH;
-    show->height = PANORAMA_HEIGHT;
+                         image_width(view->image), image_height(view->image));
+    view->tone.srgb = image_bits(view->image) == 32;
+    view->width = PANORAMA_WIDTH;
+    view->height = PANORAMA_HEIGHT;
     return true;
 }
 
-static bool open_file(struct show *show, struct error *error) {
-    const char *name = show->options->scripts[0];
+static bool open_file(struct view *view, struct error *error) {
+    const char *name = view->options->scripts[0];
     struct file_source source;
     uint8_t head[8];
     if (!file_source_open(&source, name, error))
         return false;
-    show->is_field = file_source_read(&source, 0, head, sizeof head) && light_field_is(head, sizeof head);
+    view->is_field = file_source_read(&source, 0, head, sizeof head) && light_field_is(head, sizeof head);
     file_source_close(&source);
     const char *dot = strrchr(name, '.');
-    if (!show->is_field && !(dot && picture_format(name) == PICTURE_LIGHT_FIELD))
-        return open_panorama(show, error);
-    if (!light_field_open(&show->field, name, error))
+    if (!view->is_field && !(dot && picture_format(name) == PICTURE_LIGHT_FIELD))
+        return open_panorama(view, error);
+    if (!light_field_open(&view->field, name, error))
         return false;
-    show->is_field = true;
-    show->tone = show->field.head.tone;
-    show->width = show->field.head.width;
-    show->height = show->field.head.height;
+    view->is_field = true;
+    view->tone = view->field.head.tone;
+    view->width = view->field.head.width;
+    view->height = view->field.head.height;
     return true;
 }
 
 /* --- pictures --- */
 
-static struct vec3 point_of_frame(const struct show *show, uint32_t frame) {
-    uint32_t steps = show->options->script.frames.loops ? show->frames : show->frames - 1;
-    double t = steps > 0 ? (double)frame / steps * (show->point_count - 1) : 0;
+static struct vec3 point_of_frame(const struct view *view, uint32_t frame) {
+    uint32_t steps = view->options->script.frames.loops ? view->frames : view->frames - 1;
+    double t = steps > 0 ? (double)frame / steps * (view->point_count - 1) : 0;
     uint32_t first = (uint32_t)t;
-    if (first + 1 >= show->point_count)
-        return show->points[show->point_count - 1];
-    struct vec3 a = show->points[first], b = show->points[first + 1];
+    if (first + 1 >= view->point_count)
+        return view->points[view->point_count - 1];
+    struct vec3 a = view->points[first], b = view->points[first + 1];
     return t == first ? a : vec3_add_scaled(a, vec3_sub(b, a), t - first);
 }
 
-static struct light_field_camera camera_of_frame(const struct show *show, uint32_t frame) {
-    struct vec3 eye = point_of_frame(show, frame);
-    double focus = show->options->focus > 0 ? show->options->focus : show->field.head.screen - eye.z;
-    return (struct light_field_camera){eye.x, eye.y, eye.z, focus, show->options->aperture, show->width, show->height};
+struct view_state view_state_of(const struct view *view, uint32_t frame) {
+    const struct options *options = view->options;
+    struct vec3 at = point_of_frame(view, frame);
+    return (struct view_state){.at = at,
+                               .focus = options->focus > 0 ? options->focus : view->field.head.screen - at.z,
+                               .aperture = options->aperture,
+                               .fov = options->fov > 0 ? options->fov : PANORAMA_FOV};
+}
+
+struct light_field_camera view_camera(const struct view *view, const struct view_state *state) {
+    return (struct light_field_camera){state->at.x,     state->at.y, state->at.z, state->focus,
+                                       state->aperture, view->width, view->height};
+}
+
+static struct light_field_camera camera_of_frame(const struct view *view, uint32_t frame) {
+    struct view_state state = view_state_of(view, frame);
+    return view_camera(view, &state);
 }
 
 /* The plane in focus is in front of the eye and of the cameras. */
-static bool check_focus(const struct show *show, uint32_t frame, struct error *error) {
-    struct light_field_camera camera = camera_of_frame(show, frame);
+static bool check_focus(const struct view *view, uint32_t frame, struct error *error) {
+    struct light_field_camera camera = camera_of_frame(view, frame);
     return (camera.focus > 0 && camera.focus + camera.z > 0) ||
            error_set(error, ERROR_USAGE, "--eye: %g is behind the plane in focus, %g from the cameras", camera.z,
                      camera.focus + camera.z);
@@ -152,57 +150,62 @@ static bool check_focus(const struct show *show, uint32_t frame, struct error *e
 
 /* One row of a panorama. */
 struct turned {
-    struct show *show;
+    struct view *view;
     struct vec3 forward, right, up;
     double pixel;
 };
 
 static void turned_row(void *context, uint32_t y, int worker) {
     const struct turned *turned = context;
-    struct show *show = turned->show;
+    struct view *view = turned->view;
     (void)worker;
-    for (uint32_t x = 0; x < show->width; x++) {
-        struct vec3 d = vec3_add_scaled(turned->forward, turned->right, (x + 0.5 - show->width / 2.0) * turned->pixel);
-        d = vec3_add_scaled(d, turned->up, (show->height / 2.0 - y - 0.5) * turned->pixel);
-        struct colour c = sky_colour(&show->sky, vec3_normalize(d), turned->pixel);
-        float *out = show->light[(size_t)y * show->width + x];
+    for (uint32_t x = 0; x < view->width; x++) {
+        struct vec3 d = vec3_add_scaled(turned->forward, turned->right, (x + 0.5 - view->width / 2.0) * turned->pixel);
+        d = vec3_add_scaled(d, turned->up, (view->height / 2.0 - y - 0.5) * turned->pixel);
+        struct colour c = sky_colour(&view->sky, vec3_normalize(d), turned->pixel);
+        float *out = view->light[(size_t)y * view->width + x];
         out[0] = (float)c.r, out[1] = (float)c.g, out[2] = (float)c.b;
     }
 }
 
-static bool draw_panorama(struct show *show, uint32_t frame, struct error *error) {
-    struct vec3 at = point_of_frame(show, frame);
-    double fov = show->options->fov > 0 ? show->options->fov : PANORAMA_FOV, sine[2], cosine[2];
+static bool draw_panorama(struct view *view, const struct view_state *state, struct error *error) {
+    const struct vec3 at = state->at;
+    double fov = state->fov, sine[2], cosine[2];
     el_sincos(at.x * (PI / 180), &sine[0], &cosine[0]);
     el_sincos(at.y * (PI / 180), &sine[1], &cosine[1]);
     /* A map has -z in its middle, a cross +z. */
-    double front = show->sky.kind == SKY_MAP ? -1 : 1;
-    struct turned turned = {.show = show, .pixel = 2 * el_tan(fov * (PI / 360)) / show->height};
+    double front = view->sky.kind == SKY_MAP ? -1 : 1;
+    struct turned turned = {.view = view, .pixel = 2 * el_tan(fov * (PI / 360)) / view->height};
     turned.forward = vec3_make(-front * sine[0] * cosine[1], sine[1], front * cosine[0] * cosine[1]);
     turned.right = vec3_make(-front * cosine[0], 0, -front * sine[0]);
     turned.up = vec3_cross(turned.right, turned.forward);
-    return pool_run(show->pool, show->height, turned_row, &turned) || error_set(error, ERROR_CANCELLED, "interrupted");
+    return pool_run(view->pool, view->height, turned_row, &turned) || error_set(error, ERROR_CANCELLED, "interrupted");
 }
 
-static bool draw(struct show *show, uint32_t frame, struct error *error) {
-    if (!show->is_field)
-        return draw_panorama(show, frame, error);
-    struct light_field_camera camera = camera_of_frame(show, frame);
-    (void)light_field_clamp(&show->field.head, &camera);
-    return light_field_draw(&show->field, &camera, show->pool, show->light, error);
+bool view_draw(struct view *view, const struct view_state *state, struct error *error) {
+    if (!view->is_field)
+        return draw_panorama(view, state, error);
+    struct light_field_camera camera = view_camera(view, state);
+    (void)light_field_clamp(&view->field.head, &camera);
+    return light_field_draw(&view->field, &camera, view->pool, view->light, error);
+}
+
+static bool draw(struct view *view, uint32_t frame, struct error *error) {
+    struct view_state state = view_state_of(view, frame);
+    return view_draw(view, &state, error);
 }
 
 /* All views of the field in one picture. */
-static bool draw_all_views(struct show *show, struct error *error) {
-    const struct light_field_head *head = &show->field.head;
+static bool draw_all_views(struct view *view, struct error *error) {
+    const struct light_field_head *head = &view->field.head;
     const struct light_field_part all = {0, 0, head->columns, head->rows};
-    if (!light_field_load_part(&show->field, &all, show->pool, error))
+    if (!light_field_load_part(&view->field, &all, view->pool, error))
         return false;
-    for (uint32_t y = 0; y < show->height; y++) {
-        for (uint32_t x = 0; x < show->width; x++) {
-            const float *view = show->field.views[y / head->height * head->columns + x / head->width];
+    for (uint32_t y = 0; y < view->height; y++) {
+        for (uint32_t x = 0; x < view->width; x++) {
+            const float *from = view->field.views[y / head->height * head->columns + x / head->width];
             size_t at = (size_t)(y % head->height) * head->width + x % head->width;
-            memcpy(show->light[(size_t)y * show->width + x], view + at * LIGHT_FIELD_NUMBERS, sizeof *show->light);
+            memcpy(view->light[(size_t)y * view->width + x], from + at * LIGHT_FIELD_NUMBERS, sizeof *view->light);
         }
     }
     return true;
@@ -211,140 +214,169 @@ static bool draw_all_views(struct show *show, struct error *error) {
 /* --- files --- */
 
 static void row_light(void *context, uint32_t y, float *line) {
-    const struct show *show = context;
-    memcpy(line, show->light[(size_t)y * show->width], show->width * sizeof *show->light);
+    const struct view *view = context;
+    memcpy(line, view->light[(size_t)y * view->width], view->width * sizeof *view->light);
 }
 
-static double number_at(const struct show *show, uint32_t y, uint32_t i) {
-    return tone_apply(&show->tone, (double)show->light[(size_t)y * show->width + i / 3][i % 3]);
+static double number_at(const struct view *view, uint32_t y, uint32_t i) {
+    return tone_apply(&view->tone, (double)view->light[(size_t)y * view->width + i / 3][i % 3]);
 }
 
 static void row_bytes(void *context, uint32_t y, uint8_t *line) {
-    const struct show *show = context;
-    for (uint32_t i = 0; i < 3 * show->width; i++)
-        line[i] = png_write_byte(number_at(show, y, i));
+    const struct view *view = context;
+    for (uint32_t i = 0; i < 3 * view->width; i++)
+        line[i] = png_write_byte(number_at(view, y, i));
 }
 
 static void row_words(void *context, uint32_t y, uint16_t *line) {
-    const struct show *show = context;
-    for (uint32_t i = 0; i < 3 * show->width; i++)
-        line[i] = tone_word(number_at(show, y, i));
+    const struct view *view = context;
+    for (uint32_t i = 0; i < 3 * view->width; i++)
+        line[i] = tone_word(number_at(view, y, i));
 }
 
-static bool write_picture(struct show *show, uint32_t frame, struct error *error) {
-    const struct options *options = show->options;
-    const struct picture_source source = {.width = show->width,
-                                          .height = show->height,
+bool view_write(struct view *view, const char *name, struct error *error) {
+    const struct picture_source source = {.width = view->width,
+                                          .height = view->height,
                                           .bytes = row_bytes,
                                           .words = row_words,
                                           .light = row_light,
-                                          .context = show,
-                                          .deep = options->settings.deep,
-                                          .srgb = show->tone.srgb};
+                                          .context = view,
+                                          .deep = view->options->settings.deep,
+                                          .srgb = view->tone.srgb};
+    const struct file_target target = {.path = name, .rules = &view->files.picture};
+    return picture_file_write(&target, &source, view->pool, error);
+}
+
+static bool write_picture(struct view *view, uint32_t frame, struct error *error) {
     char name[NAME_LIMIT];
-    const struct file_target target = {.path = name, .rules = &show->files.picture};
-    return (output_name(options->output, frame + 1, name, sizeof name) ||
+    return (output_name(view->options->output, frame + 1, name, sizeof name) ||
             error_set(error, ERROR_USAGE, "-o: the name is longer than %d bytes", NAME_LIMIT - 1)) &&
-           picture_file_write(&target, &source, show->pool, error);
+           view_write(view, name, error);
 }
 
 static bool frame_bytes(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
-    struct show *show = context;
-    if (!draw(show, index, error))
+    struct view *view = context;
+    if (!draw(view, index, error))
         return false;
-    for (uint32_t y = 0; y < show->height; y++)
-        row_bytes(show, y, rgb + (size_t)3 * show->width * y);
+    for (uint32_t y = 0; y < view->height; y++)
+        row_bytes(view, y, rgb + (size_t)3 * view->width * y);
     return true;
 }
 
-static bool write_animation(struct show *show, struct error *error) {
-    const struct frame_options *frames = &show->options->script.frames;
-    const struct animation_source source = {.width = show->width,
-                                            .height = show->height,
-                                            .count = show->frames,
+static bool write_animation(struct view *view, struct error *error) {
+    const struct frame_options *frames = &view->options->script.frames;
+    const struct animation_source source = {.width = view->width,
+                                            .height = view->height,
+                                            .count = view->frames,
                                             .rate = frames->rate > 0 ? frames->rate : FRAME_RATE_DEFAULT,
                                             .loops = frames->loops,
-                                            .srgb = show->tone.srgb,
+                                            .srgb = view->tone.srgb,
                                             .frame = frame_bytes,
-                                            .context = show};
-    return animation_write(&show->files, &source, error);
+                                            .context = view};
+    return animation_write(&view->files, &source, error);
 }
 
-static bool write_all(struct show *show, struct error *error) {
-    if (show->options->contact_sheet)
-        return draw_all_views(show, error) && write_picture(show, 0, error);
-    if (show->options->animation != ANIMATION_NONE)
-        return write_animation(show, error);
+static bool write_all(struct view *view, struct error *error) {
+    if (view->options->contact_sheet)
+        return draw_all_views(view, error) && write_picture(view, 0, error);
+    if (view->options->animation != ANIMATION_NONE)
+        return write_animation(view, error);
     bool ok = true;
-    for (uint32_t frame = 0; ok && frame < show->frames; frame++)
-        ok = draw(show, frame, error) && write_picture(show, frame, error);
+    for (uint32_t frame = 0; ok && frame < view->frames; frame++)
+        ok = draw(view, frame, error) && write_picture(view, frame, error);
     return ok;
 }
 
 /* One warning for all frames. */
-static void warn_of_eyes(const struct show *show) {
+static void warn_of_eyes(const struct view *view) {
     bool outside = false;
-    for (uint32_t frame = 0; frame < show->frames && show->is_field && !outside; frame++) {
-        struct light_field_camera camera = camera_of_frame(show, frame);
-        outside = light_field_clamp(&show->field.head, &camera);
+    for (uint32_t frame = 0; frame < view->frames && view->is_field && !outside; frame++) {
+        struct light_field_camera camera = camera_of_frame(view, frame);
+        outside = light_field_clamp(&view->field.head, &camera);
     }
-    if (outside && !show->options->quiet)
+    if (outside && !view->options->quiet)
         text_print_message(stderr, TEXT_WARNING,
                            "gray: warning: --eye: rays from outside of the field are taken from its border");
 }
 
-static bool prepare(struct show *show, struct error *error) {
-    const struct options *options = show->options;
-    const struct light_field_head *head = &show->field.head;
+static bool prepare(struct view *view, struct error *error) {
+    const struct options *options = view->options;
+    const struct light_field_head *head = &view->field.head;
     const char *path = options->eyes ? options->eyes : options->directions;
     char warning[256];
     struct file_identity identity;
-    show->frames = options->script.frames.selection.step > 0 ? options->script.frames.selection.last : 1;
-    if (!check_options(show, error))
+    view->frames = options->script.frames.selection.step > 0 ? options->script.frames.selection.last : 1;
+    if (!check_options(view, error))
         return false;
-    show->point_count = !path;
-    if (path && !read_points(show, options->eyes ? "--eye" : "--direction", path, options->eyes ? 3 : 2, error))
+    view->point_count = !path;
+    if (path && !read_points(view, options->eyes ? "--eye" : "--direction", path, options->eyes ? 3 : 2, error))
         return false;
-    for (uint32_t frame = 0; frame < show->frames && show->is_field; frame++)
-        if (!check_focus(show, frame, error))
+    for (uint32_t frame = 0; frame < view->frames && view->is_field; frame++)
+        if (!check_focus(view, frame, error))
             return false;
     if (options->width) {
-        show->width = (uint32_t)options->width;
-        show->height = (uint32_t)options->height;
+        view->width = (uint32_t)options->width;
+        view->height = (uint32_t)options->height;
     }
     if (options->contact_sheet) {
-        show->width *= head->columns;
-        show->height *= head->rows;
+        view->width *= head->columns;
+        view->height *= head->rows;
     }
     if (file_identity_of(options->scripts[0], &identity))
-        picture_files_keep(&show->files, identity, false);
-    show->pool = pool_create(options->threads, warning);
-    show->light = mem_alloc_zero((size_t)show->width * show->height, sizeof *show->light);
-    return (show->pool && show->light) || error_no_memory(error, "the picture");
+        picture_files_keep(&view->files, identity, false);
+    view->pool = pool_create(options->threads, warning);
+    return view->pool ? view_resize(view, view->width, view->height, error) : error_no_memory(error, "the picture");
+}
+
+bool view_resize(struct view *view, uint32_t width, uint32_t height, struct error *error) {
+    float(*light)[3] = mem_alloc_zero((size_t)width * height, sizeof *light);
+    if (!light)
+        return error_no_memory(error, "the picture");
+    mem_free(view->light);
+    view->light = light;
+    view->width = width;
+    view->height = height;
+    return true;
+}
+
+bool view_is(const char *name) {
+    struct file_source source;
+    struct error ignored;
+    uint8_t head[16];
+    if (!file_source_open(&source, name, &ignored))
+        return false;
+    bool is = file_source_read(&source, 0, head, sizeof head) && picture_file_is(head, sizeof head);
+    file_source_close(&source);
+    return is;
+}
+
+bool view_open(struct view *view, const struct options *options, struct error *error) {
+    view->options = options;
+    picture_files_init(&view->files, options);
+    return open_file(view, error) && prepare(view, error);
+}
+
+void view_close(struct view *view) {
+    mem_free(view->light);
+    pool_destroy(view->pool);
+    light_field_close(&view->field);
+    image_release(view->image);
+    picture_files_destroy(&view->files);
 }
 
 int view_run(const struct options *options) {
     struct error error;
     /* Not on the stack, which may be small. */
-    struct show *show = mem_alloc_zero(1, sizeof *show);
-    bool ok = show || error_no_memory(&error, "the picture");
+    struct view *view = mem_alloc_zero(1, sizeof *view);
+    bool ok = view || error_no_memory(&error, "the picture");
+    ok = ok && view_open(view, options, &error);
     if (ok) {
-        show->options = options;
-        picture_files_init(&show->files, options);
-        ok = open_file(show, &error) && prepare(show, &error);
+        warn_of_eyes(view);
+        ok = write_all(view, &error);
     }
-    if (ok) {
-        warn_of_eyes(show);
-        ok = write_all(show, &error);
-    }
-    if (show) {
-        mem_free(show->light);
-        pool_destroy(show->pool);
-        light_field_close(&show->field);
-        image_release(show->image);
-        picture_files_destroy(&show->files);
-        mem_free(show);
-    }
+    if (view)
+        view_close(view);
+    mem_free(view);
     if (ok)
         return 0;
     char line[sizeof error.text + 16];

@@ -2,7 +2,46 @@
 #ifndef GRAY_OUTPUT_VIEW_H
 #define GRAY_OUTPUT_VIEW_H
 
+#include "image/light_field.h"
+#include "light/sky.h"
+#include "output/picture_files.h"
 #include "session/options.h"
+
+enum { VIEW_POINTS = 64 };
+/* What is shown: a light field, or a sky around the eye. */
+struct view {
+    const struct options *options;
+    struct picture_files files;
+    struct pool *pool;
+    bool is_field;
+    struct light_field field;
+    struct image *image;
+    struct sky sky;
+    struct tone tone;
+    struct vec3 points[VIEW_POINTS]; /* of the path */
+    uint32_t point_count, frames, width, height;
+    float (*light)[3]; /* of the picture */
+};
+/* How it is seen: the eye in the field, focus and lens; or the direction (degrees to the right and up) and the angle of
+ * view (degrees). */
+struct view_state {
+    struct vec3 at;
+    double focus, aperture, fov;
+};
+
+/* Whether a file holds a picture or a light field. */
+bool view_is(const char *name);
+/* Opens the file that options->scripts names, with all that the options want of it. view: zero value; it must be closed
+ * also after an error. */
+bool view_open(struct view *view, const struct options *options, struct error *error);
+void view_close(struct view *view);
+struct view_state view_state_of(const struct view *view, uint32_t frame);
+struct light_field_camera view_camera(const struct view *view, const struct view_state *state);
+/* Draws view->light, view->width x view->height: another size needs room for it first (view_resize). */
+bool view_resize(struct view *view, uint32_t width, uint32_t height, struct error *error);
+bool view_draw(struct view *view, const struct view_state *state, struct error *error);
+/* Writes view->light into a picture of this name. */
+bool view_write(struct view *view, const char *name, struct error *error);
 
 /* options->scripts is the file. Returns the exit status. */
 int view_run(const struct options *options);

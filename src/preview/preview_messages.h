@@ -30,6 +30,13 @@ struct view_overlay_buffers {
     uint8_t *shows;    /* by pixel: not 0 where the node is visible */
 };
 
+/* A point of a picture, by pixels of the whole, as a camera sees it. */
+struct view_point {
+    struct camera camera; /* its view a direction */
+    bool own;             /* the camera of the script */
+    double x, y;
+};
+
 /* A pass of a picture in a window. */
 struct pass_view {
     struct camera camera;       /* its view a direction */
@@ -38,10 +45,11 @@ struct pass_view {
     bool plain;                 /* one sample a pixel, coarse soft light */
     bool headlight;             /* plain, and made by render_headlight ... */
     enum headlight_shows shows; /* ... which shows this */
-    uint32_t samples;       /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
-    uint32_t kept;          /* samples of the pass before, which had all pixels: the pass goes on with the next */
-    bool own;               /* the camera, lens and motion of the script */
-    uint32_t width, height; /* not 0: so many pixels in place of those of the picture, in the memory of the command */
+    uint32_t samples;        /* not 0: so many for each pixel, with integrators that are progressive, then denoised */
+    uint32_t kept;           /* samples of the pass before, which had all pixels: the pass goes on with the next */
+    bool own;                /* the camera, lens and motion of the script */
+    uint32_t width, height;  /* not 0: so many pixels in place of those of the picture, in the memory of the command */
+    struct view_point patch; /* of HEADLIGHT_FACTORS: it is shown there */
 };
 
 /* Lights of a scene are reported in groups of this size. */

@@ -7,6 +7,8 @@
 #include "inspect/pick.h"
 #include "light/light_edit.h"
 #include "preview/view_overlay_internal.h"
+#include "radiosity/radiosity.h"
+#include "render/camera.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -70,6 +72,40 @@ static bool lay_film(const struct preview_state *work, void *large, struct film 
     return true;
 }
 
+/* The job with the camera of the window. */
+static struct render_job view_job(const struct preview_state *work, const struct pass_view *view) {
+    struct render_job job = *work->preview->job;
+    if (!view->own) {
+        job.camera = view->camera;
+        job.settings.view_is_target = false;
+        job.settings.motion = (struct camera_motion){0};
+    }
+    return job;
+}
+
+/* The patch of radiosity at a point, or PATCH_NONE. */
+static uint32_t find_patch(const struct preview_state *work, const struct view_point *at) {
+    const struct render_job job = view_job(work, &(struct pass_view){.camera = at->camera, .own = at->own});
+    const struct radiosity *radiosity = job.radiosity;
+    struct world_scratch scratch;
+    struct camera_frame frame;
+    struct error ignored;
+    struct ray ray;
+    struct hit hit;
+    char warning[256];
+    uint32_t patch = PATCH_NONE;
+    double shares[3];
+    if (!radiosity || radiosity->patches.world != job.world || !world_scratch_init(&scratch, job.world))
+        return PATCH_NONE;
+    bool found = camera_prepare(&job.camera, &job.settings, (struct picture_size){job.width, job.height}, &frame,
+                                warning, &ignored) &&
+                 camera_ray_through(&frame, at->x, at->y, (struct sample2){0.5, 0.5}, NULL, &ray) &&
+                 world_nearest(job.world, &ray, &scratch, &hit) &&
+                 patches_find(&radiosity->patches, &hit, &patch, shares);
+    world_scratch_destroy(&scratch);
+    return found ? patch : PATCH_NONE;
+}
+
 static bool make_pass(struct preview_state *work, void *large, struct picture_report *report, struct error *error) {
     struct preview_session *preview = work->preview;
     struct render_job job;
@@ -84,9 +120,13 @@ static bool make_pass(struct preview_state *work, void *large, struct picture_re
     progress_estimate_reset(progress_estimate, fine);
     job.progress_estimate = fine ? progress_estimate : NULL;
     report->rays = (struct render_statistics){.build_seconds = work->build_seconds};
-    bool ok = work->view.headlight
-                  ? render_headlight(&job, work->view.shows, work->view.divide > 1, preview->pool, &report->rays, error)
-                  : render_run(&job, preview->pool, &report->rays, error);
+    const struct headlight_request headlight = {
+        .shows = work->view.shows,
+        .coarse = work->view.divide > 1,
+        .state = FILM_TILE_DONE,
+        .patch = work->view.shows == HEADLIGHT_FACTORS ? find_patch(work, &work->view.patch) : PATCH_NONE};
+    bool ok = work->view.headlight ? render_headlight(&job, &headlight, preview->pool, &report->rays, error)
+                                   : render_run(&job, preview->pool, &report->rays, error);
     report->stopped = !ok && preview_was_stopped(preview->services->control, error);
     if (!ok && !report->stopped)
         return false;
@@ -194,17 +234,6 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
     reply->unbuilt = work->stale;
     describe_lights(work, command->first_light, reply);
     return true;
-}
-
-/* The job with the camera of the window. */
-static struct render_job view_job(const struct preview_state *work, const struct pass_view *view) {
-    struct render_job job = *work->preview->job;
-    if (!view->own) {
-        job.camera = view->camera;
-        job.settings.view_is_target = false;
-        job.settings.motion = (struct camera_motion){0};
-    }
-    return job;
 }
 
 /* The material is reported without the changes of the window, which the viewer has itself. */

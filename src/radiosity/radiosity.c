@@ -30,6 +30,11 @@ void radiosity_destroy(struct radiosity *radiosity) {
     *radiosity = (struct radiosity){.store = radiosity->store};
 }
 
+static void show_growth(const struct radiosity *radiosity) {
+    if (radiosity->watch.grown)
+        radiosity->watch.grown(radiosity->watch.context, radiosity);
+}
+
 static uint32_t side_count(const struct radiosity *radiosity) {
     return 2 * (uint32_t)radiosity->patches.vertices.count;
 }
@@ -208,9 +213,12 @@ static bool find_rays(struct preparation *p, struct error *error) {
             error, ERROR_SCENE,
             "--integrator radiosity needs a diffuse surface with an end and an area, and the scene has none");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    return ((p->sides && p->targets && find_bright_patches(p)) || error_no_memory(error, "radiosity")) &&
-           patches_index_space(&out->patches, p->input->pool, error) && run(p, p->count, ray_batch, error) &&
-           find_receivers(p, error);
+    if (!p->sides || !p->targets || !find_bright_patches(p))
+        return error_no_memory(error, "radiosity");
+    if (!patches_index_space(&out->patches, p->input->pool, error))
+        return false;
+    show_growth(out);
+    return run(p, p->count, ray_batch, error) && find_receivers(p, error);
 }
 
 /* --- preparation --- */
@@ -394,6 +402,7 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
         show_unshot(radiosity, radiosity->left);
         if (!(radiosity->left > error_share))
             return true;
+        show_growth(radiosity);
         if (pool_cancelled(pool))
             return false;
         /* All that have at least half of the largest, by number. */
@@ -529,7 +538,7 @@ static bool find_solution(struct preparation *p, struct error *error) {
 }
 
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
-    struct radiosity next = {.store = radiosity->store};
+    struct radiosity next = {.watch = input->watch, .store = radiosity->store};
     struct preparation p = {.out = &next, .input = input};
     bool ok = begin_preparation(&p, error);
     if (ok)
@@ -545,6 +554,7 @@ bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input 
         return ok;
     radiosity_destroy(radiosity);
     *radiosity = next;
+    radiosity->watch = (struct radiosity_watch){0};
     return true;
 }
 

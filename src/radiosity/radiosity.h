@@ -33,6 +33,13 @@ struct radiosity_store {
     _Atomic float *unshot; /* the share of light that is not yet shot; 0: nothing is computed */
 };
 
+struct radiosity;
+/* Called while it is solved: its light has grown; first it is that of lights alone. Zero value: nobody watches. */
+struct radiosity_watch {
+    void (*grown)(void *context, const struct radiosity *radiosity);
+    void *context;
+};
+
 /* Zero value: empty. Owner: the caller, radiosity_destroy. */
 struct radiosity {
     struct patches patches;
@@ -43,6 +50,7 @@ struct radiosity {
     double left;                         /* share of light that is not shot */
     struct digest digest;                /* of all that the solution depends on; zero: there is none */
     bool ready;                          /* it is that of the next picture, which resets this */
+    struct radiosity_watch watch;        /* while it is solved */
     const struct radiosity_store *store; /* or NULL; borrowed, and stays when the rest is destroyed */
 };
 
@@ -54,6 +62,7 @@ struct radiosity_input {
     uint32_t rays;      /* of a side: a square, and a multiple of 64; 0: by the number of sides */
     uint64_t seed;
     struct pool *pool;
+    struct radiosity_watch watch;
 };
 
 /* Patches, direct light and form factors. Errors: no surface is diffuse; an emitter without end (named); too many

@@ -2,8 +2,10 @@
 #include "render/headlight.h"
 
 #include "base/mem.h"
+#include "material/bsdf_select.h"
 #include "material/material_eval.h"
 #include "math/elementary.h"
+#include "radiosity/radiosity.h"
 #include "render/camera.h"
 #include "world/packet.h"
 #include "world/world_describe.h"
@@ -24,10 +26,13 @@ struct headlight {
     const struct render_job *job;
     struct pool *pool;
     struct camera_frame camera;
-    struct world_scratch *scratch; /* by worker */
-    _Atomic uint32_t *rows_done;   /* by tile: rows of squares */
-    double brightness;             /* that undoes the exposure */
+    struct world_scratch *scratch;  /* by worker */
+    _Atomic uint32_t *rows_done;    /* by tile: rows of squares */
+    double brightness;              /* that undoes the exposure */
+    const struct radiosity *stored; /* light of diffuse surfaces, or NULL */
     enum headlight_shows shows;
+    uint8_t state;
+    uint32_t patch;
     double nearest, farthest; /* of all finite objects, from the eye; of depths */
     bool plain;
     bool coarse;
@@ -44,13 +49,93 @@ static struct colour describe(const struct headlight *headlight, const struct hi
     return colour_scale(colour, headlight->brightness);
 }
 
-/* Work as a colour. */
-static struct colour heat(const struct headlight *headlight, uint64_t work) {
-    double t = math_min(el_log2(1 + (double)work) / 12, 1), high = math_max(2 * t - 1, 0);
+/* From blue for 0 over green to red for 1. */
+static struct colour heat(const struct headlight *headlight, double share) {
+    double t = math_min(math_max(share, 0), 1), high = math_max(2 * t - 1, 0);
     return colour_scale(colour_make(high, math_min(2 * t, 1) - high, math_max(1 - 2 * t, 0)), headlight->brightness);
 }
 
-static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct bsdf *bsdf) {
+/* What a surface reflects of the stored light, and its mirrors of the light at the eye. False: it has none. */
+static bool shade_stored(const struct headlight *headlight, const struct hit *hit, const struct bsdf *bsdf,
+                         struct colour *out) {
+    struct colour light, shiny = {0, 0, 0};
+    if (!headlight->stored || bsdf->dark || !radiosity_light(headlight->stored, hit, &light))
+        return false;
+    for (int i = 0; i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_TRACED)
+            shiny = colour_add_scaled(shiny, bsdf->lobes[i].weight, ambient);
+    *out = colour_add(bsdf->emission, colour_mul(bsdf_diffuse(bsdf), light));
+    *out = colour_add_scaled(*out, shiny, headlight->brightness);
+    return true;
+}
+
+/* Without what is in between: the part of the half space above the surface, weighted by the cosine, that a triangle
+ * covers. It is cut at the plane of the surface (J. Lambert, "Photometria", 1760, section 118). */
+static double unhidden_factor(struct vec3 point, struct vec3 normal, const struct vec3 corners[3]) {
+    struct vec3 cut[4];
+    int count = 0;
+    double sum = 0, rounding = 1e-9 * vec3_length(vec3_sub(corners[0], point));
+    for (int i = 0; i < 3; i++) {
+        struct vec3 a = vec3_sub(corners[i], point), b = vec3_sub(corners[(i + 1) % 3], point);
+        double above = vec3_dot(a, normal) - rounding, next = vec3_dot(b, normal) - rounding;
+        if (above > 0)
+            cut[count++] = a;
+        if ((above > 0) != (next > 0))
+            cut[count++] = vec3_add_scaled(a, vec3_sub(b, a), above / (above - next));
+    }
+    for (int i = 0; i < count; i++) {
+        struct vec3 a = vec3_normalize(cut[i]), b = vec3_normalize(cut[(i + 1) % count]), side = vec3_cross(a, b);
+        double length = vec3_length(side);
+        if (length > 0)
+            sum += el_atan2(length, vec3_dot(a, b)) * vec3_dot(side, normal) / length;
+    }
+    return fabs(sum) / (2 * PI);
+}
+
+static bool is_of_patch(const struct headlight *headlight, const struct hit *hit) {
+    const struct patches *patches = &headlight->stored->patches;
+    uint32_t patch;
+    double shares[3];
+    return hit->primitive == patch_at(patches, headlight->patch)->primitive &&
+           patches_find(patches, hit, &patch, shares) && patch == headlight->patch;
+}
+
+/* The form factor from the surface to the patch: the middles of four equal parts of it are visible or not. */
+static double form_factor(const struct headlight *headlight, struct world_scratch *scratch, const struct ray *from,
+                          const struct hit *hit, struct vec3 normal) {
+    enum { PARTS = 4 };
+    const struct patches *patches = &headlight->stored->patches;
+    const struct world *world = headlight->job->world;
+    struct vec3 c[3];
+    int visible = 0;
+    patch_corners(patches, headlight->patch, c);
+    for (int i = 0; i < PARTS; i++) {
+        const double share[3] = {i == 0 || i == 3 ? 4 : 1, i == 1 || i == 3 ? 4 : 1, i == 2 || i == 3 ? 4 : 1};
+        struct vec3 to = vec3_all(0);
+        for (int k = 0; k < 3; k++)
+            to = vec3_add_scaled(to, c[k], share[k] / (share[0] + share[1] + share[2]));
+        struct ray ray = hit_ray(hit, from, vec3_sub(to, hit->point), from->media);
+        struct hit occluder;
+        bool met = world_nearest_surface(world, &ray, scratch, &occluder) && occluder.t < 1 - 1e-6;
+        visible += !met || is_of_patch(headlight, &occluder);
+    }
+    return visible > 0 ? unhidden_factor(hit->point, normal, c) * visible / PARTS : 0;
+}
+
+/* The patch itself is white. */
+static struct colour show_factor(const struct headlight *headlight, struct world_scratch *scratch,
+                                 const struct ray *from, const struct hit *hit, struct vec3 normal) {
+    if (is_of_patch(headlight, hit))
+        return colour_all(headlight->brightness);
+    double factor = form_factor(headlight, scratch, from, hit, normal);
+    return factor > 0 ? heat(headlight, 1 + el_log2(factor) / 16) : colour_all(0);
+}
+
+static struct colour shade(const struct headlight *headlight, const struct ray *ray, const struct hit *hit,
+                           const struct bsdf *bsdf) {
+    struct colour stored;
+    if (shade_stored(headlight, hit, bsdf, &stored))
+        return stored;
     struct vec3 to_eye = vec3_negate(vec3_normalize(ray->direction));
     struct colour colour = bsdf->albedo;
     double share =
@@ -77,8 +162,10 @@ static struct colour colour_of(const struct headlight *headlight, struct world_s
         hit.footprint = 0;
     for (int i = 0; found && i < HOLES; i++) {
         material_eval(&world->surfaces, &hit, NULL, NULL, &bsdf);
+        if (bsdf.opacity >= 0.5 && headlight->shows == HEADLIGHT_FACTORS)
+            return show_factor(headlight, scratch, &ray, &hit, bsdf.side);
         if (bsdf.opacity >= 0.5)
-            return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &bsdf)
+            return headlight->shows == HEADLIGHT_SURFACES ? shade(headlight, &ray, &hit, &bsdf)
                                                           : describe(headlight, &hit, &bsdf);
         ray = hit_ray(&hit, &ray, ray.direction, ray.media);
         found = world_nearest_surface(world, &ray, scratch, &hit);
@@ -105,7 +192,7 @@ static void render_single(const struct headlight *headlight, struct world_scratc
         bool found = world_nearest_crossing(headlight->job->world, &ray, scratch, &met.primitive, &met.crossing);
         colour = colour_of(headlight, scratch, ray, found ? &met : NULL);
         if (headlight->shows == HEADLIGHT_COST)
-            colour = heat(headlight, geom_work(&scratch->geom) - before);
+            colour = heat(headlight, el_log2(1 + (double)(geom_work(&scratch->geom) - before)) / 12);
     }
     store(pixel, colour);
 }
@@ -165,7 +252,7 @@ static void render_strip(void *context, uint32_t item, int worker) {
         render_square(headlight, &headlight->scratch[worker], &r);
     }
     if (atomic_fetch_add(&headlight->rows_done[tile], 1) + 1 == rows)
-        atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
+        atomic_store_explicit(&film->tiles[tile], headlight->state, memory_order_release);
 }
 
 static void measure_depths(struct headlight *headlight) {
@@ -176,17 +263,24 @@ static void measure_depths(struct headlight *headlight) {
     headlight->farthest = vec3_length(vec3_max(vec3_negate(before), vec3_negate(behind)));
 }
 
-bool render_headlight(const struct render_job *job, enum headlight_shows shows, bool coarse, struct pool *pool,
+bool render_headlight(const struct render_job *job, const struct headlight_request *request, struct pool *pool,
                       struct render_statistics *statistics, struct error *error) {
+    const enum headlight_shows shows = request->shows;
     struct headlight headlight = {.job = job,
                                   .pool = pool,
                                   .shows = shows,
-                                  .coarse = coarse,
+                                  .coarse = request->coarse,
+                                  .state = request->state,
                                   .brightness = el_exp2(-job->settings.tone.exposure)};
     struct settings settings = job->settings;
     char warning[256];
     int workers = pool_workers(pool);
     settings.lens.aperture = 0;
+    if (settings.integrator == INTEGRATOR_RADIOSITY && job->radiosity && job->radiosity->patches.world == job->world)
+        headlight.stored = job->radiosity;
+    headlight.patch = request->patch;
+    if (shows == HEADLIGHT_FACTORS && (!headlight.stored || request->patch == PATCH_NONE))
+        headlight.shows = HEADLIGHT_SURFACES;
     if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &headlight.camera,
                         warning, error))
         return false;

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
+#include "radiosity/radiosity.h"
 #include "render/camera.h"
 
 #include <math.h>
@@ -21,8 +22,11 @@ struct stroke {
     uint32_t box; /* of the chunk */
 };
 
+/* A box, or the triangle of a patch. */
 struct overlay_box {
     struct box box;
+    bool is_patch;
+    struct vec3 corners[3];
     struct colour colour;
 };
 
@@ -147,10 +151,16 @@ static void edge(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
 
 static void find_strokes(void *context, uint32_t number, int worker) {
     struct overlay_drawing *drawing = context;
-    const struct box *box = &drawing->boxes[number].box;
+    const struct overlay_box *figure = &drawing->boxes[number];
+    const struct box *box = &figure->box;
     struct vec3 c[8];
     (void)worker;
     drawing->stroke_count[number] = 0;
+    for (int eye = drawing->pair ? -1 : 0; figure->is_patch && eye <= (drawing->pair ? 1 : 0); eye += 2)
+        for (int i = 0; i < 3; i++)
+            edge(drawing, number, eye, figure->corners[i], figure->corners[(i + 1) % 3]);
+    if (figure->is_patch)
+        return;
     for (int i = 0; i < 8; i++)
         c[i] = vec3_make(i & 1 ? box->max.x : box->min.x, i & 2 ? box->max.y : box->min.y,
                          i & 4 ? box->max.z : box->min.z);
@@ -211,13 +221,16 @@ static void draw_chunk(struct overlay_drawing *drawing) {
     drawing->count = 0;
 }
 
-static void draw_box(struct overlay_drawing *drawing, const struct box *box) {
-    if (!vec3_finite(box->min) || !vec3_finite(box->max) || !(box->min.x <= box->max.x))
-        return;
-    drawing->boxes[drawing->count++] = (struct overlay_box){*box, drawing->colour};
+static void draw_figure(struct overlay_drawing *drawing, const struct overlay_box *figure) {
+    drawing->boxes[drawing->count++] = *figure;
     drawing->drawn++;
     if (drawing->count == CHUNK)
         draw_chunk(drawing);
+}
+
+static void draw_box(struct overlay_drawing *drawing, const struct box *box) {
+    if (vec3_finite(box->min) && vec3_finite(box->max) && box->min.x <= box->max.x)
+        draw_figure(drawing, &(struct overlay_box){.box = *box, .colour = drawing->colour});
 }
 
 static bool stopped(const struct overlay_drawing *drawing) {
@@ -246,6 +259,19 @@ static void draw_boxes(struct overlay_drawing *drawing) {
     }
 }
 
+/* Of the solution for this world, if there is one. */
+static void draw_patches(struct overlay_drawing *drawing) {
+    const struct radiosity *radiosity = drawing->job->radiosity;
+    if (!radiosity || radiosity->patches.world != drawing->job->world)
+        return;
+    uint32_t step = step_for(drawing, radiosity->patches.all.count);
+    for (uint32_t i = 0; i < radiosity->patches.all.count && !stopped(drawing); i += step) {
+        struct overlay_box figure = {.is_patch = true, .colour = {0.1, 0.6, 1}};
+        patch_corners(&radiosity->patches, i, figure.corners);
+        draw_figure(drawing, &figure);
+    }
+}
+
 /* From blue for few over green to red for many. */
 static void share_colour(struct overlay_drawing *drawing, double share) {
     share = share > 1 ? 1 : share;
@@ -271,6 +297,9 @@ static void draw(struct overlay_drawing *drawing) {
         return;
     case OVERLAY_OF_GRID:
         scene_accel_cells(&drawing->job->world->accel, drawing->request->limit, draw_cell, drawing);
+        return;
+    case OVERLAY_OF_PATCHES:
+        draw_patches(drawing);
         return;
     }
 }
@@ -352,6 +381,8 @@ bool overlay_draw(const struct render_job *job, struct pool *pool, struct error 
     struct film *film = job->film;
     if (request.kind == OVERLAY_NONE)
         return true;
+    if (request.kind == OVERLAY_OF_PATCHES && job->settings.integrator != INTEGRATOR_RADIOSITY)
+        return error_set(error, ERROR_USAGE, "--overlay patches shows those of --integrator radiosity");
     float(*lines)[4] = mem_alloc_zero((size_t)film->width * film->height, sizeof *lines);
     if (!lines)
         return error_no_memory(error, "the lines over a picture");

@@ -1,4 +1,4 @@
-/* Lines over a finished picture: the boxes of primitives, or the cells of the accelerator. */
+/* Lines over a finished picture: the boxes of primitives, the cells of the accelerator, or the patches of radiosity. */
 #ifndef GRAY_RENDER_OVERLAY_H
 #define GRAY_RENDER_OVERLAY_H
 

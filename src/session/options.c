@@ -509,7 +509,7 @@ static const struct {
                       "it only joins parts that are rendered"},
     [ACTION_COMPARE] = {"compare", "o|force|threshold|q", "it only compares two pictures"},
     [ACTION_VIEW] = {"view",
-                     "o|force|size|eye|focus|aperture|direction|fov|frames|fps|loop|palette|contact-sheet|deep|j|q",
+                     "o|force|size|eye|focus|aperture|direction|fov|frames|fps|loop|palette|contact-sheet|deep|j|q|gui",
                      "it shows a file that is rendered"},
 };
 enum { ACTIONS_WITH_WORDS = sizeof actions / sizeof *actions };

@@ -202,7 +202,8 @@ static const struct setting options_table[] = {
      "With --mpi: regard a process that sends nothing for this long as lost; others render its tiles; 0: never."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "-gui", NULL, "", NULL, FIELD(window), 0, 0, 0, NULL,
      "Show the picture in a window during rendering, walk through the scene and edit it; F1 lists the keys. Files are "
-     "watched as with --watch. Without a script the window shows recent files and the demos."},
+     "watched as with --watch. Without a script the window shows recent files and the demos. A light field or a "
+     "panorama is shown as with gray view."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "--watch", NULL, "", NULL, FIELD(watch), 0, 0, 0, NULL,
      "Run the scripts again when a script, or a file that it reads, changes; Ctrl-C ends gray."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_REPORTS, "-q|quiet", NULL, "", NULL, FIELD(quiet), 0, 0, 0, NULL,

@@ -117,7 +117,8 @@ enum denoiser { DENOISERS(LIST_MEMBER) };
 #define OVERLAYS(X)                                                                                                    \
     X(OVERLAY_NONE, "none")                                                                                            \
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
-    X(OVERLAY_OF_GRID, "grid")
+    X(OVERLAY_OF_GRID, "grid")                                                                                         \
+    X(OVERLAY_OF_PATCHES, "patches")
 enum overlay { OVERLAYS(LIST_MEMBER) };
 /* Reconstruction filters (render/filter_internal.h). */
 #define FILTERS(X)                                                                                                     \
@@ -412,8 +413,8 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
     X(LAYERS, uint32_t, aov, RUN, 0, 0, AOV_ALL, NO_WORDS, "--aov", "LIST", NULL, NULL, NULL, FILES,                   \
       "For dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, separated by commas:" AOV_NAMES " or all.")  \
     X(CHOICE, enum overlay, overlay, RUN, OVERLAY_NONE, 0, 0, OVERLAYS, "--overlay", NULL, NULL, NULL, NULL, FILES,    \
-      "Draw lines over the picture: bounding boxes of all primitives, or the cells of the acceleration structure "     \
-      "(see --accel).")                                                                                                \
+      "Draw lines over the picture: bounding boxes of all primitives, the cells of the acceleration structure "        \
+      "(see --accel), or the patches of integrator radiosity.")                                                        \
     X(CROP, bool, cropped, SAMPLES, false, 0, 1, NO_WORDS, "--crop", "X,Y,W,H", NULL, NULL, "all", SIZE_AND_COLOUR,    \
       "Write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel.")
 /* Without an option and without a field. The crop is set by --crop. coarse: rough surfaces send one ray, and lights

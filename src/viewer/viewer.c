@@ -25,6 +25,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
         .plain = plain,
         .headlight = plain && (!viewer_plays(viewer) || viewer->window.mode.previews || viewer_shows_denoised(viewer)),
         .shows = viewer->window.mode.shows,
+        .patch = viewer->window.mode.patch,
         .own = !viewer->camera_moved};
 }
 
@@ -302,6 +303,8 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         viewer->window.large.stale = viewer->window.large.shown;
     }
     viewer->pass.report = *report;
+    if (viewer->overlay.kind == OVERLAY_OF_PATCHES && !viewer->pass.view.plain) /* they are those of the picture */
+        viewer->overlay.lines_fresh = false;
     if (viewer_plays(viewer)) {
         viewer_player_end_pass(viewer, now);
         return;

@@ -202,6 +202,7 @@ struct viewer_setting {
 struct view_mode {
     bool previews;
     enum headlight_shows shows;
+    struct view_point patch; /* of HEADLIGHT_FACTORS */
 };
 
 /* The window and its state: what stays from one picture to the next. */

@@ -100,42 +100,13 @@ static void blend(uint8_t *restrict out, const uint8_t *a, const uint8_t *b, uin
         out[i] = (uint8_t)((a[i] * (256 - far) + b[i] * far) >> 8);
 }
 
-/* The byte of a light that shares the upper 16 bits of its float, of lights from 2^-16 to 2^16, times scale: as exact
- * as a coarse picture needs it, without powers. */
-enum { BYTES_FIRST = (127 - 16) << 7, BYTES_COUNT = 32 << 7 };
-struct tone_bytes {
-    float scale;
-    uint8_t bytes[BYTES_COUNT];
-};
-
-static void make_bytes(const struct tone *tone, struct tone_bytes *out) {
-    struct tone unexposed = *tone;
-    unexposed.exposure = 0;
-    out->scale = (float)el_exp2(tone->exposure);
-    for (uint32_t i = 0; i < BYTES_COUNT; i++) {
-        uint32_t bits = (BYTES_FIRST + i) << 16 | 0x8000;
-        float light;
-        memcpy(&light, &bits, sizeof light);
-        out->bytes[i] = png_write_byte(tone_apply(&unexposed, (double)light));
-    }
-}
-
-static uint8_t byte_of(const struct tone_bytes *bytes, float light) {
-    uint32_t bits;
-    light *= bytes->scale;
-    light = light > 0x1p-16f ? light : 0x1p-16f;
-    light = light < 0x1.fep15f ? light : 0x1.fep15f;
-    memcpy(&bits, &light, sizeof bits);
-    return bytes->bytes[(bits >> 16) - BYTES_FIRST];
-}
-
 /* A row of the film as bytes, enlarged to the width of the picture. small: room for the former. */
 static void enlarge_row(const struct viewer *viewer, const struct tone_bytes *bytes, uint32_t y, uint8_t *small,
                         uint8_t *out) {
     const struct film *film = &viewer->pass.film;
     for (size_t i = 0; i < film->width; i++)
         for (size_t c = 0; c < 3; c++)
-            small[3 * i + c] = byte_of(bytes, film->pixels[y * film->width + i].rgb[c]);
+            small[3 * i + c] = tone_byte(bytes, film->pixels[y * film->width + i].rgb[c]);
     for (uint32_t x = 0; x < viewer->request.width; x++) {
         struct interpolation u = interpolate_pixels(x, viewer->pass.view.divide, film->width);
         blend(out + (size_t)3 * x, small + (size_t)3 * u.first, small + (size_t)3 * u.second, u.far, 3);
@@ -152,7 +123,7 @@ static bool draw_smooth(struct viewer *viewer) {
     uint32_t done = 0;                      /* rows of the film */
     if (!rows)
         return false;
-    make_bytes(&tone, &bytes);
+    tone_bytes_make(&tone, &bytes);
     for (uint32_t y = 0; y < viewer->request.height; y++) {
         struct interpolation v = interpolate_pixels(y, viewer->pass.view.divide, film->height);
         for (; done <= v.second; done++)
@@ -238,6 +209,9 @@ static void describe_state(const struct viewer *viewer, struct window_state *sta
         (void)snprintf(words, size, viewer->window.waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(words, size, "building");
+    } else if (control && atomic_load_explicit(&control->unshot, memory_order_relaxed) > 0) {
+        (void)snprintf(words, size, "%.3g %% of the light is not shot",
+                       100 * (double)atomic_load_explicit(&control->unshot, memory_order_relaxed));
     } else if (viewer_is_enlarging(viewer)) {
         (void)snprintf(words, size, "ready, enlarging: %.0f %%", 100 * state->share);
     } else if (viewer->pass.result == RESULT_COMPLETE) {

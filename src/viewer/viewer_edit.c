@@ -528,6 +528,16 @@ void viewer_probe(struct viewer *viewer, double x, double y) {
     viewer->edit.click_waits = viewer->edit.probes = true;
 }
 
+void viewer_show_factors(struct viewer *viewer) {
+    struct view_mode mode = {true, HEADLIGHT_FACTORS, {.camera = viewer->request.camera, .own = !viewer->camera_moved}};
+    if (viewer->camera_moved)
+        mode.patch.camera = fly_camera_current(&viewer->fly_camera);
+    if (viewer->request.settings.integrator != INTEGRATOR_RADIOSITY)
+        viewer_show_notice(viewer, "form factors and patches are those of integrator radiosity", true);
+    else if (pixel_at(viewer, viewer->input.x, viewer->input.y, &mode.patch.x, &mode.patch.y))
+        viewer_choose_mode(viewer, mode);
+}
+
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y) {
     viewer->trace.requested = pixel_at(viewer, x, y, &viewer->trace.x, &viewer->trace.y);
 }

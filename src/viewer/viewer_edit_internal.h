@@ -24,6 +24,8 @@ bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame 
 void viewer_click(struct viewer *viewer, double x, double y, bool operand);
 void viewer_probe(struct viewer *viewer, double x, double y); /* asks what is there, for orbits and dollies */
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y);
+/* To the patch of radiosity that is under the mouse. */
+void viewer_show_factors(struct viewer *viewer);
 void viewer_select_node(struct viewer *viewer, const struct node_query *node);
 void viewer_select_light(struct viewer *viewer, uint32_t number);
 void viewer_next_light(struct viewer *viewer, bool back);

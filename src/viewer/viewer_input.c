@@ -143,6 +143,8 @@ static void escape(struct viewer *viewer) {
 uint32_t viewer_needs_met(const struct viewer *viewer) {
     const bool met[] = {[NEEDS_NOTHING] = true,
                         [NEEDS_NAME] = viewer->name[0] != '\0',
+                        [NEEDS_SCENE] = viewer->name[0] != '\0',
+                        [NEEDS_VIEW] = viewer->block != NULL,
                         [NEEDS_PICTURE] = viewer->block != NULL,
                         [NEEDS_SELECTION] = viewer->block && viewer->edit.selection.kind != SELECTED_NOTHING,
                         [NEEDS_FRAMES] = viewer->player.count > 0};
@@ -243,11 +245,16 @@ static void do_action(struct viewer *viewer, enum window_action action) {
     case DO_SHOW_NORMALS:
     case DO_SHOW_DEPTH:
     case DO_SHOW_COST:
-        viewer_choose_mode(viewer, (struct view_mode){true, (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
+        viewer_choose_mode(
+            viewer, (struct view_mode){.previews = true, .shows = (enum headlight_shows)(action - DO_SHOW_PREVIEW)});
+        return;
+    case DO_SHOW_FACTORS:
+        viewer_show_factors(viewer);
         return;
     case DO_BOXES:
     case DO_GRID:
-        viewer_choose_overlay(viewer, action == DO_BOXES ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
+    case DO_PATCHES:
+        viewer_choose_overlay(viewer, (enum overlay)(OVERLAY_OF_BOXES + (action - DO_BOXES)));
         return;
     case DO_HIDE:
         viewer->window.hides_lines = !viewer->window.hides_lines;

@@ -15,8 +15,9 @@
     X(MENU_ANIMATION, "A_nimation")
 enum window_menu { WINDOW_MENUS(LIST_MEMBER) };
 
-/* What an action needs: a picture that was begun; the memory of a picture in progress; a selection of any kind. */
-enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NEEDS_FRAMES };
+/* What an action needs: a picture that was begun, or one of a scene; the memory of a picture in progress, or a view
+ * without a scene; this memory; a selection of any kind. */
+enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_SCENE, NEEDS_VIEW, NEEDS_PICTURE, NEEDS_SELECTION, NEEDS_FRAMES };
 
 /* Name, title, menu, need, keys as in Blender and as in OpenSCAD (as GTK writes them, divided by blanks), help. */
 #define WINDOW_ACTIONS(X)                                                                                              \
@@ -24,9 +25,9 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "<Control><Shift>s", "Save the picture as it is shown")                                                          \
     X(DO_SAVE_VIEW, "save-view", "Save Vie_w", MENU_FILE, NEEDS_PICTURE, "<Control><Shift>v", "<Control><Shift>v",     \
       "Save the camera as a Lua file")                                                                                 \
-    X(DO_SAVE_CHANGES, "save-changes", "_Save Edits", MENU_FILE, NEEDS_NAME, "<Control>s", "<Control>s",               \
+    X(DO_SAVE_CHANGES, "save-changes", "_Save Edits", MENU_FILE, NEEDS_SCENE, "<Control>s", "<Control>s",              \
       "Save all edits, the camera and the exposure as a Lua file")                                                     \
-    X(DO_EXPORT_MODEL, "export-model", "_Export Model…", MENU_FILE, NEEDS_NAME, "<Control>e", "F7",                    \
+    X(DO_EXPORT_MODEL, "export-model", "_Export Model…", MENU_FILE, NEEDS_SCENE, "<Control>e", "F7",                   \
       "Write the solids for printing: STL, 3MF, OBJ or PLY")                                                           \
     X(DO_NEXT_PICTURE, "next-picture", "_Next Picture", MENU_FILE, NEEDS_PICTURE, "<Control>n", "<Control>n",          \
       "Continue with the next picture of the script")                                                                  \
@@ -52,9 +53,9 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Select the previous light")                                                                                     \
     X(DO_ESCAPE, "escape", "Clear Selec_tion", MENU_EDIT, NEEDS_NOTHING, "Escape", "Escape",                           \
       "End a tool, the selection, rendering, or a script that makes no picture")                                       \
-    X(DO_CAMERA, "camera", "Script's _Camera", MENU_VIEW, NEEDS_PICTURE, "KP_0 0", "<Control>0",                       \
+    X(DO_CAMERA, "camera", "Script's _Camera", MENU_VIEW, NEEDS_VIEW, "KP_0 0", "<Control>0",                          \
       "Return to the camera of the script")                                                                            \
-    X(DO_FRAME_ALL, "frame-all", "Frame _All", MENU_VIEW, NEEDS_PICTURE, "Home", "<Control><Shift>0 Home",             \
+    X(DO_FRAME_ALL, "frame-all", "Frame _All", MENU_VIEW, NEEDS_VIEW, "Home", "<Control><Shift>0 Home",                \
       "Show the whole scene")                                                                                          \
     X(DO_FRAME, "frame", "Frame Selec_tion", MENU_VIEW, NEEDS_SELECTION, "period KP_Decimal", "period",                \
       "Show the selection as large as possible")                                                                       \
@@ -82,9 +83,13 @@ enum action_need { NEEDS_NOTHING, NEEDS_NAME, NEEDS_PICTURE, NEEDS_SELECTION, NE
       "Show how near surfaces are")                                                                                    \
     X(DO_SHOW_COST, "show-cost", "Show the _Cost", MENU_VIEW, NEEDS_PICTURE, "<Alt>5", "<Alt>5",                       \
       "Show the work for each ray, from blue to red")                                                                  \
+    X(DO_SHOW_FACTORS, "show-factors", "Show _Form Factors", MENU_VIEW, NEEDS_PICTURE, "<Alt>6", "<Alt>6",             \
+      "Radiosity: how much of what surfaces see is the patch under the mouse")                                         \
     X(DO_BOXES, "boxes", "_Boxes of the Objects", MENU_VIEW, NEEDS_PICTURE, "b", "b", "Draw the box of every object")  \
     X(DO_GRID, "grid", "_Grid of the Accelerator", MENU_VIEW, NEEDS_PICTURE, "n", "g",                                 \
       "Draw the cells of the acceleration structure")                                                                  \
+    X(DO_PATCHES, "patches", "P_atches of Radiosity", MENU_VIEW, NEEDS_PICTURE, "<Alt>b", "<Alt>b",                    \
+      "Draw the patches that store light")                                                                             \
     X(DO_HIDE, "hide", "_Hide Symbols", MENU_VIEW, NEEDS_NOTHING, "h", "h", "Hide what is drawn over the picture")     \
     X(DO_FULL_SCREEN, "full-screen", "F_ull Screen", MENU_VIEW, NEEDS_NOTHING, "F11", "F11", "The whole screen")       \
     X(DO_RENDER, "render", "_Render Again", MENU_PICTURE, NEEDS_NOTHING, "F12 F5", "F6 F5",                            \

@@ -134,13 +134,13 @@ static void finish_open(GtkNativeDialog *dialog, int answer, gpointer data) {
 }
 
 static void choose_scene(GSimpleAction *action, GVariant *value, gpointer data) {
-    static const char *const suffixes[] = {"lua", "glb", "gltf", "obj", "ply", "stl"};
+    static const char *const suffixes[] = {"lua", "glb", "gltf", "obj", "ply", "stl", "lf"};
     struct gui *gui = data;
     GtkFileChooserNative *dialog = gtk_file_chooser_native_new("Open a Scene", GTK_WINDOW(gui->window),
                                                                GTK_FILE_CHOOSER_ACTION_OPEN, "_Open", "_Cancel");
     GtkFileFilter *filter = gtk_file_filter_new();
     (void)action, (void)value;
-    gtk_file_filter_set_name(filter, "Scenes and models");
+    gtk_file_filter_set_name(filter, "Scenes, models, light fields");
     for (size_t i = 0; i < G_N_ELEMENTS(suffixes); i++)
         gtk_file_filter_add_suffix(filter, suffixes[i]);
     gtk_file_chooser_add_filter(GTK_FILE_CHOOSER(dialog), filter);
@@ -693,6 +693,7 @@ static void show_state(struct gui *gui) {
     window_shared_read(gui->memory.block, state);
     if (was.has_scene != state->has_scene)
         show_page(gui);
+    gtk_widget_set_visible(gtk_paned_get_start_child(GTK_PANED(gui->tree_pane)), !state->lacks_nodes);
     if (was.action_on != state->action_on)
         enable_actions(gui, state->action_on | 1u << NEEDS_NOTHING);
     if (was.full_screen != state->full_screen)

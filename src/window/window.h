@@ -98,6 +98,7 @@ enum { WINDOW_LINES = 4096, WINDOW_TRACE = 16384, WINDOW_HIDDEN = 256 };
 /* Everything that the window shows but the picture and the rows of the tree. */
 struct window_state {
     bool has_scene;                             /* else the page without a scene */
+    bool lacks_nodes;                           /* a view of a light field or a panorama: no tree */
     bool flies;                                 /* letters move the camera */
     bool full_screen;                           /* the whole screen */
     bool types;                                 /* a tool is chosen: letters and digits are for it */

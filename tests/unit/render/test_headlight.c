@@ -28,7 +28,8 @@ static void show(struct stage *s, enum headlight_shows shows) {
     memset(s->film.pixels, 0, sizeof *s->film.pixels * SIZE * SIZE);
     struct render_job job = stage_job(s, SIZE, SIZE);
     job.film = &s->film;
-    CHECK(render_headlight(&job, shows, false, s->pool, &statistics, &s->error));
+    const struct headlight_request request = {.shows = shows, .state = FILM_TILE_DONE};
+    CHECK(render_headlight(&job, &request, s->pool, &statistics, &s->error));
     CHECK_EQ_INT(film_tiles_in(&s->film, FILM_TILE_DONE), film_tile_count(&s->film));
     CHECK(statistics.camera_rays == SIZE * SIZE);
 }

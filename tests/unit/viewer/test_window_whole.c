@@ -513,6 +513,28 @@ TEST(window_that_shows_paths_denoised_ends_with_the_picture_of_the_program) {
     test_free_result(&result);
 }
 
+TEST(window_shows_how_much_light_of_radiosity_is_not_shot_and_ends_with_the_picture_of_the_program) {
+    const struct deed deeds[] = {{"of the light is not shot", ACTION(DO_PATCHES), 0},
+                                 {"ready", ACTION(DO_SHOW_FACTORS), 20},
+                                 {"ready", ACTION(DO_PATCHES), 20},
+                                 {"ready", ACTION(DO_SHOW_PICTURE), 20},
+                                 {"ready", ACTION(DO_QUIT), 20}};
+    const struct setting setting = {
+        .scene =
+            "local r = gr.node('r')\n"
+            "local m = gr.material{kd = {0.7, 0.5, 0.3}, two_sided = true}\n"
+            "r:add_child(gr.box{material = m, min = {-2, -2, -2}, max = {2, 2, 4}})\n"
+            "r:add_child(gr.box{material = m, min = {-1, -1.9, -1}, max = {0.5, 0.5, 1}})\n"
+            "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3.5}, view = {0, 0, -1},\n"
+            "  integrator = 'radiosity', radiosity_patches = 4000,\n"
+            "  lights = {gr.light{position = {1, 1.5, 2}, colour = {3, 3, 3}}}}\n"};
+    CHECK_EQ_INT(viewer_that(deeds, &setting), 0);
+    struct test_result result = test_gray(NULL, "-q --progress=none scene.lua -o whole.png");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(test_same_files("out.png", "whole.png"));
+    test_free_result(&result);
+}
+
 TEST(window_lists_nodes_and_selects_them_in_the_tree) {
     const struct deed deeds[] = {
         {"ready", {.kind = WINDOW_NODES}, 0},
