@@ -31,7 +31,7 @@ struct view_window {
     bool drags, has_moved;
     double pressed_x, pressed_y, stepped;
     bool held[FLY_KEYS];
-    char name[512]; /* of a picture to be saved; or empty */
+    char name[1024]; /* of a picture to be saved; or empty */
     bool saves;
 };
 
@@ -274,8 +274,8 @@ static void do_action(struct view_window *w, const struct window_event *event) {
         w->view->tone.exposure += event->action == DO_BRIGHTER ? 0.25 : -0.25;
     else if (event->action == DO_FULL_SCREEN)
         state->full_screen = !state->full_screen;
-    else if (event->action == DO_SAVE_PICTURE)
-        w->saves = snprintf(w->name, sizeof w->name, "%s", event->text) >= 0;
+    w->saves = event->action == DO_SAVE_PICTURE;
+    (void)snprintf(w->name, sizeof w->name, "%s", event->text);
     w->outdated = true;
 }
 
