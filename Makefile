@@ -8,6 +8,8 @@
 #   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." for some tests)
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
 #   fuzz-afl       the same with AFL++
+#   arm, test-arm  build/arm/gray for 64-bit ARM, from another machine; its pictures under qemu against the recorded ones
+#   musl, test-musl  build/musl/gray with the C library musl, linked statically; its pictures
 #   bench          the benchmarks                  install     into PREFIX, below DESTDIR
 #   clean          removes all that make has built  uninstall   removes what install has written there
 # Objects and programs lie in build/CONFIG. With BUILD=FOLDER they lie in FOLDER, and make writes nothing elsewhere.
@@ -22,8 +24,6 @@ BUILD ?= build/$(config)
 ifeq ($(abspath $(BUILD)),$(CURDIR))
 $(error BUILD is the folder of the sources)
 endif
-PKG_CONFIG ?= pkg-config
-
 comma := ,
 # A recipe that begins with $(call say,WORD,NAME) prints one line, and its command with V=1 only; make -s prints nothing.
 V ?=
@@ -40,7 +40,7 @@ WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-q
 EXACT = -ffp-contract=off -fno-fast-math -fno-math-errno
 CFLAGS.release = -O3 -g -DNDEBUG
 CFLAGS.debug = -O0 -g -DGRAY_FAULTS
-CFLAGS.asan = -Og -g1 -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+CFLAGS.asan = -Og -g1 -DGRAY_FAULTS -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.tsan = -O1 -g1 -DGRAY_FAULTS -fsanitize=thread
 CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -60,10 +60,13 @@ endif
 ifeq ($(config),afl)
 CC = afl-clang-fast
 endif
+# The machine that is compiled for. Libraries of another one than this lie in Debian's folders.
+MACHINE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
+PKG_CONFIG ?= $(if $(filter $(MACHINE),$(shell uname -m)),,env PKG_CONFIG_LIBDIR=/usr/lib/$(MACHINE)-linux-gnu/pkgconfig:/usr/share/pkgconfig )pkg-config
 # Jobs of a make that is started here, unless the caller gave a number.
 JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
-LUA_NAME := $(firstword $(foreach name,lua5.4 lua-5.4 lua54,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
+LUA_NAME := $(firstword $(foreach name,lua5.4 lua-5.4 lua54,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))) $(shell $(PKG_CONFIG) --exists 'lua >= 5.4' 'lua < 5.5' 2>/dev/null && echo lua))
 LUA_CFLAGS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --cflags $(LUA_NAME)))
 LUA_LIBS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --libs $(LUA_NAME)))
 PNG_CFLAGS := $(shell $(PKG_CONFIG) --cflags libpng 2>/dev/null)
@@ -97,7 +100,8 @@ override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -D
 override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) $(WEBP_LIBS) -lm
 override LDFLAGS += -pthread
 
-SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
+# Kernels for AVX are kernels of x86-64.
+SOURCES := $(filter-out $(if $(filter x86_64,$(MACHINE)),,%_avx2.c %_avx512.c),$(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c))))
 # Files with a main function; those of gray-gui and gray-mpi replace the one of program.c.
 MAIN := src/host/program.c
 MPI_MAIN := src/host/main_mpi.c
@@ -282,6 +286,19 @@ $(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OB
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+# Other machines and libraries.
+ARM_CC ?= aarch64-linux-gnu-gcc
+arm:
+	@$(MAKE) $(JOBS) CC='$(ARM_CC)' BUILD=$(call beside,arm) check-libraries $(call beside,arm)/gray
+# The libraries are those of tools/musl_libraries.sh; headers of the kernel are the machine's.
+MUSL ?= build/musl-libraries
+musl:
+	@$(MAKE) $(JOBS) CC='musl-gcc -idirafter /usr/include -idirafter /usr/include/$(MACHINE)-linux-gnu' LDFLAGS=-static \
+	    PKG_CONFIG='env PKG_CONFIG_LIBDIR=$(abspath $(MUSL))/lib/pkgconfig pkg-config --static' BUILD=$(call beside,musl) \
+	    check-libraries $(call beside,musl)/gray
+test-arm test-musl: test-%:
+	@tools/test_target.sh $*
+
 bench: all
 	@bench/run.sh
 format:
@@ -320,7 +337,7 @@ uninstall:
 REFRESH = [ -n "$(DESTDIR)" ] || [ ! -e $(TO)/share/mime/mime.cache ] || update-mime-database $(TO)/share/mime
 
 # A folder that the caller names may hold other files.
-BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags
+BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage arm musl musl-libraries flags
 clean:
 ifdef BUILD_GIVEN
 	test ! -f $(FLAGS_STAMP) || rm -rf $(addprefix $(BUILD)/,$(BUILT))
@@ -329,5 +346,5 @@ else
 endif
 
 force:
-.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
+.PHONY: arm musl test-arm test-musl all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)

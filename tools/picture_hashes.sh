@@ -3,16 +3,17 @@
 # the check for a change that must not change pictures.
 #   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are any
 #   tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
-# WAYS="default j1 bvh base" selects variants; ONLY="word ..." selects scenes whose path contains one of the words.
+# WAYS="default j1 bvh base tiny" selects variants; ONLY="word ..." selects scenes whose path contains one of the words,
+# EXCEPT="word ..." leaves out those.
 # RESUME=1 keeps the scenes that the program has rendered before. GRAY="PROGRAM" is another program, RUN="COMMAND" what
 # runs it. The hashes are of pixels; gray compare shows by how many levels two pictures differ.
 cd "$(dirname "$0")/.." || exit 1
 action=${1:-check}
 folder=${2:-build/pictures}
 list=tests/picture_hashes.txt
-variants=${WAYS:-default j1 bvh base}
+variants=${WAYS:-default j1 bvh base tiny}
 gray=$PWD/${GRAY:-gray}
-case $action in check | record) ;; *) sed -n '2,8p' "$0" >&2; exit 2 ;; esac
+case $action in check | record) ;; *) sed -n '2,9p' "$0" >&2; exit 2 ;; esac
 [ -x "$gray" ] || { echo "picture_hashes.sh: there is no $gray; run make first" >&2; exit 2; }
 mkdir -p "$folder/done" || exit 1
 [ -n "${RESUME:-}" ] || rm -f "$folder"/*.* "$folder"/done/*
@@ -26,11 +27,14 @@ options_of() {
     default) echo "-j 2" ;;
     j1) echo "-j 1" ;;
     bvh) echo "-j 2 --accel bvh" ;;
-    base) echo "-j 2 --isa base" ;;
+    base | tiny) echo "-j 2 --isa base" ;;
     esac
 }
 
 wanted() { # wanted PATH
+    for word in ${EXCEPT:-}; do
+        case $1 in *"$word"*) return 1 ;; esac
+    done
     [ -z "${ONLY:-}" ] && return 0
     for word in $ONLY; do
         case $1 in *"$word"*) return 0 ;; esac
@@ -62,10 +66,12 @@ for scene in $scenes; do
     rm -f "$folder/$base".*
     # The options of the first lines, without those that set another size.
     options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
+    single=$(echo "$options" | sed 's/-ss [0-9]*//') # one sample in all
     for variant in $variants; do
+        looks="--size 96x72 $small $options"
+        [ "$variant" = tiny ] && looks="--size 32x24 $first $single"
         # shellcheck disable=SC2046,SC2086
-        render "$base.$variant" "$scene" --size 96x72 $small $options $(options_of "$variant") \
-            -o "$folder/$base.$variant-%02d.png"
+        render "$base.$variant" "$scene" $looks $(options_of "$variant") -o "$folder/$base.$variant-%02d.png"
     done
     case " $variants " in *" default "*) ;; *) touch "$folder/done/$base"; continue ;; esac
     # shellcheck disable=SC2086
@@ -76,9 +82,8 @@ for scene in $scenes; do
     esac
     # shellcheck disable=SC2086
     render "$base.pixel" "$scene" --size 96x72 --default area_samples=2 $options --isa avx2 --pixel 48,40 --pixel 20,60
-    options=$(echo "$options" | sed 's/-ss [0-9]*//') # one sample in all
     # shellcheck disable=SC2086
-    render "$base.first" "$scene" --size 96x72 $first $options -o "$folder/$base.first-%02d.png"
+    render "$base.first" "$scene" --size 96x72 $first $single -o "$folder/$base.first-%02d.png"
     touch "$folder/done/$base"
 done
 

@@ -16,6 +16,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <linux/fs.h>
 #include <linux/stat.h>
 #include <poll.h>
 #include <stdio.h>
@@ -29,6 +30,11 @@
 
 static const struct file_rules no_rules;
 static const char temporary_prefix[] = ".gray.part-";
+/* As renameat2(2), which not every C library has a function for. */
+static int rename_in(int folder, const char *from, const char *to, unsigned flags) {
+    return (int)syscall(SYS_renameat2, folder, from, folder, to, flags);
+}
+
 enum { TEMPORARY_DIGITS = 16, LEFTOVER_SECONDS = 60, TRIES = 100 };
 
 void file_guard_destroy(struct file_guard *guard) {
@@ -179,7 +185,6 @@ static bool can_be_renamed(const struct file_output *file, const struct stat *st
     struct stat folder;
     const uint64_t fixed = STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND;
     uid_t user = geteuid();
-    /* Not every C library has a function for the call. */
     if (syscall(SYS_statx, file->folder, file->leaf, AT_SYMLINK_NOFOLLOW, 0, &more) == 0) {
         if (more.stx_attributes & fixed)
             return cannot_write(error, file, EPERM);
@@ -518,7 +523,7 @@ static enum step publish_new(struct file_output *file) {
         }
         return errno == EEXIST ? STEP_AGAIN : STEP_FAILED;
     }
-    if (MAY_FAIL(renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_NOREPLACE)) == 0) {
+    if (MAY_FAIL(rename_in(file->folder, file->temporary, file->leaf, RENAME_NOREPLACE)) == 0) {
         file->named = false;
         return STEP_DONE;
     }
@@ -548,14 +553,14 @@ static bool is_at(const struct file_output *file, const char *name) {
  * removed the new file, there is nothing to exchange with, and the new file has no name. */
 static void put_back(struct file_output *file) {
     for (int i = 0; i < 1000 * TRIES; i++) {
-        if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE) == 0) {
+        if (rename_in(file->folder, file->temporary, file->leaf, RENAME_EXCHANGE) == 0) {
             if (is_at(file, file->temporary))
                 return;
             continue; /* another file came back: exchange again */
         }
         if (errno != ENOENT)
             break;
-        if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_NOREPLACE) == 0)
+        if (rename_in(file->folder, file->temporary, file->leaf, RENAME_NOREPLACE) == 0)
             break;
     }
     file->named = false; /* the file that has this name now must not be removed */
@@ -567,7 +572,7 @@ static enum step publish_over(struct file_output *file, struct stat *old, struct
     bool there;
     if (!file->named && !name_temporary(file))
         return STEP_FAILED;
-    if (MAY_FAIL(renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE)) == 0) {
+    if (MAY_FAIL(rename_in(file->folder, file->temporary, file->leaf, RENAME_EXCHANGE)) == 0) {
         bool same = fstatat(file->folder, file->temporary, &now, AT_SYMLINK_NOFOLLOW) == 0 &&
                     same_file(identity_of(&now), identity_of(old));
         /* Another run may have written the same picture meanwhile: the file that was exchanged may be replaced, too. */
@@ -658,18 +663,17 @@ bool file_output_remove(const struct file_target *target, struct file_identity i
         choose_temporary_name(&file);
         ok = same_file(identity_of(&status), identity) ||
              error_set(error, ERROR_SCENE, "%.600s: is another file now, and is not removed", file.target);
-        bool moved =
-            ok && MAY_FAIL(renameat2(file.folder, file.leaf, file.folder, file.temporary, RENAME_NOREPLACE)) == 0;
+        bool moved = ok && MAY_FAIL(rename_in(file.folder, file.leaf, file.temporary, RENAME_NOREPLACE)) == 0;
         if (moved && fstatat(file.folder, file.temporary, &status, AT_SYMLINK_NOFOLLOW) == 0 &&
             !same_file(identity_of(&status), identity)) {
-            (void)renameat2(file.folder, file.temporary, file.folder, file.leaf, RENAME_NOREPLACE);
+            (void)rename_in(file.folder, file.temporary, file.leaf, RENAME_NOREPLACE);
             ok = error_set(error, ERROR_SCENE, "%.600s: is another file now, and is not removed", file.target);
         } else if (ok) {
             ok = MAY_FAIL(unlinkat(file.folder, moved ? file.temporary : file.leaf, 0)) == 0 || errno == ENOENT ||
                  error_set(error, file_refusal_kind(errno), "%.600s: cannot be removed: %s", file.target,
                            strerror(errno));
             if (!ok && moved) /* a file that stays keeps its name */
-                (void)renameat2(file.folder, file.temporary, file.folder, file.leaf, RENAME_NOREPLACE);
+                (void)rename_in(file.folder, file.temporary, file.leaf, RENAME_NOREPLACE);
         }
     }
     close_all(&file);

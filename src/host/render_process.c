@@ -22,6 +22,7 @@
 #include "world/world_cache.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { LARGE_JOB = 64 << 20 /* bytes */ };

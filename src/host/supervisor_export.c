@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,7 +59,7 @@ static _Noreturn void write_model(struct supervisor *supervisor, pid_t parent) {
     struct options options = options_of(supervisor);
     supervisor_leave(supervisor);
     (void)dup2(supervisor->model.text.descriptor, STDERR_FILENO);
-    (void)close_range(STDERR_FILENO + 1, ~0U, 0);
+    (void)syscall(SYS_close_range, STDERR_FILENO + 1, ~0U, 0);
     if (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);
     int status = supervisor_run(&options, &(struct program_parts){0});

@@ -199,5 +199,5 @@ uint8_t dither_byte(enum dither dither, uint32_t x, uint32_t y, double c) {
     }
     if (!(c > 0))
         return 0;
-    return c < 1 ? (uint8_t)(255 * c + threshold) : 255;
+    return (uint8_t)(c < 1 ? 255 * c + threshold : 255);
 }

@@ -272,5 +272,5 @@ bool png_write_from(const struct file_target *target, const struct png_source *r
 uint8_t png_write_byte(double c) {
     if (!(c > 0))
         return 0;
-    return c < 1 ? (uint8_t)floor(255 * c + 0.5) : 255;
+    return (uint8_t)(c < 1 ? floor(255 * c + 0.5) : 255);
 }

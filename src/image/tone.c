@@ -63,7 +63,7 @@ double tone_apply(const struct tone *tone, double c) {
 uint16_t tone_word(double c) {
     if (!(c > 0))
         return 0;
-    return c < 1 ? (uint16_t)floor(65535 * c + 0.5) : 65535;
+    return (uint16_t)(c < 1 ? floor(65535 * c + 0.5) : 65535);
 }
 
 /* The upper 16 bits of a float: its exponent and 7 bits of its fraction. */
