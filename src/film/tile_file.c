@@ -9,6 +9,7 @@
  * A picture has the values of the settings that change the finished picture, in the order of their list. */
 #include "film/tile_file.h"
 
+#include "base/bytes.h"
 #include "base/mem.h"
 #include "settings/setting.h"
 
@@ -56,13 +57,11 @@ static void put(struct byte_writer *output, const void *bytes, size_t size) {
 }
 
 static void put_u32(struct byte_writer *output, uint32_t value) {
-    for (int i = 0; i < 4; i++)
-        *output->at++ = (uint8_t)(value >> (8 * i));
+    bytes_put(&output->at, value, 4);
 }
 
 static void put_u64(struct byte_writer *output, uint64_t value) {
-    put_u32(output, (uint32_t)value);
-    put_u32(output, (uint32_t)(value >> 32));
+    bytes_put(&output->at, value, 8);
 }
 
 static void put_table(struct byte_writer *output, const struct tone_table *table) {
@@ -108,15 +107,11 @@ static void get(struct byte_reader *input, void *out, size_t size) {
 }
 
 static uint32_t get_u32(struct byte_reader *input) {
-    uint32_t value = 0;
-    for (int i = 0; i < 4; i++)
-        value |= (uint32_t)*input->at++ << (8 * i);
-    return value;
+    return (uint32_t)bytes_get(&input->at, 4);
 }
 
 static uint64_t get_u64(struct byte_reader *input) {
-    uint64_t low = get_u32(input);
-    return low | (uint64_t)get_u32(input) << 32;
+    return bytes_get(&input->at, 8);
 }
 
 static struct digest get_digest(struct byte_reader *input) {

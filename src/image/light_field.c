@@ -5,9 +5,12 @@
  * difference to the byte before it in its row: neighbouring pixels have the same exponents, so most bytes are 0. */
 #include "image/light_field.h"
 
+#include "base/bytes.h"
 #include "base/mem.h"
 #include "image/zlib_memory.h"
+#include "math/portable.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -29,31 +32,6 @@ enum {
     LEVEL = 5,           /* of zlib */
     VIEW_LIMIT = 1 << 28 /* pixels */
 };
-
-static void put(uint8_t **at, uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; i++)
-        *(*at)++ = (uint8_t)(value >> (8 * i));
-}
-
-static void put_number(uint8_t **at, double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put(at, bits, 8);
-}
-
-static uint64_t get(const uint8_t **at, int bytes) {
-    uint64_t value = 0;
-    for (int i = 0; i < bytes; i++)
-        value |= (uint64_t) * (*at)++ << (8 * i);
-    return value;
-}
-
-static double get_number(const uint8_t **at) {
-    uint64_t bits = get(at, 8);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 static uint32_t channels_of(const struct light_field_head *head) {
     return COLOURS + (uint32_t)head->depth;
@@ -132,24 +110,24 @@ static void pack_view(void *context, uint32_t column, int worker) {
 static bool write_head(struct file_output *file, const struct light_field_head *head, struct error *error) {
     uint8_t bytes[HEAD_SIZE], *at = bytes + sizeof magic;
     memcpy(bytes, magic, sizeof magic);
-    put(&at, VERSION, 4);
-    put(&at, head->columns, 4);
-    put(&at, head->rows, 4);
-    put(&at, head->width, 4);
-    put(&at, head->height, 4);
-    put(&at, (head->depth ? HAS_DEPTH : 0) | (head->tone.srgb ? HAS_SRGB : 0), 4);
-    put(&at, (uint64_t)head->tone.curve, 4);
-    put_number(&at, head->spacing);
-    put_number(&at, head->screen);
-    put_number(&at, head->fov);
-    put_number(&at, head->tone.exposure);
+    bytes_put(&at, VERSION, 4);
+    bytes_put(&at, head->columns, 4);
+    bytes_put(&at, head->rows, 4);
+    bytes_put(&at, head->width, 4);
+    bytes_put(&at, head->height, 4);
+    bytes_put(&at, (head->depth ? HAS_DEPTH : 0) | (head->tone.srgb ? HAS_SRGB : 0), 4);
+    bytes_put(&at, (uint64_t)head->tone.curve, 4);
+    bytes_put_number(&at, head->spacing);
+    bytes_put_number(&at, head->screen);
+    bytes_put_number(&at, head->fov);
+    bytes_put_number(&at, head->tone.exposure);
     if (!file_output_write(file, bytes, sizeof bytes, error))
         return false;
     for (int i = 0; i < TONE_ENTRIES && head->tone.curve == TONE_FUNCTION; i++) {
         uint8_t value[4], *end = value;
         uint32_t bits;
         memcpy(&bits, &head->tone.table->values[i], sizeof bits);
-        put(&end, bits, 4);
+        bytes_put(&end, bits, 4);
         if (!file_output_write(file, value, sizeof value, error))
             return false;
     }
@@ -186,14 +164,14 @@ static bool write_views(struct file_output *file, struct packing *p, const struc
         else if (atomic_load(&p->failed))
             ok = error_no_memory(error, "a light field");
         for (uint32_t i = 0; ok && i < head->columns; i++) {
-            put(&entry, p->sizes[i], 8);
+            bytes_put(&entry, p->sizes[i], 8);
             at += p->sizes[i];
             ok = file_output_write(file, p->packed[i], (size_t)p->sizes[i], error);
         }
     }
     if (ok) {
-        put(&entry, at, 8);
-        put(&entry, crc32(0, table, (uInt)size), 4);
+        bytes_put(&entry, at, 8);
+        bytes_put(&entry, crc32(0, table, (uInt)size), 4);
         memcpy(entry, magic, 4);
         ok = file_output_write(file, table, size + TAIL_SIZE, error);
     }
@@ -273,21 +251,21 @@ static bool read_head(struct light_field *field, struct error *error) {
         return error_set(error, ERROR_SCENE, "%s: is no light field", field->path);
     if (!file_source_read(&field->source, 0, bytes, sizeof bytes))
         return wrong(field, "it ends too early", error);
-    uint32_t version = (uint32_t)get(&at, 4);
+    uint32_t version = (uint32_t)bytes_get(&at, 4);
     if (version != VERSION)
         return error_set(error, ERROR_SCENE, "%s: is a light field of version %u, and gray reads version %d",
                          field->path, version, VERSION);
-    head->columns = (uint32_t)get(&at, 4);
-    head->rows = (uint32_t)get(&at, 4);
-    head->width = (uint32_t)get(&at, 4);
-    head->height = (uint32_t)get(&at, 4);
-    uint32_t flags = (uint32_t)get(&at, 4), curve = (uint32_t)get(&at, 4);
+    head->columns = (uint32_t)bytes_get(&at, 4);
+    head->rows = (uint32_t)bytes_get(&at, 4);
+    head->width = (uint32_t)bytes_get(&at, 4);
+    head->height = (uint32_t)bytes_get(&at, 4);
+    uint32_t flags = (uint32_t)bytes_get(&at, 4), curve = (uint32_t)bytes_get(&at, 4);
     head->depth = flags & HAS_DEPTH;
     head->tone = (struct tone){.srgb = flags & HAS_SRGB, .curve = (enum tone_curve)curve};
-    head->spacing = get_number(&at);
-    head->screen = get_number(&at);
-    head->fov = get_number(&at);
-    head->tone.exposure = get_number(&at);
+    head->spacing = bytes_get_number(&at);
+    head->screen = bytes_get_number(&at);
+    head->fov = bytes_get_number(&at);
+    head->tone.exposure = bytes_get_number(&at);
     bool sizes = head->columns >= 1 && head->columns <= GRID_LIMIT && head->rows >= 1 && head->rows <= GRID_LIMIT &&
                  head->width >= 1 && head->width <= SIDE_LIMIT && head->height >= 1 && head->height <= SIDE_LIMIT &&
                  (uint64_t)head->width * head->height <= VIEW_LIMIT / 4;
@@ -308,7 +286,7 @@ static bool read_tone(struct light_field *field, struct error *error) {
     ok = ok && (file_source_read(&field->source, HEAD_SIZE, bytes, TABLE_OF_TONE) ||
                 wrong(field, "it ends too early", error));
     for (int i = 0; ok && i < TONE_ENTRIES; i++) {
-        uint32_t bits = (uint32_t)get(&at, 4);
+        uint32_t bits = (uint32_t)bytes_get(&at, 4);
         memcpy(&field->table->values[i], &bits, sizeof bits);
         ok = isfinite(field->table->values[i]) || wrong(field, "its tone curve has an impossible number", error);
     }
@@ -326,8 +304,8 @@ static bool read_table(struct light_field *field, struct error *error) {
     const uint8_t *at = tail;
     if (end < first + size + TAIL_SIZE || !file_source_read(&field->source, end - TAIL_SIZE, tail, sizeof tail))
         return wrong(field, "it ends too early", error);
-    uint64_t table = get(&at, 8);
-    uint32_t check = (uint32_t)get(&at, 4);
+    uint64_t table = bytes_get(&at, 8);
+    uint32_t check = (uint32_t)bytes_get(&at, 4);
     if (table != end - TAIL_SIZE - size || memcmp(at, magic, 4) != 0)
         return wrong(field, "it has no table of its views", error);
     uint8_t *bytes = mem_alloc(size);
@@ -341,7 +319,7 @@ static bool read_table(struct light_field *field, struct error *error) {
     for (size_t i = 0; ok && i < count; i++) {
         struct light_field_entry *entry = &field->entries[i];
         entry->at = first;
-        entry->size = get(&at, 8);
+        entry->size = bytes_get(&at, 8);
         ok = (entry->size <= table - first && raw_size(head) / RATIO_LIMIT <= entry->size) ||
              wrong(field, "a view has an impossible size", error);
         first += ok ? entry->size : 0;
@@ -362,8 +340,10 @@ bool light_field_open(struct light_field *field, const char *path, struct error 
 
 void light_field_close(struct light_field *field) {
     size_t count = (size_t)field->head.columns * field->head.rows;
-    for (size_t i = 0; field->views && i < count; i++)
+    for (size_t i = 0; field->views && i < count; i++) {
         mem_free(field->views[i]);
+        mem_free(field->entries[i].blocks);
+    }
     mem_free(field->views);
     mem_free(field->entries);
     mem_free(field->table);
@@ -383,6 +363,27 @@ static bool unpack(const uint8_t *packed, size_t size, uint8_t *raw, size_t want
     bool ok = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == wanted && stream.avail_in == 0;
     (void)inflateEnd(&stream);
     return ok;
+}
+
+/* Depths become their reciprocals. */
+static bool find_disparities(const struct light_field_head *head, float *values, struct light_field_entry *entry) {
+    const uint32_t across = light_field_across(head), down = (head->height - 1) / LIGHT_FIELD_BLOCK + 1;
+    entry->blocks = mem_alloc((size_t)across * down * sizeof *entry->blocks);
+    entry->nearest = 0;
+    entry->farthest = INFINITY;
+    for (uint32_t i = 0; entry->blocks && i < across * down; i++)
+        entry->blocks[i] = (struct light_field_block){0, INFINITY};
+    for (uint32_t i = 0; entry->blocks && i < head->width * head->height; i++) {
+        struct light_field_block *block =
+            &entry->blocks[i / head->width / LIGHT_FIELD_BLOCK * across + i % head->width / LIGHT_FIELD_BLOCK];
+        float *last = values + (size_t)i * LIGHT_FIELD_NUMBERS + COLOURS;
+        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
+        block->nearest = *last > block->nearest ? *last : block->nearest;
+        block->farthest = *last < block->farthest ? *last : block->farthest;
+        entry->nearest = math_max(entry->nearest, (double)*last);
+        entry->farthest = math_min(entry->farthest, (double)*last);
+    }
+    return entry->blocks != NULL;
 }
 
 static bool load_view(struct light_field *field, uint32_t view, struct error *error) {
@@ -408,13 +409,7 @@ static bool load_view(struct light_field *field, uint32_t view, struct error *er
         ok = isfinite(values[i]) || wrong(field, "a view has a number that is not finite", error);
     mem_free(packed);
     mem_free(raw);
-    entry->nearest = 0;
-    entry->farthest = INFINITY;
-    for (size_t i = 0; ok && i < plane; i++) {
-        double disparity = light_field_disparity(values + i * LIGHT_FIELD_NUMBERS);
-        entry->nearest = disparity > entry->nearest ? disparity : entry->nearest;
-        entry->farthest = disparity < entry->farthest ? disparity : entry->farthest;
-    }
+    ok = ok && (find_disparities(head, values, entry) || error_no_memory(error, field->path));
     if (ok)
         field->views[view] = values;
     else

@@ -32,10 +32,16 @@ struct light_field_head {
 bool light_field_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
                        struct error *error);
 
-/* Where a view lies in the file; once it is loaded, the reciprocals of its smallest and of its largest depth. */
+/* Where a view lies in the file; once it is loaded, the reciprocals of its smallest and of its largest depth, also of
+ * each square of LIGHT_FIELD_BLOCK pixels. */
+enum { LIGHT_FIELD_BLOCK = 8 };
+struct light_field_block {
+    float nearest, farthest;
+};
 struct light_field_entry {
     uint64_t at, size;
     double nearest, farthest;
+    struct light_field_block *blocks; /* row by row */
 };
 /* A file that is open: its head and table are checked; views are read when they are needed. Zero value: closed. */
 struct light_field {
@@ -52,11 +58,12 @@ bool light_field_is(const uint8_t *head, size_t size);
 bool light_field_open(struct light_field *field, const char *path, struct error *error);
 void light_field_close(struct light_field *field);
 /* Reads the views of a part of the grid that are not there yet: LIGHT_FIELD_NUMBERS for each pixel, red, green, blue
- * and depth, rows from the top. Errors: the file is damaged, no memory, cancelled. */
+ * and the reciprocal of the depth (0: nothing is there), rows from the top. Errors: the file is damaged, no memory,
+ * cancelled. */
 enum { LIGHT_FIELD_NUMBERS = 4 };
-/* The reciprocal of the depth of a pixel; 0: nothing is there. */
-static inline double light_field_disparity(const float pixel[LIGHT_FIELD_NUMBERS]) {
-    return pixel[3] > 0 ? 1 / (double)pixel[3] : 0;
+/* Blocks in a row of a view. */
+static inline uint32_t light_field_across(const struct light_field_head *head) {
+    return (head->width - 1) / LIGHT_FIELD_BLOCK + 1;
 }
 struct light_field_part {
     uint32_t column, row, columns, rows;

@@ -33,10 +33,12 @@ struct drawing {
     double eye[AXES];
     double ratio;                   /* of a pixel of the picture to one of a view */
     double disparity, shares[AXES]; /* of the plane in focus; half of the picture, pixels of a view */
-    struct lens_point *points;
-    uint32_t point_count;
-    double *weights;        /* of all cameras for the whole picture; NULL: they differ by pixel */
-    struct pixel_sum *sums; /* for each worker a row of it */
+    struct lens_point *points;      /* LENS_FEWEST of them, then twice as many, and so on */
+    uint32_t point_count;           /* of the largest disc: 1, or a power of two */
+    double blur;                    /* its radius, pixels of a view */
+    double *weights;                /* of all cameras for the whole picture; NULL: they differ by pixel */
+    struct pixel_sum *sums;         /* for each worker a row of it */
+    double *lines;                  /* for each worker a row of a view */
     float (*out)[3];
 };
 
@@ -142,7 +144,7 @@ static bool disparity_there(const struct drawing *d, const float *view, const do
         return false;
     size_t x = (size_t)(at[X] < d->size[X] ? at[X] : d->size[X] - 1),
            y = (size_t)(at[Y] < d->size[Y] ? at[Y] : d->size[Y] - 1);
-    *out = light_field_disparity(view + (y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS);
+    *out = (double)view[(y * (size_t)d->size[X] + x) * LIGHT_FIELD_NUMBERS + 3];
     return true;
 }
 
@@ -161,12 +163,14 @@ static void find_pixel(const struct drawing *d, const struct field_ray *ray, con
         out[k] = pixel_of(d, ray, k, camera->at[k], disparity);
 }
 
-/* At most four, with the sum of weights 1. */
-static int find_cameras(const struct drawing *d, const struct field_ray *ray, struct near_camera out[4]) {
+/* At most four, with the sum of weights 1. None: the ray comes from outside of the grid, and `inside` asks for it. */
+static int find_cameras(const struct drawing *d, const struct field_ray *ray, bool inside, struct near_camera out[4]) {
     double low[AXES], part[AXES];
     int count = 0;
     for (int k = 0; k < AXES; k++) {
-        double u = limited(among_cameras(d, k, ray->crossing[k]), 0, d->count[k] - 1);
+        double whole = among_cameras(d, k, ray->crossing[k]), u = limited(whole, 0, d->count[k] - 1);
+        if (inside && u != whole)
+            return 0;
         low[k] = floor_of(u);
         part[k] = u - low[k];
     }
@@ -208,23 +212,28 @@ static bool find_surface(const struct drawing *d, const struct field_ray *ray, c
     return false;
 }
 
+static int first_camera(const struct near_camera *cameras, int count) {
+    int first = 0;
+    for (int i = 1; i < count; i++)
+        first = cameras[i].weight > cameras[first].weight ? i : first;
+    return first;
+}
+
 /* The surface that the nearest camera sees, else another one, else the plane in focus. */
 static double disparity_of(const struct drawing *d, const struct field_ray *ray, const struct near_camera *cameras,
                            int count) {
-    int first = 0;
+    int first = first_camera(cameras, count);
     double disparity;
-    for (int i = 1; i < count; i++)
-        first = cameras[i].weight > cameras[first].weight ? i : first;
     for (int i = 0; i < count; i++)
         if (find_surface(d, ray, &cameras[(first + i) % count], &disparity))
             return disparity;
     return d->disparity;
 }
 
-static void add_ray(const struct drawing *d, const struct field_ray *ray, struct pixel_sum *sum) {
+static void add_ray(const struct drawing *d, const struct field_ray *ray, bool inside, struct pixel_sum *sum) {
     struct near_camera cameras[4];
-    int count = find_cameras(d, ray, cameras);
-    bool has_depth = d->field->head.depth;
+    int count = find_cameras(d, ray, inside, cameras);
+    bool has_depth = d->field->head.depth && count > 0;
     double disparity = has_depth ? disparity_of(d, ray, cameras, count) : d->disparity;
     for (int i = 0; i < count; i++) {
         double at[AXES], seen, weight = cameras[i].weight;
@@ -296,22 +305,64 @@ static double largest_disparity(const struct drawing *d) {
     return largest;
 }
 
-/* Points of a lens, as evenly as the seeds of a sunflower: one for each pixel of the largest disc of the views. It is a
- * line in a grid of one row or column. */
+/* One for each pixel of a disc. */
+static uint32_t points_of_disc(double radius) {
+    uint32_t count = LENS_FEWEST;
+    while (count < LENS_LIMIT && count < PI * radius * radius)
+        count *= 2;
+    return count;
+}
+
+static const struct lens_point *points_at(const struct drawing *d, uint32_t count) {
+    return d->points + (count < LENS_FEWEST ? 0 : count - LENS_FEWEST);
+}
+
+/* Points of a lens, as evenly as the seeds of a sunflower, for discs of all sizes. It is a line in a grid of one row or
+ * column. */
 static bool make_lens(struct drawing *d) {
-    double across = d->camera.aperture * d->per_spacing;
-    double blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
-    d->point_count = 1;
-    if (across > 0)
-        d->point_count = (uint32_t)math_min(math_max(ceil(PI * blur * blur), LENS_FEWEST), LENS_LIMIT);
-    d->points = mem_alloc_zero(d->point_count, sizeof *d->points);
-    for (uint32_t i = 0; d->points && i < d->point_count && across > 0; i++) {
-        double radius = d->camera.aperture * sqrt((i + 0.5) / d->point_count), sine, cosine;
-        el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
-        d->points[i] =
-            (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
+    bool has_lens = d->camera.aperture * d->per_spacing > 0;
+    d->blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
+    d->point_count = has_lens ? points_of_disc(d->blur) : 1;
+    d->points = mem_alloc_zero(2 * LENS_LIMIT, sizeof *d->points);
+    for (uint32_t count = LENS_FEWEST; d->points && has_lens && count <= d->point_count; count *= 2) {
+        for (uint32_t i = 0; i < count; i++) {
+            double radius = d->camera.aperture * sqrt((i + 0.5) / count), sine, cosine;
+            el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
+            d->points[count - LENS_FEWEST + i] =
+                (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
+        }
     }
     return d->points != NULL;
+}
+
+/* Those for a pixel: of the largest disc of a surface that reaches it, by the depths that the nearest camera sees. */
+static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
+    struct near_camera cameras[4];
+    struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
+    int count = d->field->head.depth && d->point_count > LENS_FEWEST ? find_cameras(d, &ray, false, cameras) : 0;
+    if (count == 0)
+        return d->point_count;
+    const struct near_camera *camera = &cameras[first_camera(cameras, count)];
+    const uint32_t across = light_field_across(&d->field->head);
+    double at[AXES], low[AXES], high[AXES], largest = 0;
+    find_pixel(d, &ray, camera, d->disparity, at);
+    double moved = math_max(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
+    double scale = d->camera.aperture + moved, extent = d->blur * (scale / d->camera.aperture) + 1;
+    for (int k = 0; k < AXES; k++) {
+        low[k] = floor(limited(at[k] - extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+        high[k] = floor(limited(at[k] + extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
+    }
+    for (double row = low[Y]; row <= high[Y]; row++) {
+        for (double column = low[X]; column <= high[X]; column++) {
+            const struct light_field_block *block = &camera->entry->blocks[(size_t)row * across + (size_t)column];
+            double apart = math_max((double)block->nearest - d->disparity, d->disparity - (double)block->farthest);
+            double beside_x = fabs(at[X] - (column + 0.5) * LIGHT_FIELD_BLOCK),
+                   beside_y = fabs(at[Y] - (row + 0.5) * LIGHT_FIELD_BLOCK);
+            if (apart * scale * d->per_pixel + 1 + LIGHT_FIELD_BLOCK / 2.0 >= math_max(beside_x, beside_y))
+                largest = math_max(largest, apart);
+        }
+    }
+    return points_of_disc(largest * d->camera.aperture * d->per_pixel);
 }
 
 /* On the plane of the cameras, and without depths, all pixels have the same weights of cameras. */
@@ -322,8 +373,8 @@ static bool make_weights(struct drawing *d) {
     d->weights = mem_alloc_zero((size_t)head->columns * head->rows, sizeof *d->weights);
     for (uint32_t i = 0; d->weights && i < d->point_count; i++) {
         struct near_camera cameras[4];
-        struct field_ray ray = ray_of(d, &d->points[i], 0, 0);
-        int count = is_in_grid(d, &ray) ? find_cameras(d, &ray, cameras) : 0;
+        struct field_ray ray = ray_of(d, &points_at(d, d->point_count)[i], 0, 0);
+        int count = find_cameras(d, &ray, true, cameras);
         for (int k = 0; k < count; k++) {
             double column = among_cameras(d, X, cameras[k].at[X]), row = among_cameras(d, Y, cameras[k].at[Y]);
             d->weights[(size_t)row * head->columns + (size_t)column] += cameras[k].weight;
@@ -332,29 +383,40 @@ static bool make_weights(struct drawing *d) {
     return d->weights != NULL;
 }
 
-/* A row of one view, added to the sums of a row of the picture: all of it is at one height. */
-static void add_view(const struct drawing *d, uint32_t view, uint32_t y, struct pixel_sum *sums) {
+/* A row of one view, added to the sums of a row of the picture: all of it is at one height. line: the row of the view
+ * at that height, linear between two. */
+static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double *line, struct pixel_sum *sums) {
     const struct light_field_head *head = &d->field->head;
     const struct lens_point middle = {{0, 0}};
     const double camera[AXES] = {camera_at(d, X, view % head->columns), camera_at(d, Y, view / head->columns)};
+    const size_t numbers = (size_t)head->width * LIGHT_FIELD_NUMBERS;
     struct field_ray ray = ray_of(d, &middle, 0, y + 0.5);
-    struct tap taps[AXES] = {[Y] = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y])};
+    const struct tap across = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y]);
+    const float *upper = d->field->views[view] + across.first * numbers;
+    const float *lower = d->field->views[view] + across.second * numbers;
+    for (size_t i = 0; i < numbers; i++)
+        line[i] = (1 - across.part) * (double)upper[i] + across.part * (double)lower[i];
     for (uint32_t x = 0; x < d->camera.width; x++) {
         ray.picture[X] = (x + 0.5) * d->ratio - d->shares[X];
-        taps[X] = tap_of(pixel_of(d, &ray, X, camera[X], d->disparity), d->size[X]);
-        add_pixels(d, d->field->views[view], taps, d->weights[view], &sums[x]);
+        const struct tap tap = tap_of(pixel_of(d, &ray, X, camera[X], d->disparity), d->size[X]);
+        const double *left = line + (size_t)tap.first * LIGHT_FIELD_NUMBERS;
+        const double *right = line + (size_t)tap.second * LIGHT_FIELD_NUMBERS;
+        const double weight = d->weights[view] * tap.weight * across.weight;
+        for (int c = 0; c < LIGHT_FIELD_NUMBERS; c++)
+            sums[x].numbers[c] += weight * ((1 - tap.part) * left[c] + tap.part * right[c]);
+        sums[x].weight += weight;
     }
 }
 
 static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, struct pixel_sum *sum) {
-    for (uint32_t i = 0; i < d->point_count && !d->weights; i++) {
-        struct field_ray ray = ray_of(d, &d->points[i], x + 0.5, y + 0.5);
-        if (is_in_grid(d, &ray))
-            add_ray(d, &ray, sum);
+    const uint32_t count = d->weights ? 0 : points_for(d, x, y);
+    for (uint32_t i = 0; i < count; i++) {
+        struct field_ray ray = ray_of(d, &points_at(d, count)[i], x + 0.5, y + 0.5);
+        add_ray(d, &ray, true, sum);
     }
     struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
     if (!(sum->weight > 0)) /* all of the lens is outside */
-        add_ray(d, &ray, sum);
+        add_ray(d, &ray, false, sum);
 }
 
 static void draw_row(void *context, uint32_t y, int worker) {
@@ -365,7 +427,7 @@ static void draw_row(void *context, uint32_t y, int worker) {
     memset(sums, 0, width * sizeof *sums);
     for (uint32_t view = 0; d->weights && view < head->columns * head->rows; view++)
         if (d->weights[view] > 0)
-            add_view(d, view, y, sums);
+            add_view(d, view, y, d->lines + (size_t)worker * head->width * LIGHT_FIELD_NUMBERS, sums);
     for (uint32_t x = 0; x < width; x++) {
         if (!d->weights || !(sums[x].weight > 0))
             draw_pixel(d, x, y, &sums[x]);
@@ -405,10 +467,12 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     d.field = field;
     d.out = out;
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
+    d.lines = mem_alloc_zero((size_t)pool_workers(pool) * d.field->head.width, LIGHT_FIELD_NUMBERS * sizeof *d.lines);
     bool ok = load_views(&d, field, pool, error) &&
-              ((d.sums && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
+              ((d.sums && d.lines && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
     ok = ok && (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
     mem_free(d.sums);
+    mem_free(d.lines);
     mem_free(d.points);
     mem_free(d.weights);
     return ok;
@@ -476,7 +540,7 @@ bool light_field_distance(struct light_field *field, const struct light_field_ca
     if (!light_field_load_part(field, &part, pool, error))
         return false;
     d.disparity = 0;
-    double disparity = field->head.depth ? disparity_of(&d, &ray, cameras, find_cameras(&d, &ray, cameras))
+    double disparity = field->head.depth ? disparity_of(&d, &ray, cameras, find_cameras(&d, &ray, false, cameras))
                                          : find_agreement(&d, &part, pixel);
     *out = 1 / disparity - camera->z;
     return disparity > 0 && *out > 0;

@@ -324,6 +324,7 @@ static void start_picture(struct output_session *output) {
     picture->open = true;
     atomic_store(&output->control->tiles, 0);
     atomic_store(&output->control->tiles_done, 0);
+    atomic_store(&output->control->unshot, 0.0F);
     progress_estimate_reset(&output->control->progress_estimate,
                             output->progress.mode != PROGRESS_NONE && !request->in_window && !output->farm);
     (void)wait_for_text(output);

@@ -254,13 +254,17 @@ static bool write_picture(struct view *view, uint32_t frame, struct error *error
            view_write(view, name, error);
 }
 
+static void frame_row(void *context, uint32_t y, int worker) {
+    const struct view *view = context;
+    (void)worker;
+    row_bytes(context, y, view->rgb + (size_t)3 * view->width * y);
+}
+
 static bool frame_bytes(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
     struct view *view = context;
-    if (!draw(view, index, error))
-        return false;
-    for (uint32_t y = 0; y < view->height; y++)
-        row_bytes(view, y, rgb + (size_t)3 * view->width * y);
-    return true;
+    view->rgb = rgb;
+    return draw(view, index, error) &&
+           (pool_run(view->pool, view->height, frame_row, view) || error_set(error, ERROR_CANCELLED, "interrupted"));
 }
 
 static bool write_animation(struct view *view, struct error *error) {

@@ -21,6 +21,7 @@ struct view {
     struct vec3 points[VIEW_POINTS]; /* of the path */
     uint32_t point_count, frames, width, height;
     float (*light)[3]; /* of the picture */
+    uint8_t *rgb;      /* of a frame; borrowed */
 };
 /* How it is seen: the eye in the field, focus and lens; or the direction (degrees to the right and up) and the angle of
  * view (degrees). */

@@ -255,8 +255,11 @@ static bool begin_preparation(struct preparation *p, struct error *error) {
                                            .lights = &p->lights,
                                            .buries = p->buries,
                                            .emissive = p->emissive,
+                                           .bounds = box_empty(),
                                            .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
                                            .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
+    for (uint32_t i = 0; i < world->primitive_count; i++)
+        p->receivers.bounds = box_join(p->receivers.bounds, world->boxes[i]);
     return check_emitters(world, error) &&
            world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error);
 }

@@ -402,6 +402,27 @@ static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
     return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
 }
 
+/* All of the scene is behind the patches of the vertex, as outside of a room, and no light has a place there: no ray
+ * can meet anything. */
+static bool sees_nothing(const struct receiver *receiver) {
+    const struct receiver_input *input = receiver->input;
+    const struct patches *patches = &input->radiosity->patches;
+    const struct box *bounds = &input->bounds;
+    if (input->lights->area_light_count > 0 || input->lights->sampler.infinite_count > 0 || !vec3_finite(bounds->min) ||
+        !vec3_finite(bounds->max) || patches->curved[patch_vertex_at(patches, receiver->vertex)->primitive])
+        return false;
+    double far = math_max(vec3_max_abs(bounds->min), vec3_max_abs(bounds->max));
+    for (uint32_t i = patches->first[receiver->vertex]; i < patches->first[receiver->vertex + 1]; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, patches->of_vertex[i], c);
+        const struct vec3 normal = vec3_scale(vec3_normalize(patch_normal(c)), receiver->back ? -1 : 1);
+        for (unsigned k = 0; k < 8; k++)
+            if (vec3_dot(normal, vec3_sub(box_corner(bounds, k), c[0])) > 0x1p-44 * far)
+                return false;
+    }
+    return true;
+}
+
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                   struct side_light *out, uint32_t *targets) {
     const struct world *world = input->radiosity->patches.world;
@@ -411,6 +432,8 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
     struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < input->rays; i++)
         targets[i] = SIDE_NONE;
+    if (sees_nothing(&receiver))
+        return;
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit from, hit;
         struct bsdf bsdf;

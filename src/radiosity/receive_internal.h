@@ -14,6 +14,7 @@ struct receiver_input {
     const struct world_lights *lights;
     const uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
     const uint8_t *emissive; /* by material: receive_is_emissive */
+    struct box bounds;       /* of all primitives */
     uint64_t seed;
     uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
     /* For receive_rays: the light of samples of lights that patches reflect, by area, and the rising shares of the

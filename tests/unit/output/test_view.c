@@ -78,6 +78,39 @@ TEST(captured_views_are_exact_and_all_in_one_picture) {
     }
 }
 
+/* A post near the cameras at the right border is blurred over a part of the picture. */
+TEST(a_lens_over_depths_has_the_same_pixels_whatever_is_blurred_elsewhere) {
+    static const char text[] =
+        "local function f(p) return gr.vec(0.5 + 0.4 * math.sin(7 * p.x), 0.5 + 0.4 * math.sin(9 * p.y), 0.3) end\n"
+        "local r = gr.node('r')\n"
+        "r:add_child(gr.rectangle{corner = {-9, -9, 0}, along = {18, 0, 0}, up = {0, 18, 0},\n"
+        "  material = gr.material{emission = f, kd = {0, 0, 0}}})\n"
+        "if POST then r:add_child(gr.box{min = {0.6, -1, 2.5}, max = {0.7, 1, 2.6}, material = gr.material{\n"
+        "  emission = {1, 0, 0}, kd = {0, 0, 0}}}) end\n"
+        "gr.light_field{node = r, eye = {0, 0, 4}, target = {0, 0, 0}, fov = 30, size = {96, 48}, rows = 3,\n"
+        "  columns = 3, spacing = 0.1, depth = true, samples = 1, background = {0, 0, 0}}\n";
+    struct test_picture views[2];
+    for (int post = 0; post < 2; post++) {
+        char whole[2048], line[256];
+        (void)snprintf(whole, sizeof whole, "POST = %s\n%s", post ? "true" : "false", text);
+        (void)snprintf(line, sizeof line,
+                       "$gray -q scene.lua && $gray view scene.lf -o %d.png --focus 4 --aperture 0.1", post);
+        test_write_text(test_path("scene.lua"), whole);
+        test_shell_errors(line, 0, NULL);
+        (void)snprintf(line, sizeof line, "%d.png", post);
+        views[post] = test_read_picture(test_path(line));
+    }
+    int differ = 0;
+    for (int i = 0; i < 3 * 96 * 48 && views[0].rgb && views[1].rgb; i++) {
+        bool same = views[0].rgb[i] == views[1].rgb[i];
+        differ += !same;
+        CHECK(same || i / 3 % 96 >= 32);
+    }
+    CHECK(differ > 100);
+    free(views[0].rgb);
+    free(views[1].rgb);
+}
+
 /* The rows and columns at the borders of views, too: what a view shows does not depend on its neighbours. */
 static void check_same_views(const char *fields) {
     put_scene(fields);

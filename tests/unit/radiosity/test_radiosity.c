@@ -114,6 +114,55 @@ TEST(form_factors_of_a_wedge_are_their_closed_form) {
     check_factor(rectangle(0, 0, 0, length, to_x), rectangle(0, 0, 0, up, length), 0.5);
 }
 
+/* Scales rows and columns alike until all rows sum to 1, as R. Sinkhorn and P. Knopp do. */
+static void symmetrise(double factors[6][6]) {
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < i; k++)
+            factors[i][k] = factors[k][i] = (factors[i][k] + factors[k][i]) / 2;
+    for (int round = 0; round < 200; round++) {
+        double rows[6] = {0};
+        for (int i = 0; i < 36; i++)
+            rows[i / 6] += factors[i / 6][i % 6];
+        for (int i = 0; i < 36; i++)
+            factors[i / 6][i % 6] /= sqrt(rows[i / 6] * rows[i % 6]);
+    }
+}
+
+/* The faces of a cube as seen from inside: no ray is lost. */
+TEST(form_factors_of_a_closed_room_sum_to_1_and_are_reciprocal_when_they_are_symmetrised) {
+    struct stage s;
+    struct radiosity radiosity = {0};
+    double factors[6][6] = {{0}};
+    stage_begin(&s, 2);
+    for (int i = 0; i < 3; i++) {
+        const struct vec3 axes[3] = {to_x, to_y, to_z}, u = axes[(i + 1) % 3], v = axes[(i + 2) % 3];
+        (void)add_planar(&s, rectangle(0, 0, 0, u, v), matt(&s, 0.5));
+        (void)add_planar(&s, rectangle(axes[i].x, axes[i].y, axes[i].z, v, u), matt(&s, 0.5));
+    }
+    if (prepare(&s, &radiosity, 4000, 64)) {
+        for (uint32_t i = 0; i < 36; i++)
+            factors[i / 6][i % 6] = form_factor(&radiosity, i / 6, i % 6);
+        for (int i = 0; i < 6; i++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++)
+                sum += factors[i][k];
+            CHECK_NEAR(sum, 1, 1e-12);
+        }
+        symmetrise(factors);
+        for (int i = 0; i < 6; i++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) {
+                sum += factors[i][k];
+                CHECK_NEAR(factors[i][k], factors[k][i], 1e-12);
+                CHECK_NEAR(factors[i][k], i == k ? 0 : i / 2 == k / 2 ? 0.199825 : 0.200044, 0.001);
+            }
+            CHECK_NEAR(sum, 1, 1e-12);
+        }
+    }
+    radiosity_destroy(&radiosity);
+    stage_end(&s);
+}
+
 /* --- closed rooms --- */
 
 /* The mean light of a primitive on the sides that have any. */
@@ -142,6 +191,25 @@ TEST(light_of_concentric_balls_is_its_closed_form) {
         CHECK_NEAR(1 + 0.5 * mean_light(&radiosity, 0, 0), 1.111111, 0.005);
         CHECK_NEAR(0.5 * mean_light(&radiosity, 1, 1), 0.222222, 0.005 * 0.222222);
         CHECK_NEAR(mean_light(&radiosity, 1, 0), 0, 0);
+    }
+    radiosity_destroy(&radiosity);
+    stage_end(&s);
+}
+
+/* So large that what leaves at the border is less than a thousandth: 1 / (1 - .5 * .8) arrives above. */
+TEST(light_between_parallel_planes_is_its_closed_form) {
+    struct stage s;
+    struct radiosity radiosity = {0};
+    const struct vec3 along = {4000, 0, 0}, up = {0, 4000, 0};
+    stage_begin(&s, 2);
+    struct material *shines = matt(&s, 0.5);
+    shines->phong.emission = colour_all(1);
+    (void)add_planar(&s, rectangle(0, 0, 0, along, up), shines);
+    (void)add_planar(&s, rectangle(0, 0, 1, up, along), matt(&s, 0.8));
+    if (prepare(&s, &radiosity, 2000, 0)) {
+        CHECK(radiosity_shoot(&radiosity, 1e-6, s.pool));
+        CHECK_NEAR(mean_light(&radiosity, 1, 0), 1 / 0.6, 0.005 / 0.6);
+        CHECK_NEAR(mean_light(&radiosity, 0, 0), 0.8 / 0.6, 0.005 * 0.8 / 0.6);
     }
     radiosity_destroy(&radiosity);
     stage_end(&s);
