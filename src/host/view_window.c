@@ -137,7 +137,8 @@ static bool draw(struct view_window *w, bool coarse, struct error *error) {
     uint32_t divide = coarse ? w->divide : 1;
     struct tone_bytes tone;
     double began = clock_now();
-    w->fine = divide == 1 && !coarse && !w->saves;
+    w->fine = !coarse && !w->saves;
+    w->now.quick = coarse;
     pool_reset_cancel(w->view->pool);
     if (!view_resize(w->view, (w->width + divide - 1) / divide, (w->height + divide - 1) / divide, error) ||
         !view_draw(w->view, &w->now, error))
@@ -148,7 +149,7 @@ static bool draw(struct view_window *w, bool coarse, struct error *error) {
         w->bytes[i] = tone_byte(&tone, light[i]);
     double seconds = clock_now() - began, fits = divide * sqrt(seconds / picture_seconds);
     w->divide = (uint32_t)math_min(math_max(ceil(fits - 0.1), 1), DIVIDE_LIMIT);
-    w->coarse = divide > 1;
+    w->coarse = coarse && (divide > 1 || (w->now.aperture > 0 && w->view->field.head.depth));
     return true;
 }
 
@@ -221,6 +222,7 @@ static void focus_at(struct view_window *w, double x, double y) {
     struct light_field_camera camera = view_camera(view, &w->now);
     camera.width = w->width;
     camera.height = w->height;
+    camera.quick = false;
     const double pixel[2] = {across * w->width, down * w->height};
     if (light_field_distance(&view->field, &camera, pixel, view->pool, &w->now.focus, &error))
         (void)snprintf(state->notice, sizeof state->notice, "Focus at %.4g", w->now.focus);

@@ -27,8 +27,9 @@ struct pixel_sum;
 struct drawing {
     const struct light_field *field;
     struct light_field_camera camera;
-    double count[AXES], size[AXES];                       /* of cameras, and of the pixels of a view */
-    double spacing, pixel;                                /* pixel: its side at distance 1 */
+    bool depth;                     /* surfaces are where the field has them, not all in the plane in focus */
+    double count[AXES], size[AXES]; /* of cameras, and of the pixels of a view */
+    double spacing, pixel;          /* pixel: its side at distance 1 */
     double per_spacing, per_screen, per_focus, per_pixel; /* reciprocals; of spacing 0: 0 */
     double eye[AXES];
     double ratio;                   /* of a pixel of the picture to one of a view */
@@ -233,7 +234,7 @@ static double disparity_of(const struct drawing *d, const struct field_ray *ray,
 static void add_ray(const struct drawing *d, const struct field_ray *ray, bool inside, struct pixel_sum *sum) {
     struct near_camera cameras[4];
     int count = find_cameras(d, ray, inside, cameras);
-    bool has_depth = d->field->head.depth && count > 0;
+    bool has_depth = d->depth && count > 0;
     double disparity = has_depth ? disparity_of(d, ray, cameras, count) : d->disparity;
     for (int i = 0; i < count; i++) {
         double at[AXES], seen, weight = cameras[i].weight;
@@ -258,6 +259,7 @@ static bool is_in_grid(const struct drawing *d, const struct field_ray *ray) {
 
 static void prepare(struct drawing *d, const struct light_field_head *head, const struct light_field_camera *camera) {
     *d = (struct drawing){.camera = *camera,
+                          .depth = head->depth && !(camera->quick && camera->aperture > 0),
                           .count = {head->columns, head->rows},
                           .size = {head->width, head->height},
                           .spacing = head->spacing,
@@ -296,8 +298,8 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
 
 /* How far the nearest surface of the loaded views, or the farthest one, is from the plane in focus. */
 static double largest_disparity(const struct drawing *d) {
-    double largest = d->field->head.depth ? 0 : d->disparity;
-    for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->field->head.depth; i++) {
+    double largest = d->depth ? 0 : d->disparity;
+    for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->depth; i++) {
         const struct light_field_entry *entry = &d->field->entries[i];
         if (d->field->views[i])
             largest = math_max(largest, math_max(entry->nearest - d->disparity, d->disparity - entry->farthest));
@@ -339,7 +341,7 @@ static bool make_lens(struct drawing *d) {
 static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
     struct near_camera cameras[4];
     struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
-    int count = d->field->head.depth && d->point_count > LENS_FEWEST ? find_cameras(d, &ray, false, cameras) : 0;
+    int count = d->depth && d->point_count > LENS_FEWEST ? find_cameras(d, &ray, false, cameras) : 0;
     if (count == 0)
         return d->point_count;
     const struct near_camera *camera = &cameras[first_camera(cameras, count)];
@@ -368,7 +370,7 @@ static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
 /* On the plane of the cameras, and without depths, all pixels have the same weights of cameras. */
 static bool make_weights(struct drawing *d) {
     const struct light_field_head *head = &d->field->head;
-    if (head->depth || d->camera.z != 0)
+    if (d->depth || d->camera.z != 0)
         return true;
     d->weights = mem_alloc_zero((size_t)head->columns * head->rows, sizeof *d->weights);
     for (uint32_t i = 0; d->weights && i < d->point_count; i++) {
@@ -540,8 +542,8 @@ bool light_field_distance(struct light_field *field, const struct light_field_ca
     if (!light_field_load_part(field, &part, pool, error))
         return false;
     d.disparity = 0;
-    double disparity = field->head.depth ? disparity_of(&d, &ray, cameras, find_cameras(&d, &ray, false, cameras))
-                                         : find_agreement(&d, &part, pixel);
+    double disparity = d.depth ? disparity_of(&d, &ray, cameras, find_cameras(&d, &ray, false, cameras))
+                               : find_agreement(&d, &part, pixel);
     *out = 1 / disparity - camera->z;
     return disparity > 0 && *out > 0;
 }

@@ -13,6 +13,7 @@ struct light_field_camera {
     double focus;    /* distance of the plane in focus from the eye */
     double aperture; /* radius of the lens, world units */
     uint32_t width, height;
+    bool quick; /* a lens looks at everything as if it were in the plane in focus: depths take long */
 };
 
 /* Moves an eye on the plane of the cameras into the grid. True: it is outside, or its rays come from outside. */

@@ -131,8 +131,8 @@ struct view_state view_state_of(const struct view *view, uint32_t frame) {
 }
 
 struct light_field_camera view_camera(const struct view *view, const struct view_state *state) {
-    return (struct light_field_camera){state->at.x,     state->at.y, state->at.z, state->focus,
-                                       state->aperture, view->width, view->height};
+    return (struct light_field_camera){state->at.x,     state->at.y, state->at.z,  state->focus,
+                                       state->aperture, view->width, view->height, state->quick};
 }
 
 static struct light_field_camera camera_of_frame(const struct view *view, uint32_t frame) {

@@ -28,6 +28,7 @@ struct view {
 struct view_state {
     struct vec3 at;
     double focus, aperture, fov;
+    bool quick; /* as in struct light_field_camera */
 };
 
 /* Whether a file holds a picture or a light field. */

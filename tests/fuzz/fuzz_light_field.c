@@ -14,8 +14,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void draw(struct light_field *field, struct pool *pool, struct error *error) {
     enum { WIDTH = 5, HEIGHT = 4 };
-    struct light_field_camera camera = {
-        field->head.spacing / 3, 0, field->head.screen / 9, field->head.screen, field->head.spacing, WIDTH, HEIGHT};
+    struct light_field_camera camera = {field->head.spacing / 3,
+                                        0,
+                                        field->head.screen / 9,
+                                        field->head.screen,
+                                        field->head.spacing,
+                                        WIDTH,
+                                        HEIGHT,
+                                        false};
     float out[WIDTH * HEIGHT][3];
     (void)light_field_clamp(&field->head, &camera);
     if (light_field_draw(field, &camera, pool, out, error))

@@ -102,7 +102,7 @@ TEST(an_eye_at_a_camera_of_a_light_field_gives_the_bytes_of_its_view) {
             char text[32];
             (void)snprintf(text, sizeof text, "%.12g", camera_at(column, head->columns, head));
             struct light_field_camera camera = {
-                strtod(text, NULL), -camera_at(row, head->rows, head), 0, 3.3, 0, head->width, head->height};
+                strtod(text, NULL), -camera_at(row, head->rows, head), 0, 3.3, 0, head->width, head->height, false};
             CHECK(!light_field_clamp(head, &camera));
             CHECK(light_field_draw(&field, &camera, pool, out, &error));
             for (uint32_t y = 0; y < head->height; y++) {
@@ -151,8 +151,14 @@ TEST(a_plane_in_focus_is_exact_from_any_eye_of_a_light_field) {
     open_field(&plane, &field, &pool);
     for (int i = 0; i < 40; i++) {
         double z = i % 2 ? test_uniform(&random, -0.2, 0.2) : 0;
-        struct light_field_camera camera = {
-            test_uniform(&random, -0.12, 0.12), test_uniform(&random, -0.04, 0.04), z, plane.distance - z, 0, 24, 20};
+        struct light_field_camera camera = {test_uniform(&random, -0.12, 0.12),
+                                            test_uniform(&random, -0.04, 0.04),
+                                            z,
+                                            plane.distance - z,
+                                            0,
+                                            24,
+                                            20,
+                                            false};
         if (i % 4 == 3)
             camera.width = 48, camera.height = 40;
         CHECK(error_of(&field, &plane, pool, camera) < 1e-6);
@@ -180,7 +186,8 @@ TEST(a_pattern_in_focus_is_sharp_to_the_pixel_between_two_cameras) {
                                                 blurred ? 1.3 * plane.distance : plane.distance,
                                                 0,
                                                 head->width,
-                                                head->height};
+                                                head->height,
+                                                false};
             double largest = 0;
             CHECK(light_field_draw(&field, &camera, pool, out, &error));
             for (uint32_t y = 4; y + 4 < head->height; y++) {
@@ -208,7 +215,7 @@ TEST(depths_of_a_light_field_make_a_plane_exact_without_focus) {
     for (int i = 0; i < 40; i++) {
         double z = i % 2 ? test_uniform(&random, -0.2, 0.2) : 0;
         struct light_field_camera camera = {
-            test_uniform(&random, -0.12, 0.12), test_uniform(&random, -0.04, 0.04), z, 2, 0, 24, 20};
+            test_uniform(&random, -0.12, 0.12), test_uniform(&random, -0.04, 0.04), z, 2, 0, 24, 20, false};
         CHECK(error_of(&field, &plane, pool, camera) < 1e-6);
     }
     light_field_close(&field);
@@ -221,7 +228,7 @@ TEST(a_lens_keeps_what_is_in_focus_and_has_the_mean_of_the_rest) {
     struct pool *pool;
     open_field(&plane, &field, &pool);
     for (int i = 0; i < 2; i++) {
-        struct light_field_camera camera = {0.02, 0, i * 1e-9, plane.distance, 0.08, 24, 20};
+        struct light_field_camera camera = {0.02, 0, i * 1e-9, plane.distance, 0.08, 24, 20, false};
         CHECK(error_of(&field, &plane, pool, camera) < 1e-6);
         /* The mean of a linear function is its value in the middle of the lens. */
         camera.focus = 2;
@@ -233,8 +240,8 @@ TEST(a_lens_keeps_what_is_in_focus_and_has_the_mean_of_the_rest) {
 
 TEST(an_eye_outside_of_a_light_field_is_moved_to_its_border) {
     const struct light_field_head head = make_plane(3, false).head;
-    struct light_field_camera inside = {0.2, -0.1, 0, 4, 0, 24, 20}, outside = {0.3, -0.5, 0, 4, 0, 24, 20},
-                              behind = {0, 0, -2, 4, 0, 24, 20};
+    struct light_field_camera inside = {0.2, -0.1, 0, 4, 0, 24, 20, false},
+                              outside = {0.3, -0.5, 0, 4, 0, 24, 20, false}, behind = {0, 0, -2, 4, 0, 24, 20, false};
     CHECK(!light_field_clamp(&head, &inside));
     CHECK(light_field_clamp(&head, &outside));
     CHECK(outside.x == 2 * head.spacing && outside.y == -head.spacing);
