@@ -376,7 +376,7 @@ static int open_checked(const struct path_policy *path_policy, const char *path,
     struct resolution r;
     char canonical[PATH_MAX];
     const char *rest = NULL;
-    bool write = (flags & O_ACCMODE) != O_RDONLY;
+    bool write = (flags & (O_WRONLY | O_RDWR)) != 0;
     /* A link in the last component is followed to find its target; nothing is written through a dangling link. */
     bool there = resolve(path_policy, path, true, &r);
     if (!there && (errno != ENOENT || !write || r.last_is_link || !canonical_parent(path_policy, path, canonical)))

@@ -175,7 +175,8 @@ struct rule {
 #define WITHOUT(width, argument, bits)                                                                                 \
     { width, argument, bits, 0 }
 
-#define WRITING_FLAGS ((uint32_t)(O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY)))
+/* Not O_ACCMODE, which has O_PATH in musl. */
+#define WRITING_FLAGS ((uint32_t)(O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY)))
 /* The flags of a new thread of this process; no other flag is allowed, especially not a new namespace. */
 #define THREAD_FLAGS ((uint32_t)(CLONE_VM | CLONE_THREAD | CLONE_SIGHAND))
 #define OTHER_FLAGS                                                                                                    \

@@ -24,7 +24,7 @@ TEST(six_pictures_are_the_cross_they_were_cut_from) {
     uint8_t *cross = calloc(SIDE * SIDE * 12, 4), face[SIDE * SIDE * 4];
     struct test_random random = {3};
     for (int i = 0; i < SIDE * SIDE * 48; i++)
-        cross[i] = i % 4 == 3 ? 255 : (uint8_t)test_uniform(&random, 0, 256);
+        cross[i] = (uint8_t)(i % 4 == 3 ? 255 : test_uniform(&random, 0, 256));
     struct error error = {0};
     struct image *images[6], *whole = image_create("cross", SIDE * 4, SIDE * 3, 8, cross, &error);
     for (int f = 0; f < 6; f++) {
@@ -56,7 +56,7 @@ static struct image *map_image(void) {
     struct error error = {0};
     struct test_random random = {8};
     for (int i = 0; i < W * H * 4; i++)
-        texels[i] = i % 4 == 3 ? 255 : (uint8_t)test_uniform(&random, 0, 256);
+        texels[i] = (uint8_t)(i % 4 == 3 ? 255 : test_uniform(&random, 0, 256));
     return image_create("map", W, H, 8, texels, &error);
 }
 

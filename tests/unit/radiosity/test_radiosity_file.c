@@ -138,11 +138,11 @@ TEST(damaged_cut_and_foreign_files_of_solutions_are_refused_with_one_line) {
         CHECK(!read_kept(file, cut, &error));
     CHECK(!read_kept(file, size + 1, &error)); /* the zero behind it */
     for (size_t i = 0; i < size; i++) {
-        file[i] ^= 1 << i % 8;
+        file[i] = (char)(file[i] ^ 1 << i % 8);
         bool other_scene = i >= 8 && i < 24;
         CHECK(read_kept(file, size, &error) == other_scene);
         CHECK(other_scene || !strchr(error.text, '\n'));
-        file[i] ^= 1 << i % 8;
+        file[i] = (char)(file[i] ^ 1 << i % 8);
     }
     CHECK(read_kept(file, size, &error));
     free(file);
