@@ -22,24 +22,6 @@ TEST(the_lesser_and_the_greater_number_have_the_bits_of_one_rule) {
         }
 }
 
-TEST(a_number_beyond_the_integers_becomes_the_nearest_one) {
-    static const struct {
-        double number;
-        int64_t integer;
-    } cases[] = {{0x1p63, INT64_MAX},
-                 {INFINITY, INT64_MAX},
-                 {-0x1p63, INT64_MIN},
-                 {-0x1.8p63, INT64_MIN},
-                 {-INFINITY, INT64_MIN},
-                 {NAN, 0},
-                 {-NAN, 0},
-                 {-2.9, -2},
-                 {2.9, 2},
-                 {0x1p62, INT64_C(1) << 62}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        CHECK_EQ_INT(math_integer(cases[i].number), cases[i].integer);
-}
-
 /* Arguments that the format does not name are ignored. */
 TEST(a_nan_loses_its_sign_only_where_the_format_is_one_number) {
     static const char *const formats[] = {"%s.lua", "%-6.2f", "%.14g", "%A", "%sa", "a%d"};
