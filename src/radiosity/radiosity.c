@@ -277,6 +277,7 @@ static struct digest digest_of(const struct preparation *p) {
     struct digest digest = digest_bytes(GRAY_VERSION, sizeof GRAY_VERSION, (struct digest){1, 1});
     digest = digest_bytes(numbers, sizeof numbers, digest);
     digest = digest_bytes(world->boxes, world->primitive_count * sizeof *world->boxes, digest);
+    /* Lights: all numbers. */
     for (uint32_t i = 0; i < world->light_count; i++) {
         const struct light *l = &world->lights[i];
         const struct vec3 positions[] = {l->position, l->corner, l->edge1, l->edge2, l->direction};
@@ -285,12 +286,14 @@ static struct digest digest_of(const struct preparation *p) {
                                    l->cos_outer,  l->radius,     l->emissive, l->one_sided, light_brightest(l)};
         digest = digest_bytes(of_light, sizeof of_light, digest_bytes(positions, sizeof positions, digest));
     }
+    /* Materials: what they reflect and emit in the mean. */
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct surface_material *surface = &world->surfaces.materials[i];
         const struct colour colours[] = {surface_diffuse(&world->surfaces, surface),
                                          surface_emission(&world->surfaces, surface)};
         digest = digest_bytes(colours, sizeof colours, digest);
     }
+    /* Meshes: all triangles. */
     for (uint32_t i = 0; i < world->prototype_count; i++) {
         const struct mesh *mesh = geometry_mesh(&world->prototypes[i].geometry);
         struct vec3 corners[3];
@@ -300,6 +303,7 @@ static struct digest digest_of(const struct preparation *p) {
             digest = digest_bytes(corners, sizeof corners, digest_bytes(&slot, sizeof slot, digest));
         }
     }
+    /* Primitives: their placement, and what random rays meet. */
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->buries[i]};
         const struct transform placement = world_placement(world, i, 0);

@@ -34,7 +34,8 @@ struct radiosity_store {
 };
 
 struct radiosity;
-/* Called while it is solved: its light has grown; first it is that of lights alone. Zero value: nobody watches. */
+/* The solution calls `grown` after each step. At the first call, all light comes directly from lights. Zero value: no
+ * function is called. */
 struct radiosity_watch {
     void (*grown)(void *context, const struct radiosity *radiosity);
     void *context;
