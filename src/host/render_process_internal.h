@@ -42,7 +42,7 @@ struct render_process {
     struct assets assets;
     struct world_cache world_cache;  /* of the frame before, in an animation */
     struct radiosity radiosity;      /* of the picture before */
-    struct radiosity_store store;  /* of solutions */
+    struct radiosity_store store;    /* of solutions */
     const char *picture_file;        /* of the current picture, as the script wrote it */
     bool baked;                      /* its light is written */
     struct digest rendered;          /* picture_work.shows of the last picture that was rendered */

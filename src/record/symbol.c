@@ -658,7 +658,7 @@ static bool takes_symbols(lua_State *L) {
 }
 
 #define MATH_FUNCTION(name, of_symbols)                                                                                \
-    static int recorded_##name(lua_State *L) {                                                                             \
+    static int recorded_##name(lua_State *L) {                                                                         \
         if (!takes_symbols(L))                                                                                         \
             return lua_tocfunction(L, lua_upvalueindex(1))(L);                                                         \
         return of_symbols;                                                                                             \

@@ -70,7 +70,8 @@ static const struct setting options_table[] = {
      0, "mm", "Unit of the numbers in a written model, for files that name it (3MF)."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--node", "NAME", "", NULL, FIELD(node), 0, 0, 0, "all",
      "Write only the node of this name as a model."},
-    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--bake", "FILE.ply|FILE.glb", "", NULL, FIELD(bake), 0, 0, 0, NULL,
+    {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_MODELS, "--bake", "FILE.ply|FILE.glb", "", NULL, FIELD(bake), 0, 0, 0,
+     NULL,
      "Write the patches of the first picture, with the light that integrator radiosity has stored as colours of their "
      "vertices.",
      EFFECT_RADIOSITY},
