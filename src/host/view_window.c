@@ -16,7 +16,9 @@
 #include <string.h>
 
 static const double picture_seconds = 1 / 35.0, click_pixels = 4, flight_seconds = 2; /* across the grid, half around */
-enum { AT = 1, FOCUS, APERTURE, LONGITUDE, LATITUDE, FOV, DIVIDE_LIMIT = 8, WHEEL_STEPS = 16 }; /* numbers of fields */
+enum { DIVIDE_LIMIT = 8, WHEEL_STEPS = 16 };
+/* Fields of the form; 0 is none. */
+enum view_number { EYE_X = 1, EYE_Y, EYE_Z, FOCUS, APERTURE, LONGITUDE, LATITUDE, FOV, NUMBER_COUNT };
 
 struct view_window {
     struct view *view;
@@ -51,73 +53,72 @@ static double largest_aperture(const struct view_window *w) {
     return math_max(half_grid(w, true), half_grid(w, false));
 }
 
+/* The numbers of the inspector. */
+static const struct number {
+    bool of_field;
+    const char *name, *help;
+    double low, high; /* high 0: the largest aperture */
+} numbers[] = {[EYE_X] = {true, "eye right", "From the middle of the cameras to the right.", -HUGE_VAL, HUGE_VAL},
+               [EYE_Y] = {true, "eye up", "From the middle of the cameras upwards.", -HUGE_VAL, HUGE_VAL},
+               [EYE_Z] = {true, "eye along", "From the plane of the cameras along the view.", -HUGE_VAL, HUGE_VAL},
+               [FOCUS] = {true, "focus", "The distance from the eye to the plane that is sharp.", 0, HUGE_VAL},
+               [APERTURE] = {true, "aperture", "The radius of the lens.", 0, 0},
+               [LONGITUDE] = {false, "longitude", "Degrees to the right of the middle.", -180, 180},
+               [LATITUDE] = {false, "latitude", "Degrees above the middle.", -90, 90},
+               [FOV] = {false, "fov", "The vertical angle of view, degrees.", 5, 150}};
+
+static double *number_at(struct view_state *state, enum view_number number) {
+    double *const at[] = {
+        [EYE_X] = &state->at.x,        [EYE_Y] = &state->at.y,     [EYE_Z] = &state->at.z,    [FOCUS] = &state->focus,
+        [APERTURE] = &state->aperture, [LONGITUDE] = &state->at.x, [LATITUDE] = &state->at.y, [FOV] = &state->fov};
+    return at[number];
+}
+
+static double highest(const struct view_window *w, const struct number *number) {
+    return number->high <= 0 ? largest_aperture(w) : number->high;
+}
+
 /* The eye stays in the field, and the plane in focus in front of it. */
 static void limit(struct view_window *w) {
     struct view_state *now = &w->now;
+    const double screen = w->view->field.head.screen;
+    if (!w->view->is_field)
+        now->at.x = remainder(now->at.x, 360);
+    for (int i = EYE_X; i < NUMBER_COUNT; i++) {
+        double *number = number_at(now, (enum view_number)i);
+        if (numbers[i].of_field == w->view->is_field)
+            *number = math_min(math_max(*number, numbers[i].low), highest(w, &numbers[i]));
+    }
     if (w->view->is_field) {
         struct light_field_camera camera = view_camera(w->view, now);
         (void)light_field_clamp(&w->view->field.head, &camera);
-        now->at = vec3_make(camera.x, camera.y, math_min(camera.z, 0.9 * w->view->field.head.screen));
-        now->focus = math_max(now->focus, math_max(1e-3 * w->view->field.head.screen, 1e-3 - now->at.z));
-        now->aperture = math_min(math_max(now->aperture, 0), largest_aperture(w));
-    } else {
-        now->at.y = math_min(math_max(now->at.y, -90), 90);
-        now->at.x = remainder(now->at.x, 360);
-        now->fov = math_min(math_max(now->fov, 5), 150);
+        now->at = vec3_make(camera.x, camera.y, math_min(camera.z, 0.9 * screen));
+        now->focus = math_max(now->focus, 1e-3 * screen + math_max(0, -now->at.z));
     }
     w->outdated = true;
 }
 
-static struct window_field *add_field(struct window_form *form, uint32_t number, const char *name, const char *help) {
-    struct window_field *field = &form->fields[form->count++];
-    *field = (struct window_field){.kind = FIELD_NUMBER, .number = number, .low = -HUGE_VAL, .high = HUGE_VAL};
-    (void)snprintf(field->group, sizeof field->group, "View");
-    (void)snprintf(field->name, sizeof field->name, "%s", name);
-    (void)snprintf(field->help, sizeof field->help, "%s", help);
-    return field;
-}
-
-static struct window_field *add_number(struct window_form *form, uint32_t number, const char *name, const char *help,
-                                       const double values[2]) {
-    struct window_field *field = add_field(form, number, name, help);
-    field->numbers[0] = values[0];
-    field->initial = values[1];
-    field->resets = true;
-    return field;
-}
-
-static void make_form(const struct view_window *w, struct window_form *form) {
-    const struct view_state *now = &w->now, *first = &w->initial;
+static void make_form(struct view_window *w, struct window_form *form) {
     *form = (struct window_form){.subject = 1};
-    if (w->view->is_field) {
-        (void)snprintf(form->title, sizeof form->title, "Light Field");
-        struct window_field *eye =
-            add_field(form, AT, "eye", "From the middle of the cameras to the right, up and along the view.");
-        eye->kind = FIELD_VECTOR;
-        eye->numbers[0] = now->at.x;
-        eye->numbers[1] = now->at.y;
-        eye->numbers[2] = now->at.z;
-        (void)add_number(form, FOCUS, "focus", "The distance from the eye to the plane that is sharp.",
-                         (double[]){now->focus, first->focus});
-        struct window_field *lens = add_number(form, APERTURE, "aperture", "The radius of the lens.",
-                                               (double[]){now->aperture, first->aperture});
-        lens->low = 0;
-        lens->high = largest_aperture(w);
-        return;
-    }
-    (void)snprintf(form->title, sizeof form->title, "Panorama");
-    (void)add_number(form, LONGITUDE, "longitude", "To the right of the middle.", (double[]){now->at.x, first->at.x});
-    (void)add_number(form, LATITUDE, "latitude", "Above the middle.", (double[]){now->at.y, first->at.y});
-    (void)add_number(form, FOV, "fov", "The vertical angle of view.", (double[]){now->fov, first->fov});
-    for (uint32_t i = 0; i < form->count; i++) {
-        struct window_field *field = &form->fields[i];
-        (void)snprintf(field->unit, sizeof field->unit, "degrees");
-        field->low = i == 0 ? -180 : i == 1 ? -90 : 5;
-        field->high = i == 0 ? 180 : i == 1 ? 90 : 150;
+    (void)snprintf(form->title, sizeof form->title, w->view->is_field ? "Light Field" : "Panorama");
+    for (uint32_t i = EYE_X; i < NUMBER_COUNT; i++) {
+        if (numbers[i].of_field != w->view->is_field)
+            continue;
+        struct window_field *field = &form->fields[form->count++];
+        *field = (struct window_field){.kind = FIELD_NUMBER,
+                                       .number = i,
+                                       .resets = true,
+                                       .group = "View",
+                                       .numbers = {*number_at(&w->now, (enum view_number)i)},
+                                       .initial = *number_at(&w->initial, (enum view_number)i),
+                                       .low = numbers[i].low,
+                                       .high = highest(w, &numbers[i])};
+        (void)snprintf(field->name, sizeof field->name, "%s", numbers[i].name);
+        (void)snprintf(field->help, sizeof field->help, "%s", numbers[i].help);
     }
 }
 
-static void describe(const struct view_window *w) {
+static void describe(struct view_window *w) {
     struct window_state *state = w->driver->state;
     const struct light_field_head *head = &w->view->field.head;
     make_form(w, &state->form);
@@ -241,28 +242,8 @@ static void turn_wheel(struct view_window *w, double steps) {
 }
 
 static void change_field(struct view_window *w, const struct window_event *event) {
-    switch (event->field) {
-    case AT:
-        w->now.at = vec3_make(event->numbers[0], event->numbers[1], event->numbers[2]);
-        break;
-    case LONGITUDE:
-        w->now.at.x = event->numbers[0];
-        break;
-    case LATITUDE:
-        w->now.at.y = event->numbers[0];
-        break;
-    case FOCUS:
-        w->now.focus = event->numbers[0];
-        break;
-    case APERTURE:
-        w->now.aperture = event->numbers[0];
-        break;
-    case FOV:
-        w->now.fov = event->numbers[0];
-        break;
-    default:
-        return;
-    }
+    if (event->field >= EYE_X && event->field < NUMBER_COUNT)
+        *number_at(&w->now, (enum view_number)event->field) = event->numbers[0];
     limit(w);
 }
 
@@ -384,8 +365,8 @@ static void loop(struct view_window *w) {
 
 int view_window_run(const struct options *options, const struct window_driver *driver) {
     struct error error;
-    struct view_window w = {.driver = driver, .divide = DIVIDE_LIMIT, .view = mem_alloc_zero(1, sizeof *w.view)};
-    bool ok = (w.view || error_no_memory(&error, "the picture")) && view_open(w.view, options, &error);
+    struct view_window w = {.driver = driver, .divide = DIVIDE_LIMIT, .view = view_open(options, &error)};
+    bool ok = w.view != NULL;
     if (ok) {
         w.width = w.view->width;
         w.height = w.view->height;
@@ -408,14 +389,6 @@ int view_window_run(const struct options *options, const struct window_driver *d
         loop(&w);
         driver->close(driver->context);
     }
-    if (w.view)
-        view_close(w.view);
-    mem_free(w.view);
     mem_free(w.bytes);
-    if (ok)
-        return 0;
-    char line[sizeof error.text + 16];
-    (void)snprintf(line, sizeof line, "gray: %s", error.text);
-    text_print_message(stderr, TEXT_ERROR, line);
-    return (int)error.kind;
+    return view_close(w.view, ok ? NULL : &error);
 }

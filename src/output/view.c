@@ -333,6 +333,8 @@ static bool prepare(struct view *view, struct error *error) {
 }
 
 bool view_resize(struct view *view, uint32_t width, uint32_t height, struct error *error) {
+    if (view->light && view->width == width && view->height == height)
+        return true;
     float(*light)[3] = mem_alloc_zero((size_t)width * height, sizeof *light);
     if (!light)
         return error_no_memory(error, "the picture");
@@ -354,37 +356,42 @@ bool view_is(const char *name) {
     return is;
 }
 
-bool view_open(struct view *view, const struct options *options, struct error *error) {
+struct view *view_open(const struct options *options, struct error *error) {
+    /* Not on the stack, which may be small. */
+    struct view *view = mem_alloc_zero(1, sizeof *view);
+    if (!view) {
+        (void)error_no_memory(error, "the picture");
+        return NULL;
+    }
     view->options = options;
     picture_files_init(&view->files, options);
-    return open_file(view, error) && prepare(view, error);
+    if (open_file(view, error) && prepare(view, error))
+        return view;
+    (void)view_close(view, NULL);
+    return NULL;
 }
 
-void view_close(struct view *view) {
-    mem_free(view->light);
-    pool_destroy(view->pool);
-    light_field_close(&view->field);
-    image_release(view->image);
-    picture_files_destroy(&view->files);
+int view_close(struct view *view, const struct error *error) {
+    if (view) {
+        mem_free(view->light);
+        pool_destroy(view->pool);
+        light_field_close(&view->field);
+        image_release(view->image);
+        picture_files_destroy(&view->files);
+        mem_free(view);
+    }
+    if (!error)
+        return 0;
+    char line[sizeof error->text + 16];
+    (void)snprintf(line, sizeof line, "gray: %s", error->text);
+    text_print_message(stderr, TEXT_ERROR, line);
+    return (int)error->kind;
 }
 
 int view_run(const struct options *options) {
     struct error error;
-    /* Not on the stack, which may be small. */
-    struct view *view = mem_alloc_zero(1, sizeof *view);
-    bool ok = view || error_no_memory(&error, "the picture");
-    ok = ok && view_open(view, options, &error);
-    if (ok) {
-        warn_of_eyes(view);
-        ok = write_all(view, &error);
-    }
+    struct view *view = view_open(options, &error);
     if (view)
-        view_close(view);
-    mem_free(view);
-    if (ok)
-        return 0;
-    char line[sizeof error.text + 16];
-    (void)snprintf(line, sizeof line, "gray: %s", error.text);
-    text_print_message(stderr, TEXT_ERROR, line);
-    return (int)error.kind;
+        warn_of_eyes(view);
+    return view_close(view, view && write_all(view, &error) ? NULL : &error);
 }

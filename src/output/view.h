@@ -33,10 +33,10 @@ struct view_state {
 
 /* Whether a file holds a picture or a light field. */
 bool view_is(const char *name);
-/* Opens the file that options->scripts names, with all that the options want of it. view: zero value; it must be closed
- * also after an error. */
-bool view_open(struct view *view, const struct options *options, struct error *error);
-void view_close(struct view *view);
+/* Opens the file that options->scripts names, with all that the options want of it. NULL: an error. */
+struct view *view_open(const struct options *options, struct error *error);
+/* Closes it (or NULL), and prints the error unless it is NULL. Returns the exit status. */
+int view_close(struct view *view, const struct error *error);
 struct view_state view_state_of(const struct view *view, uint32_t frame);
 struct light_field_camera view_camera(const struct view *view, const struct view_state *state);
 /* Draws view->light, view->width x view->height: another size needs room for it first (view_resize). */
