@@ -28,7 +28,7 @@ struct view_window {
     uint32_t divide;        /* pixels of the picture in one that is drawn while something moves */
     uint8_t *bytes;
     bool outdated, coarse, closed;
-    bool fine;             /* what is drawn ends when something happens */
+    bool fine;             /* what is being drawn ends when something happens */
     double shown, seconds; /* when the last picture was; between pictures of a movement */
     bool drags, has_moved;
     double pressed_x, pressed_y, stepped;
@@ -140,9 +140,11 @@ static bool draw(struct view_window *w, bool coarse, struct error *error) {
     double began = clock_now();
     w->fine = !coarse && !w->saves;
     w->now.quick = coarse;
+    bool ok = view_resize(w->view, (w->width + divide - 1) / divide, (w->height + divide - 1) / divide, error) &&
+              view_draw(w->view, &w->now, error);
+    w->fine = false;
     pool_reset_cancel(w->view->pool);
-    if (!view_resize(w->view, (w->width + divide - 1) / divide, (w->height + divide - 1) / divide, error) ||
-        !view_draw(w->view, &w->now, error))
+    if (!ok)
         return false;
     tone_bytes_make(&w->view->tone, &tone);
     const float *light = w->view->light[0];
