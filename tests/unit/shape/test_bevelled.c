@@ -145,7 +145,7 @@ TEST(an_edge_that_is_too_large_is_refused_with_its_place) {
          "must be less than half of the height (0.1)"},
         {"gr.prism{outline = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, spline = 'b-spline', edge = 0.06, chamfer = true}",
          "chamfer = true needs an outline of straight lines"},
-        {"gr.box{min = {0, 0, 0}, max = {1, 1, 1}, edge = -1}", "edge is -1, not 0 or more"}};
+        {"gr.box{min = {0, 0, 0}, max = {1, 1, 1}, edge = -1}", "edge must be >= 0"}};
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         test_write_text(test_path("scene.lua"), scenes[i][0]);
         test_shell_errors("$gray -q scene.lua", 1, scenes[i][1]);
