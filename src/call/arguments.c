@@ -226,7 +226,7 @@ static void check_nil_fields(struct script_context *c, const struct script_funct
     const char *names[PARAMETER_LIMIT];
     struct nil_field found;
     size_t count = 0;
-    if (!sandbox_is_new_line(&c->sandbox, function)) /* a loop */
+    if (c->sandbox.locate || !sandbox_is_new_line(&c->sandbox, function)) /* no script, or a loop */
         return;
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];

@@ -402,7 +402,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
     bool turns = process->options->script.frames.turntable > 0;
-    scene_set_time(work->request->scene, turns ? 0 : frame_time(&work->request->frame));
+    scene_set_time(work->request->scene, turns ? 0 : work->request->time);
     work->shows = digest_of_frame(work);
     picture->repeats = repeats_frame(work);
     if (!settle(process, error))

@@ -616,6 +616,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .settings = script_of(context)->host->settings,
         .frame = script_of(context)->animation.frame,
     };
+    request.time = request.frame.number > 0 ? frame_time(&request.frame) : script_of(context)->time;
     /* Settings of the program, then those of the call. */
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct scene_light lights[STUDIO_LIGHTS];

@@ -39,6 +39,7 @@ struct render_request {
     bool keep;                 /* a picture that exists under this name is not replaced */
     bool changed;              /* gr.change_... has changed the scene for this picture */
     struct frame frame;        /* of an animation; else its number is 0 */
+    double time;               /* seconds since the first frame */
     const char *where;         /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 
