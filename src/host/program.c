@@ -134,6 +134,8 @@ static int perform(struct options *options, const struct program_parts *parts, s
         return manual_print(options, options->script.library_folder, arena);
     case ACTION_ROFF:
         return manual_print_page(options, arena);
+    case ACTION_SCHEMA:
+        return manual_print_schema(arena);
     case ACTION_ANNOTATIONS:
         return manual_print_annotations(arena);
     case ACTION_INIT:

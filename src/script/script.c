@@ -21,6 +21,7 @@
 #include "script/gr_textures_internal.h"
 #include "script/model_scene_internal.h"
 #include "script/scene_json_internal.h"
+#include "script/scene_write_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -161,6 +162,8 @@ static int run_scene(lua_State *L) {
             return lua_error(L);
         lua_call(L, 0, 0);
     }
+    if (script->host->write_scene)
+        scene_write_open(L);
     if (script->context.scene.is_model)
         model_scene_run(L);
     else if (script->is_json)
