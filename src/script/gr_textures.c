@@ -6,6 +6,7 @@
 #include "image/image_function.h"
 #include "record/record.h"
 #include "record/vector.h"
+#include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
 #include "script/table_internal.h"
 
@@ -179,7 +180,7 @@ static const struct image_function *image_function_of(struct script_context *con
 
 enum { PROGRAM_CODE, PROGRAM_IMAGE };
 #define PROGRAM_PICTURE(name)                                                                                          \
-    { name, KIND_IMAGE, OPTIONAL | RARE, ANY, NULL, "none", "A picture that texel reads, a result of gr.texture." }
+    { name, KIND_IMAGE, OPTIONAL | RARE, ANY, NULL, "none", "A picture that texel reads." }
 static const struct script_parameter program_parameters[] = {
     [PROGRAM_CODE] = {"code", KIND_TEXT, 0, ANY, NULL, NULL,
                       "Its operations, such as 'v0 = p.x; v1 = sin v0; result v1'."},
@@ -196,10 +197,11 @@ static bool program(struct script_context *context, const struct script_value *a
     struct expr_images images = {.count = EXPR_IMAGES};
     for (int k = 0; k < EXPR_IMAGES; k++) {
         const struct script_value *value = &args[PROGRAM_IMAGE + k];
-        if (value->given && !value->texture)
-            return error_set(error, ERROR_SCENE, "image%d must be a texture; gr.texture makes one of a file", k + 1);
-        if (value->given)
+        const struct texture_image *file = value->text ? gr_image(context, value, error) : NULL;
+        if (value->texture)
             images.items[k] = image_function_of(context, (struct script_texture *)(uintptr_t)value->texture, error);
+        else if (file)
+            images.items[k] = make_image_function(context, file, error);
         if (value->given && !images.items[k])
             return false;
     }

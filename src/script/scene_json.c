@@ -1,7 +1,7 @@
 /* Reads a scene in JSON. Each object with a type is a call of that function of gr with the other members as fields, so
  * names, ranges, defaults and errors are those of the table of functions, and nothing here knows a shape. Values are
- * made from the innermost outwards; what `define` names is made at its first use. `place` leads from the value that is
- * read to the top of the file, for messages. */
+ * made from the innermost outwards; what `define` names is made at its first use. `position` leads from the value that
+ * is read to the top of the file, for messages. */
 #include "script/scene_json_internal.h"
 
 #include "base/file.h"
@@ -35,8 +35,8 @@ void scene_json_run(lua_State *L) {
 enum { VERSION = 1, DEPTH = 1000 };
 
 /* A member by its key, or an entry by its index if the key is NULL. */
-struct place {
-    const struct place *outer;
+struct position {
+    const struct position *outer;
     const char *key;
     size_t index;
 };
@@ -47,24 +47,24 @@ struct scene_reader {
     lua_State *L;
     struct script *script;
     json_t *defined;
-    const struct place *place;
+    const struct position *position;
     int depth, made, calls[2];
 };
 
 /* --- messages --- */
 
 /* Of a deep one, the outer part. */
-static void print_place(const struct place *place, char *out, size_t size) {
-    if (!place)
+static void print_position(const struct position *position, char *out, size_t size) {
+    if (!position)
         return;
-    print_place(place->outer, out, size);
+    print_position(position->outer, out, size);
     size_t used = strlen(out);
     if (used + 4 > size)
         return;
-    if (place->key)
-        (void)snprintf(out + used, size - used, "%s%.80s", used > 0 ? "." : "", place->key);
+    if (position->key)
+        (void)snprintf(out + used, size - used, "%s%.80s", used > 0 ? "." : "", position->key);
     else
-        (void)snprintf(out + used, size - used, "[%zu]", place->index);
+        (void)snprintf(out + used, size - used, "[%zu]", position->index);
 }
 
 static bool has_parameter(const struct script_function *function, const char *name, size_t length) {
@@ -74,7 +74,7 @@ static bool has_parameter(const struct script_function *function, const char *na
     return false;
 }
 
-/* The argument that the error is about ends the place: "gr.material: kd[2] must ..." is about kd[1], as JSON counts
+/* The argument that the error is about ends the position: "gr.material: kd[2] must ..." is about kd[1], as JSON counts
  * from 0. */
 static void print_argument(const struct script_context *context, char *error, char *out, size_t size) {
     static const char unknown[] = "unknown field '";
@@ -108,11 +108,11 @@ static void print_argument(const struct script_context *context, char *error, ch
 /* After "x.json: ": "nodes[3].material.kd: ". */
 static void locate(const struct sandbox *sandbox, char *out, size_t size) {
     struct script_context *context = context_of(sandbox->lua);
-    char place[400] = "", argument[256] = "";
-    print_place(script_of(context)->reader->place, place, sizeof place);
+    char position[400] = "", argument[256] = "";
+    print_position(script_of(context)->reader->position, position, sizeof position);
     print_argument(context, context->sandbox.raised, argument, sizeof argument);
-    if (place[0] || argument[0])
-        (void)snprintf(out, size, "%s%s: ", place, argument + (place[0] == '\0' && argument[0] == '.'));
+    if (position[0] || argument[0])
+        (void)snprintf(out, size, "%s%s: ", position, argument + (position[0] == '\0' && argument[0] == '.'));
 }
 
 _Noreturn static void fail_unknown(struct scene_reader *r, const char *what, const char *name,
@@ -129,17 +129,17 @@ _Noreturn static void fail_unknown(struct scene_reader *r, const char *what, con
 static void push_value(struct scene_reader *r, const json_t *json);
 
 static void push_member(struct scene_reader *r, const char *key, const json_t *json) {
-    const struct place place = {r->place, key, 0};
-    r->place = &place;
+    const struct position position = {r->position, key, 0};
+    r->position = &position;
     push_value(r, json);
-    r->place = place.outer;
+    r->position = position.outer;
 }
 
 static void push_entry(struct scene_reader *r, size_t index, const json_t *json) {
-    const struct place place = {r->place, NULL, index};
-    r->place = &place;
+    const struct position position = {r->position, NULL, index};
+    r->position = &position;
     push_value(r, json);
-    r->place = place.outer;
+    r->position = position.outer;
 }
 
 static void push_list(struct scene_reader *r, const json_t *list) {
@@ -217,9 +217,9 @@ static bool is_call(const json_t *value) {
 static void call_method(struct scene_reader *r, const char *name, const json_t *value) {
     static const char *const none[] = {NULL};
     lua_State *L = r->L;
-    const struct place place = {r->place, name, 0};
+    const struct position position = {r->position, name, 0};
     int count = 1;
-    r->place = &place;
+    r->position = &position;
     const struct script_function *function = find_function(r, OWNER_NODE, name);
     luaL_checkstack(L, 20, NULL);
     dispatch_push(L, function);
@@ -237,13 +237,13 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
         push_value(r, value);
     }
     lua_call(L, count + 1, 0);
-    r->place = place.outer;
+    r->position = position.outer;
 }
 
 static void add_children(struct scene_reader *r, const json_t *children) {
     lua_State *L = r->L;
-    const struct place place = {r->place, "children", 0};
-    r->place = &place;
+    const struct position position = {r->position, "children", 0};
+    r->position = &position;
     if (!json_is_array(children))
         sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
     for (size_t i = 0; i < json_array_size(children); i++) {
@@ -252,24 +252,24 @@ static void add_children(struct scene_reader *r, const json_t *children) {
         push_entry(r, i, json_array_get(children, i));
         lua_call(L, 2, 0);
     }
-    r->place = place.outer;
+    r->position = position.outer;
 }
 
 static void transform(struct scene_reader *r, const json_t *calls) {
-    const struct place place = {r->place, "transform", 0};
-    r->place = &place;
+    const struct position position = {r->position, "transform", 0};
+    r->position = &position;
     if (!json_is_array(calls))
         sandbox_raise(sandbox_enter(r->L), "it must be a list such as [{\"translate\": [1, 0, 0]}]");
     for (size_t i = 0; i < json_array_size(calls); i++) {
-        const struct place inner = {&place, NULL, i};
+        const struct position inner = {&position, NULL, i};
         json_t *call = json_array_get(calls, i);
         void *at = json_is_object(call) ? json_object_iter(call) : NULL;
-        r->place = &inner;
+        r->position = &inner;
         if (!at || json_object_size(call) != 1)
             sandbox_raise(sandbox_enter(r->L), "it must be an object with one method, as {\"translate\": [1, 0, 0]}");
         call_method(r, json_object_iter_key(at), json_object_iter_value(at));
     }
-    r->place = place.outer;
+    r->position = position.outer;
 }
 
 /* The object that a function of gr makes. */
@@ -311,13 +311,13 @@ static void push_reference(struct scene_reader *r, const char *name) {
     lua_pushboolean(L, 1);
     lua_setfield(L, r->made, name);
     lua_pop(L, 1);
-    /* Its place is in `define`. */
-    const struct place *place = r->place, define = {NULL, "define", 0}, own = {&define, name, 0};
-    r->place = &own;
+    /* Its position is in `define`. */
+    const struct position *position = r->position, define = {NULL, "define", 0}, own = {&define, name, 0};
+    r->position = &own;
     if (!is_call(json))
         sandbox_raise(sandbox_enter(L), "it must be an object with a type, such as {\"type\": \"sphere\"}");
     push_value(r, json);
-    r->place = place;
+    r->position = position;
     lua_pushvalue(L, -1);
     lua_setfield(L, r->made, name);
 }
@@ -419,8 +419,8 @@ static void set_state(struct scene_reader *r, const json_t *root) {
 
 /* The node of the picture: several are the children of one. */
 static void push_root(struct scene_reader *r, const json_t *nodes) {
-    const struct place place = {NULL, "nodes", 0};
-    r->place = &place;
+    const struct position position = {NULL, "nodes", 0};
+    r->position = &position;
     bool several = json_array_size(nodes) > 1;
     if (several) {
         dispatch_push(r->L, function_find(OWNER_GR, "node"));
@@ -435,7 +435,7 @@ static void push_root(struct scene_reader *r, const json_t *nodes) {
     } else {
         push_entry(r, 0, json_array_get(nodes, 0));
     }
-    r->place = NULL;
+    r->position = NULL;
 }
 
 static void render(struct scene_reader *r, const json_t *root) {
@@ -445,8 +445,8 @@ static void render(struct scene_reader *r, const json_t *root) {
     const char *type = json_string_value(json_object_get(picture, "type"));
     const struct script_function *function = function_find(OWNER_GR, type ? type : "render");
     push_root(r, json_object_get(root, "nodes"));
-    const struct place place = {NULL, "picture", 0};
-    r->place = &place;
+    const struct position position = {NULL, "picture", 0};
+    r->position = &position;
     if (!function || !function_renders(function))
         sandbox_raise(sandbox_enter(L), "the type must be \"render\", \"render_skybox\" or \"light_field\"");
     if (picture)
@@ -458,7 +458,7 @@ static void render(struct scene_reader *r, const json_t *root) {
     dispatch_push(L, function);
     lua_insert(L, -2);
     lua_call(L, 1, 0);
-    r->place = NULL;
+    r->position = NULL;
 }
 
 /* The text of the file ends its life with the Lua state, whatever happens. */

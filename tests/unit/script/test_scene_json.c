@@ -47,7 +47,7 @@ TEST(a_scene_in_json_is_the_picture_of_the_script_with_its_calls) {
     test_shell("$gray -q a.json && $gray -q a.lua && cmp a.png b.png", 0, "");
 }
 
-TEST(a_mistake_in_json_is_one_line_with_its_place_and_a_suggestion) {
+TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
     static const char *const cases[][2] = {
         {NODES(SPHERE ", {\"type\": \"sphere\", \"material\": {\"type\": \"material\", \"kd\": [1, 2, \"x\"]}}"),
          "x.json: nodes[1].material.kd[2]: gr.material: kd[2] must be a number, not a string\n"},
