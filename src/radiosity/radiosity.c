@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { PROBES = 16384, PROBES_LIMIT = 256 }; /* rays for a digest: in all, and to a primitive */
-enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
+enum { PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
 static const double first_contrast = 0.1, border_contrast = 0.3;
 
@@ -54,24 +54,20 @@ struct preparation {
     double *until;
 };
 
-static void direct_batch(void *context, uint32_t batch, int worker) {
+static void find_direct_of(void *context, uint32_t side, int worker) {
     struct preparation *p = context;
-    uint32_t end = (batch + 1) * BATCH, count = side_count(p->out);
-    for (uint32_t i = batch * BATCH; i < end && i < count && !pool_cancelled(p->input->pool); i++)
-        if (p->out->sides[i].area < 0)
-            receive_direct(&p->receivers, i, &p->scratches[worker], &p->out->sides[i]);
+    if (p->out->sides[side].area < 0)
+        receive_direct(&p->receivers, side, &p->scratches[worker], &p->out->sides[side]);
 }
 
-static void ray_batch(void *context, uint32_t batch, int worker) {
+static void find_rays_of(void *context, uint32_t item, int worker) {
     struct preparation *p = context;
-    uint32_t end = (batch + 1) * BATCH;
-    for (uint32_t i = batch * BATCH; i < end && i < p->count && !pool_cancelled(p->input->pool); i++)
-        receive_rays(&p->receivers, p->sides[i], &p->scratches[worker], &p->out->sides[p->sides[i]],
-                     p->targets + (size_t)i * p->receivers.rays);
+    receive_rays(&p->receivers, p->sides[item], &p->scratches[worker], &p->out->sides[p->sides[item]],
+                 p->targets + (size_t)item * p->receivers.rays);
 }
 
 static bool run(struct preparation *p, uint32_t count, pool_function *function, struct error *error) {
-    bool whole = pool_run(p->input->pool, (count + BATCH - 1) / BATCH, function, p), failed = false;
+    bool whole = pool_run(p->input->pool, count, function, p), failed = false;
     for (int i = 0; i < pool_workers(p->input->pool); i++)
         failed = failed || p->scratches[i].failed;
     if (failed)
@@ -91,7 +87,7 @@ static bool find_direct(struct preparation *p, uint32_t old_vertices, struct err
         if (vertex[0] >= old_vertices || vertex[1] >= old_vertices || vertex[2] >= old_vertices)
             sides[2 * own].area = sides[2 * own + 1].area = -1;
     }
-    return run(p, side_count(out), direct_batch, error);
+    return run(p, side_count(out), find_direct_of, error);
 }
 
 /* --- adaptive division --- */
@@ -160,23 +156,11 @@ static bool refine(struct preparation *p, struct error *error) {
 /* From what each ray meets to the receivers of each side. */
 static bool find_receivers(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    uint32_t sides = side_count(out), rays = p->receivers.rays;
-    size_t all = (size_t)p->count * rays;
-    out->first = mem_alloc_zero((size_t)sides + 2, sizeof *out->first);
-    if (!out->first)
+    const size_t all = (size_t)p->count * p->receivers.rays;
+    if (!patches_group(p->targets, all, side_count(out), &out->first, &out->receivers))
         return error_no_memory(error, "radiosity");
-    for (size_t i = 0; i < all; i++)
-        if (p->targets[i] != SIDE_NONE)
-            out->first[p->targets[i] + 2]++;
-    for (uint32_t i = 0; i < sides; i++)
-        out->first[i + 2] += out->first[i + 1];
-    out->receivers = mem_alloc(out->first[sides + 1] * sizeof *out->receivers);
-    if (!out->receivers)
-        return error_no_memory(error, "radiosity");
-    /* first[j + 1] moves from the beginning of j to its end. */
-    for (size_t i = 0; i < all; i++)
-        if (p->targets[i] != SIDE_NONE)
-            out->receivers[out->first[p->targets[i] + 1]++] = p->sides[i / rays];
+    for (size_t i = 0; i < out->first[side_count(out)]; i++)
+        out->receivers[i] = p->sides[out->receivers[i] / p->receivers.rays];
     out->rays += all;
     return true;
 }
@@ -218,7 +202,7 @@ static bool find_rays(struct preparation *p, struct error *error) {
     if (!patches_index_space(&out->patches, p->input->pool, error))
         return false;
     show_growth(out);
-    return run(p, p->count, ray_batch, error) && find_receivers(p, error);
+    return run(p, p->count, find_rays_of, error) && find_receivers(p, error);
 }
 
 /* --- preparation --- */
@@ -260,8 +244,12 @@ static bool begin_preparation(struct preparation *p, struct error *error) {
                                            .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
     for (uint32_t i = 0; i < world->primitive_count; i++)
         p->receivers.bounds = box_join(p->receivers.bounds, world->boxes[i]);
-    return check_emitters(world, error) &&
-           world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error);
+    if (!check_emitters(world, error) ||
+        !world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error))
+        return false;
+    if (p->lights.area_light_count > 0 || p->lights.sampler.infinite_count > 0)
+        p->receivers.bounds = box_grow(p->receivers.bounds, INFINITY);
+    return true;
 }
 
 /* What the solution depends on. Numbers of lights and materials, placements and meshes are complete; other shapes,
@@ -270,9 +258,8 @@ static struct digest digest_of(const struct preparation *p) {
     const struct radiosity_input *input = p->input;
     const struct world *world = input->world;
     const double numbers[] = {input->background, input->limit, input->rays, (double)input->seed, input->error_share};
-    const uint32_t probes = world->primitive_count < PROBES / PROBES_LIMIT ? PROBES_LIMIT
-                            : world->primitive_count < PROBES / 2          ? PROBES / world->primitive_count
-                                                                           : 2;
+    const double fair = PROBES / (world->primitive_count + 1.0);
+    const uint32_t probes = (uint32_t)math_min(math_max(fair, 2), PROBES_LIMIT);
     struct box bounds = world_finite_bounds(world);
     struct digest digest = digest_bytes(GRAY_VERSION, sizeof GRAY_VERSION, (struct digest){1, 1});
     digest = digest_bytes(numbers, sizeof numbers, digest);
@@ -310,12 +297,9 @@ static struct digest digest_of(const struct preparation *p) {
         const struct box *own = &world->boxes[i], box = box_meet(*own, box_is_empty(&bounds) ? *own : bounds);
         digest = digest_bytes(flags, sizeof flags, digest);
         digest = digest_bytes(&placement.forward, sizeof placement.forward, digest);
-        for (uint32_t k = 0; !box_is_empty(&box) && k < probes; k++) {
-            struct receiver_probe probe;
-            receive_probe(&p->receivers, i, &box, random_combine(p->receivers.seed, (uint64_t)i * PROBES + k),
-                          &p->scratches[0], &probe);
-            digest = digest_bytes(&probe, sizeof probe, digest);
-        }
+        for (uint32_t k = 0; !box_is_empty(&box) && k < probes; k++)
+            digest = receive_probe(&p->receivers, i, &box, random_combine(p->receivers.seed, (uint64_t)i * PROBES + k),
+                                   &p->scratches[0], digest);
     }
     return digest;
 }
@@ -428,7 +412,7 @@ static void smooth(const struct radiosity *radiosity, uint32_t back, const struc
         const uint32_t own = 2 * v + back;
         struct colour sum = {0, 0, 0};
         double weights = 0;
-        for (uint32_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
+        for (size_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
             const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
             struct vec3 c[3];
             patch_corners(patches, patches->of_vertex[i], c);
@@ -490,8 +474,7 @@ static bool is_valid(const struct radiosity *radiosity) {
     for (uint32_t i = 0; valid && i < patches->vertices.count; i++)
         valid = vec3_finite(patch_vertex_at(patches, i)->point) && patch_vertex_at(patches, i)->primitive < primitives;
     for (uint32_t i = 0; valid && i < 3 * patches->all.count; i++)
-        valid = patch_at(patches, i / 3)->vertex[i % 3] < patches->vertices.count &&
-                patch_at(patches, i / 3)->primitive < primitives;
+        valid = patch_at(patches, i / 3)->vertex[i % 3] < patches->vertices.count;
     for (uint32_t i = 0; valid && i < side_count(radiosity); i++) {
         const struct side_light *side = &radiosity->sides[i];
         valid = side->area >= 0 && isfinite(colour_max_abs(side->light)) && isfinite(colour_max_abs(side->reflectance));
@@ -511,15 +494,14 @@ bool radiosity_read(struct radiosity *out, const struct radiosity_input *input, 
                                     head.vertices * (sizeof(struct patch_vertex) + 2 * sizeof(struct side_light));
     at += sizeof head;
     if (fits) {
-        if (!patches_begin(patches, input->world) ||
-            !list_add(&patches->vertices, at, head.vertices, sizeof(struct patch_vertex)) ||
+        *patches = (struct patches){.world = input->world, .edge = head.edge};
+        if (!list_add(&patches->vertices, at, head.vertices, sizeof(struct patch_vertex)) ||
             !list_add(&patches->all, at + head.vertices * sizeof(struct patch_vertex), head.patches,
                       sizeof(struct patch)) ||
             !(out->sides = mem_alloc(2 * head.vertices * sizeof *out->sides)))
             return error_no_memory(error, "radiosity");
         memcpy(out->sides, at + head.vertices * sizeof(struct patch_vertex) + head.patches * sizeof(struct patch),
                2 * head.vertices * sizeof *out->sides);
-        patches->edge = head.edge;
         out->left = head.left;
     }
     return fits && is_valid(out) ? patches_index_space(patches, input->pool, error)
@@ -570,8 +552,7 @@ bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, 
     const struct patches *patches = &radiosity->patches;
     struct vec3 *points = mem_alloc(patches->vertices.count * sizeof *points);
     uint8_t(*colours)[3] = mem_alloc(patches->vertices.count * sizeof *colours);
-    uint32_t(*triangles)[3] = mem_alloc(patches->all.count * sizeof *triangles);
-    bool ok = points && colours && triangles;
+    bool ok = points && colours;
     for (uint32_t i = 0; ok && i < patches->vertices.count; i++) {
         const struct side_light *side = &radiosity->sides[2 * i];
         side += !(side->area > 0);
@@ -580,14 +561,11 @@ bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, 
         for (int k = 0; k < 3; k++)
             colours[i][k] = png_write_byte(tone_apply(tone, colour_get(light, k)));
     }
-    for (uint32_t i = 0; ok && i < patches->all.count; i++)
-        memcpy(triangles[i], patch_at(patches, i)->vertex, sizeof triangles[i]);
-    const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, (const uint32_t(*)[3])triangles,
+    const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, patches->all.items,
                                        patches->vertices.count, patches->all.count};
     ok = ok && coloured_mesh_write(&mesh, format, out);
     mem_free(points);
     mem_free(colours);
-    mem_free(triangles);
     return ok;
 }
 

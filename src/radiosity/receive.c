@@ -78,7 +78,7 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
                            .key = random_combine(input->seed, side)};
     struct box box = box_empty();
     uint64_t own = patch_vertex_at(patches, out.vertex)->primitive;
-    for (uint32_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
+    for (size_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
         struct vec3 c[3];
         patch_corners(patches, patches->of_vertex[i], c);
         out.area += patch_area(c) / 3;
@@ -95,11 +95,11 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
 /* A position on a patch of the vertex, and the patch. */
 static struct vec3 position_of(const struct receiver *receiver, uint32_t position, uint32_t *patch) {
     const struct patches *patches = &receiver->input->radiosity->patches;
-    const uint32_t end = patches->first[receiver->vertex + 1];
+    const size_t end = patches->first[receiver->vertex + 1];
     double until = 3 * receiver->area * stratified_number(receiver, position, 0);
     struct sample2 xi = stratified(receiver, position, 1);
     struct vec3 c[3];
-    uint32_t i = patches->first[receiver->vertex];
+    size_t i = patches->first[receiver->vertex];
     for (;; i++) {
         patch_corners(patches, patches->of_vertex[i], c);
         double area = patch_area(c);
@@ -402,25 +402,13 @@ static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
     return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
 }
 
-/* All of the scene is behind the patches of the vertex, as outside of a room, and no light has a place there: no ray
- * can meet anything. */
-static bool sees_nothing(const struct receiver *receiver) {
-    const struct receiver_input *input = receiver->input;
-    const struct patches *patches = &input->radiosity->patches;
-    const struct box *bounds = &input->bounds;
-    if (input->lights->area_light_count > 0 || input->lights->sampler.infinite_count > 0 || !vec3_finite(bounds->min) ||
-        !vec3_finite(bounds->max) || patches->curved[patch_vertex_at(patches, receiver->vertex)->primitive])
-        return false;
+/* All of the scene is behind the surface, as outside of a room: no ray can meet anything. */
+static bool sees_nothing(const struct box *bounds, const struct hit *from) {
     double far = math_max(vec3_max_abs(bounds->min), vec3_max_abs(bounds->max));
-    for (uint32_t i = patches->first[receiver->vertex]; i < patches->first[receiver->vertex + 1]; i++) {
-        struct vec3 c[3];
-        patch_corners(patches, patches->of_vertex[i], c);
-        const struct vec3 normal = vec3_scale(vec3_normalize(patch_normal(c)), receiver->back ? -1 : 1);
-        for (unsigned k = 0; k < 8; k++)
-            if (vec3_dot(normal, vec3_sub(box_corner(bounds, k), c[0])) > 0x1p-44 * far)
-                return false;
-    }
-    return true;
+    bool nothing = isfinite(far);
+    for (unsigned k = 0; nothing && k < 8; k++)
+        nothing = vec3_dot(from->view, vec3_sub(box_corner(bounds, k), from->point)) <= 0x1p-44 * far;
+    return nothing;
 }
 
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
@@ -432,13 +420,11 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
     struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < input->rays; i++)
         targets[i] = SIDE_NONE;
-    if (sees_nothing(&receiver))
-        return;
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit from, hit;
         struct bsdf bsdf;
         bool buried;
-        if (!hit_of(&receiver, i, &from, &buried))
+        if (!hit_of(&receiver, i, &from, &buried) || sees_nothing(&input->bounds, &from))
             continue;
         if (primitive_prototype(world, from.primitive)->holes) {
             material_eval(&world->surfaces, &from, NULL, &context, &bsdf);
@@ -465,8 +451,8 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
 
 /* --- digests --- */
 
-void receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
-                   struct world_scratch *scratch, struct receiver_probe *out) {
+struct digest receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
+                            struct world_scratch *scratch, struct digest digest) {
     const struct world *world = input->lights->world;
     const struct vec3 size = vec3_sub(box->max, box->min);
     struct world_light_sample sample;
@@ -479,22 +465,18 @@ void receive_probe(const struct receiver_input *input, uint32_t primitive, const
     const struct vec3 through = vec3_add(box->min, vec3_make(x[0] * size.x, x[1] * size.y, x[2] * size.z));
     struct ray ray = {.direction = vec3_make(x[3] - 0.5, x[4] - 0.5, x[5] - 0.5), .t_max = INFINITY};
     ray.origin = vec3_add_scaled(through, ray.direction, -x[6] * vec3_max_abs(size));
-    *out = (struct receiver_probe){0};
     if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
-        return;
+        return digest;
     world_describe(world, &ray, primitive, &crossing, &hit);
     material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
-    out->t = crossing.t;
-    out->normal = hit.normal;
-    out->diffuse = bsdf_diffuse(&bsdf);
-    out->emission = bsdf.emission;
-    out->opacity = bsdf.opacity;
+    const struct colour colours[] = {bsdf_diffuse(&bsdf), bsdf.emission};
+    const double numbers[] = {crossing.t, bsdf.opacity, hit.normal.x, hit.normal.y, hit.normal.z};
+    digest = digest_bytes(numbers, sizeof numbers, digest_bytes(colours, sizeof colours, digest));
     const struct light_receiver at = light_receiver_of(&hit);
     struct light_part part = light_sampler_sample(&input->lights->sampler, at.point, at.normal, x[7], &pmf);
     if (part.light == LIGHT_NONE ||
         !world_lights_sample(input->lights, &at, part, (struct sample2){x[8], x[9]}, &sample))
-        return;
-    out->radiance = sample.radiance;
-    out->direction = sample.direction;
-    out->pdf = pmf * sample.pdf;
+        return digest;
+    digest = digest_bytes(&sample.radiance, sizeof sample.radiance, digest);
+    return digest_bytes(&sample.direction, sizeof sample.direction, digest);
 }

@@ -14,7 +14,7 @@ struct receiver_input {
     const struct world_lights *lights;
     const uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
     const uint8_t *emissive; /* by material: receive_is_emissive */
-    struct box bounds;       /* of all primitives */
+    struct box bounds;       /* of all that rays can meet */
     uint64_t seed;
     uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
     /* For receive_rays: the light of samples of lights that patches reflect, by area, and the rising shares of the
@@ -33,15 +33,9 @@ double receive_brightness(const struct radiosity *radiosity, uint32_t patch, boo
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                   struct side_light *out, uint32_t *targets);
 
-/* What a ray to a primitive meets, for digests; only numbers that are not padded. */
-struct receiver_probe {
-    struct colour diffuse, emission, radiance;
-    struct vec3 normal, direction;
-    double t, opacity, pdf;
-};
-/* A random ray through a point of the box. Zero: it meets nothing. */
-void receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
-                   struct world_scratch *scratch, struct receiver_probe *out);
+/* Adds to a digest what a random ray through a point of the box sees of a primitive. */
+struct digest receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
+                            struct world_scratch *scratch, struct digest digest);
 
 /* Fills these flags. */
 void receive_find_buries(const struct world *world, uint8_t *buries);
