@@ -51,7 +51,6 @@ struct preparation {
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
-    double *until;
 };
 
 static void find_direct_of(void *context, uint32_t side, int worker) {
@@ -165,29 +164,8 @@ static bool find_receivers(struct preparation *p, struct error *error) {
     return true;
 }
 
-/* What bright patches reflect is sampled like light of lights: the shares of both sides of each. */
-static bool find_bright_patches(struct preparation *p) {
-    const struct patches *patches = &p->out->patches;
-    double sum = 0;
-    p->until = mem_alloc(2 * patches->all.count * sizeof *p->until);
-    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
-        struct vec3 c[3];
-        patch_corners(patches, i / 2, c);
-        double area = vec3_length(patch_normal(c)) / 2;
-        sum += area * receive_brightness(p->out, i / 2, i % 2);
-        p->until[i] = sum;
-    }
-    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++)
-        p->until[i] /= sum;
-    p->receivers.until = p->until;
-    p->receivers.power = sum;
-    return p->until != NULL;
-}
-
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    for (uint32_t i = 0; i < side_count(out); i++)
-        out->sides[i].unshot = out->sides[i].light;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
     for (uint32_t i = 0; p->sides && i < side_count(out); i++)
         if (out->sides[i].area > 0)
@@ -197,7 +175,7 @@ static bool find_rays(struct preparation *p, struct error *error) {
             error, ERROR_SCENE,
             "--integrator radiosity needs a diffuse surface with an end and an area, and the scene has none");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    if (!p->sides || !p->targets || !find_bright_patches(p))
+    if (!p->sides || !p->targets)
         return error_no_memory(error, "radiosity");
     if (!patches_index_space(&out->patches, p->input->pool, error))
         return false;
@@ -306,11 +284,8 @@ static struct digest digest_of(const struct preparation *p) {
 
 static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    bool ok = patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
-              find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
-    for (uint32_t i = 0; ok && i < p->count; i++)
-        out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
-    return ok;
+    return patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
+           find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
 }
 
 static void end_preparation(struct preparation *p) {
@@ -323,7 +298,6 @@ static void end_preparation(struct preparation *p) {
     mem_free(p->emissive);
     mem_free(p->sides);
     mem_free(p->targets);
-    mem_free(p->until);
 }
 
 bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
@@ -404,28 +378,25 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
     return true;
 }
 
-/* One step: each side takes the mean over the patches of its vertex, weighted as products of hat functions, which keeps
- * the power. from, to: 3 numbers for each side. */
-static void smooth(const struct radiosity *radiosity, uint32_t back, const struct colour *from, struct colour *to) {
+/* The mean over the patches of the vertex of a side, weighted as products of hat functions, which keeps the power. */
+static struct colour smooth(const struct radiosity *radiosity, uint32_t own, const struct colour *from) {
     const struct patches *patches = &radiosity->patches;
-    for (uint32_t v = 0; v < patches->vertices.count; v++) {
-        const uint32_t own = 2 * v + back;
-        struct colour sum = {0, 0, 0};
-        double weights = 0;
-        for (size_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
-            const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
-            struct vec3 c[3];
-            patch_corners(patches, patches->of_vertex[i], c);
-            double area = vec3_length(patch_normal(c));
-            for (int k = 0; k < 3; k++) {
-                const uint32_t side = 2 * vertex[k] + back;
-                double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
-                sum = colour_add_scaled(sum, from[side], weight);
-                weights += weight;
-            }
+    struct colour sum = {0, 0, 0};
+    double weights = 0;
+    if (!(radiosity->sides[own].area > 0))
+        return from[own];
+    for (size_t i = patches->first[own / 2]; i < patches->first[own / 2 + 1]; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, patches->of_vertex[i], c);
+        double area = vec3_length(patch_normal(c));
+        for (int k = 0; k < 3; k++) {
+            const uint32_t side = 2 * patch_at(patches, patches->of_vertex[i])->vertex[k] + own % 2;
+            double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
+            sum = colour_add_scaled(sum, from[side], weight);
+            weights += weight;
         }
-        to[own] = weights > 0 ? colour_scale(sum, 1 / weights) : from[own];
     }
+    return colour_scale(sum, 1 / weights);
 }
 
 bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error) {
@@ -434,15 +405,18 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
     bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
     for (uint32_t i = 0; ok && i < count; i++)
-        direct[i] = colour_sub(radiosity->sides[i].light, radiosity->sides[i].unshot);
+        direct[i] = radiosity->sides[i].light;
     if (ok && !radiosity_shoot(radiosity, error_share, pool))
         ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
     for (uint32_t i = 0; ok && i < count; i++)
         indirect[i] = colour_sub(radiosity->sides[i].light, direct[i]);
-    for (uint32_t step = 0; ok && step < 2 * SMOOTH_STEPS; step++)
-        smooth(radiosity, step % 2, step / 2 % 2 ? smoothed : indirect, step / 2 % 2 ? indirect : smoothed);
+    for (int step = 0; ok && step < SMOOTH_STEPS; step++) {
+        for (uint32_t i = 0; i < count; i++)
+            smoothed[i] = smooth(radiosity, i, indirect);
+        memcpy(indirect, smoothed, count * sizeof *indirect);
+    }
     for (uint32_t i = 0; ok && i < count; i++)
-        radiosity->sides[i].light = colour_add(direct[i], (SMOOTH_STEPS % 2 ? smoothed : indirect)[i]);
+        radiosity->sides[i].light = colour_add(direct[i], indirect[i]);
     drop_factors(radiosity);
     mem_free(direct);
     mem_free(indirect);

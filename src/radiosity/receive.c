@@ -292,92 +292,13 @@ static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
     return false;
 }
 
-/* --- light that bright patches reflect --- */
-
-/* The light of samples of lights that a side of a vertex reflects. */
-static struct colour reflected_of(const struct side_light *side) {
-    return side->area > 0 ? colour_mul(side->reflectance, side->unshot) : colour_all(0);
-}
-
-double receive_brightness(const struct radiosity *radiosity, uint32_t patch, bool back) {
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum +=
-            colour_max_abs(reflected_of(&radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back]));
-    return sum / 3;
-}
-
-/* The same at a point of a patch. */
-static struct colour reflected_at(const struct radiosity *radiosity, uint32_t patch, const double shares[3],
-                                  bool back) {
-    struct colour light = {0, 0, 0};
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const struct side_light *side = &radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back];
-        light = colour_add_scaled(light, reflected_of(side), shares[k]);
-        sum += side->area > 0 ? shares[k] : 0;
-    }
-    return sum > 0 ? colour_scale(light, 1 / sum) : light;
-}
-
-/* Of positions on patches, by solid angle. */
-static double density_of(const struct receiver_input *input, uint32_t patch, bool back, double distance,
-                         double cosine) {
-    return receive_brightness(input->radiosity, patch, back) / input->power * distance * distance / cosine;
-}
-
-/* The intensity that arrives from a position on a patch, which is chosen by brightness and area. */
-static struct colour light_of_patch(const struct receiver *receiver, const struct hit *hit, uint32_t position) {
-    const struct receiver_input *input = receiver->input;
-    const struct patches *patches = &input->radiosity->patches;
-    uint32_t chosen =
-        (uint32_t)sample_entry(input->until, 2 * patches->all.count, stratified_number(receiver, position, 5));
-    const uint32_t patch = chosen / 2;
-    const bool back = chosen & 1;
-    const struct sample2 xi = stratified(receiver, position, 6);
-    const double root = sqrt(xi.x), shares[3] = {1 - root, root * (1 - xi.y), root * xi.y};
-    struct vec3 c[3], point = {0, 0, 0};
-    struct hit there;
-    patch_corners(patches, patch, c);
-    for (int k = 0; k < 3; k++)
-        point = vec3_add_scaled(point, c[k], shares[k]);
-    if (!patches_hit(patches, patch, point, receiver->scratch, &there))
-        return colour_all(0);
-    struct vec3 normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
-    const struct light_receiver from = light_receiver_of(hit);
-    struct vec3 to = vec3_sub(there.point, hit->point), direction = vec3_normalize(to);
-    double distance = vec3_length(to), cosine = vec3_dot(direction, hit->view),
-           cosine_there = -vec3_dot(direction, normal);
-    if (!(distance > 0) || !(cosine > 0) || !(cosine_there > 0))
-        return colour_all(0);
-    struct ray ray = {.origin = from.from,
-                      .direction = vec3_sub(vec3_add_scaled(there.point, normal, there.offset), from.from),
-                      .t_max = 1};
-    struct hit_skip skip = hit_skip_from(hit, hit->front ? 1 : -1, ray.direction);
-    ray.skip_primitive = skip.primitive;
-    ray.skip_part = skip.part;
-    double seen = world_lights_visible(input->lights, &ray, receiver->scratch);
-    double pdf = density_of(input, patch, back, distance, cosine_there);
-    double weight = power_weight(pdf, intensity_of(cosine) * rays_per_sample(input));
-    return colour_scale(reflected_at(input->radiosity, patch, shares, back),
-                        seen * intensity_of(cosine) * weight / pdf);
-}
-
-/* The side of a vertex of a hit, by the shares of those that reflect light; the ray meets what its patch reflects. */
-static uint32_t find_target(struct receiver_ray *r, const struct hit *hit, double choice) {
-    const struct radiosity *radiosity = r->receiver->input->radiosity;
-    uint32_t patch;
+/* The side of a vertex of a hit, by the shares of those that reflect light. */
+static uint32_t find_target(const struct radiosity *radiosity, const struct hit *hit, double choice) {
+    uint32_t patch, side = SIDE_NONE;
     double shares[3], sum = 0;
-    uint32_t side = SIDE_NONE;
     if (!patches_find(&radiosity->patches, hit, &patch, shares))
         return SIDE_NONE;
     const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
-    double cosine = fabs(vec3_dot(r->direction, hit->normal_geometric));
-    struct colour reflected = reflected_at(radiosity, patch, shares, !hit->front);
-    if (!colour_is_black(reflected))
-        meet(r, reflected,
-             density_of(r->receiver->input, patch, !hit->front, vec3_length(vec3_sub(hit->point, r->from.point)),
-                        cosine));
     for (int k = 0; k < 3; k++)
         sum += radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
     choice *= sum;
@@ -431,8 +352,6 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
             if (bsdf.opacity < 0.5)
                 continue;
         }
-        if (input->power > 0)
-            sum = colour_add_scaled(sum, light_of_patch(&receiver, &from, i), each);
         for (uint32_t k = 0; k < each; k++) {
             uint32_t cell = sample_permute(i * each + k, input->rays, key);
             uint64_t own = random_combine(key, input->rays + cell);
@@ -442,11 +361,11 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
             const struct ray start = {.origin = r.from.from};
             r.ray = hit_ray(&from, &start, r.direction, NULL);
             if (follow_ray(&r, own, &hit))
-                targets[i * each + k] = find_target(&r, &hit, random_unit(own));
+                targets[i * each + k] = find_target(input->radiosity, &hit, random_unit(own));
             sum = colour_add(sum, r.light);
         }
     }
-    out->light = colour_add_scaled(out->light, sum, out->weight);
+    out->light = out->unshot = colour_add_scaled(out->light, sum, out->weight);
 }
 
 /* --- digests --- */
