@@ -11,12 +11,12 @@
 
 #include <math.h>
 #include <poll.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-static const double picture_seconds = 1 / 35.0, click_pixels = 4, flight_seconds = 2; /* across the grid, half around */
+static const double picture_seconds = 1 / 35.0, click_pixels = 4;
 enum { DIVIDE_LIMIT = 8, WHEEL_STEPS = 16 };
+
 struct view_window {
     struct view *view;
     const struct window_driver *driver;
@@ -26,8 +26,7 @@ struct view_window {
     bool outdated, coarse, closed;
     bool fine; /* what is being drawn ends when something happens */
     bool drags, has_moved;
-    double pressed_x, pressed_y, stepped;
-    bool held[FLY_KEYS];
+    double pressed_x, pressed_y;
 };
 
 /* --- what is shown --- */
@@ -46,83 +45,35 @@ static double largest_aperture(const struct view_window *w) {
     return math_max(half_grid(w, true), half_grid(w, false));
 }
 
-/* The numbers of the inspector. */
-static const struct number {
-    bool of_field;
-    size_t at; /* in struct view_state */
-    const char *name, *help;
-    double low, high; /* high 0: the largest aperture */
-} numbers[] = {
-    {true, offsetof(struct view_state, camera.x), "eye right", "From the middle of the cameras to the right.",
-     -HUGE_VAL, HUGE_VAL},
-    {true, offsetof(struct view_state, camera.y), "eye up", "From the middle of the cameras upwards.", -HUGE_VAL,
-     HUGE_VAL},
-    {true, offsetof(struct view_state, camera.z), "eye along", "From the plane of the cameras along the view.",
-     -HUGE_VAL, HUGE_VAL},
-    {true, offsetof(struct view_state, camera.focus), "focus", "The distance from the eye to the plane that is sharp.",
-     0, HUGE_VAL},
-    {true, offsetof(struct view_state, camera.aperture), "aperture", "The radius of the lens.", 0, 0},
-    {false, offsetof(struct view_state, camera.x), "longitude", "Degrees to the right of the middle.", -180, 180},
-    {false, offsetof(struct view_state, camera.y), "latitude", "Degrees above the middle.", -90, 90},
-    {false, offsetof(struct view_state, fov), "fov", "The vertical angle of view, degrees.", 5, 150}};
-enum { NUMBERS = sizeof numbers / sizeof *numbers };
-
-static double *number_at(struct view_state *state, uint32_t number) {
-    return (double *)((char *)state + numbers[number].at);
-}
-
-static double highest(const struct view_window *w, const struct number *number) {
-    return number->high <= 0 ? largest_aperture(w) : number->high;
+static double clamped(double x, double low, double high) {
+    return math_min(math_max(x, low), high);
 }
 
 /* The eye stays in the field, and the plane in focus in front of it. */
 static void limit(struct view_window *w) {
     struct light_field_camera *camera = &w->now.camera;
-    const double screen = w->view->field.head.screen;
-    if (!w->view->is_field)
-        camera->x = remainder(camera->x, 360);
-    for (uint32_t i = 0; i < NUMBERS; i++) {
-        double *number = number_at(&w->now, i);
-        if (numbers[i].of_field == w->view->is_field)
-            *number = math_min(math_max(*number, numbers[i].low), highest(w, &numbers[i]));
-    }
     if (w->view->is_field) {
         (void)light_field_clamp(&w->view->field.head, camera);
-        camera->z = math_min(camera->z, 0.9 * screen);
-        camera->focus = math_max(camera->focus, 1e-3 * screen + math_max(0, -camera->z));
+        camera->aperture = clamped(camera->aperture, 0, largest_aperture(w));
+    } else {
+        camera->x = remainder(camera->x, 360);
+        camera->y = clamped(camera->y, -90, 90);
+        w->now.fov = clamped(w->now.fov, 5, 150);
     }
     w->outdated = true;
 }
 
-static void make_form(struct view_window *w, struct window_form *form) {
-    *form = (struct window_form){.subject = 1};
-    (void)snprintf(form->title, sizeof form->title, w->view->is_field ? "Light Field" : "Panorama");
-    for (uint32_t i = 0; i < NUMBERS; i++) {
-        if (numbers[i].of_field != w->view->is_field)
-            continue;
-        struct window_field *field = &form->fields[form->count++];
-        *field = (struct window_field){.kind = FIELD_NUMBER,
-                                       .number = i + 1, /* 0 is none */
-                                       .resets = true,
-                                       .group = "View",
-                                       .numbers = {*number_at(&w->now, i)},
-                                       .initial = *number_at(&w->initial, i),
-                                       .low = numbers[i].low,
-                                       .high = highest(w, &numbers[i])};
-        (void)snprintf(field->name, sizeof field->name, "%s", numbers[i].name);
-        (void)snprintf(field->help, sizeof field->help, "%s", numbers[i].help);
-    }
-}
-
+/* The size, and the options of gray view. */
 static void describe(struct view_window *w) {
     struct window_state *state = w->driver->state;
-    const struct light_field_head *head = &w->view->field.head;
-    make_form(w, &state->form);
-    char field[64] = "";
+    const struct light_field_camera *c = &w->now.camera;
+    int length = snprintf(state->figures, sizeof state->figures, "%ux%u, ", c->width, c->height);
     if (w->view->is_field)
-        (void)snprintf(field, sizeof field, " of %ux%u cameras%s", head->columns, head->rows,
-                       head->depth ? ", with depths" : "");
-    (void)snprintf(state->figures, sizeof state->figures, "%ux%u%s", w->now.camera.width, w->now.camera.height, field);
+        (void)snprintf(state->figures + length, sizeof state->figures - (size_t)length,
+                       "--eye %.4g,%.4g,%.4g --focus %.4g --aperture %.4g", c->x, c->y, c->z, c->focus, c->aperture);
+    else
+        (void)snprintf(state->figures + length, sizeof state->figures - (size_t)length,
+                       "--direction %.4g,%.4g --fov %.4g", c->x, c->y, w->now.fov);
     (void)snprintf(state->state, sizeof state->state, w->coarse ? "moving" : "ready");
     state->share = 1;
 }
@@ -265,12 +216,6 @@ static void handle(struct view_window *w, const struct window_event *event) {
     case WINDOW_CLOSE:
         w->closed = true;
         return;
-    case WINDOW_KEY:
-        w->held[event->key] = event->down;
-        return;
-    case WINDOW_LEAVE:
-        memset(w->held, 0, sizeof w->held);
-        return;
     case WINDOW_MOVE:
         w->has_moved = w->has_moved || fabs(event->x - w->pressed_x) + fabs(event->y - w->pressed_y) >= click_pixels;
         if (w->drags && w->has_moved)
@@ -297,11 +242,9 @@ static void handle(struct view_window *w, const struct window_event *event) {
     case WINDOW_ACTION:
         do_action(w, event);
         return;
+    case WINDOW_KEY:
+    case WINDOW_LEAVE:
     case WINDOW_FIELD:
-        if (event->field >= 1 && event->field <= NUMBERS)
-            *number_at(&w->now, event->field - 1) = event->numbers[0];
-        limit(w);
-        return;
     case WINDOW_TYPE:
     case WINDOW_NODES:
     case WINDOW_SELECT:
@@ -310,20 +253,6 @@ static void handle(struct view_window *w, const struct window_event *event) {
     case WINDOW_HIDE:
         return;
     }
-}
-
-/* The arrow keys. */
-static void step_keys(struct view_window *w, double now) {
-    double seconds = math_min(now - w->stepped, 0.1), dx = w->held[FLY_RIGHT] - w->held[FLY_LEFT],
-           dy = w->held[FLY_FORWARD] - w->held[FLY_BACK];
-    double across = w->view->is_field ? 2 * half_grid(w, true) : 180,
-           up = w->view->is_field ? 2 * half_grid(w, false) : 90;
-    w->stepped = now;
-    if (dx == 0 && dy == 0)
-        return;
-    w->now.camera.x += dx * across * seconds / flight_seconds;
-    w->now.camera.y += dy * up * seconds / flight_seconds;
-    limit(w);
 }
 
 /* Waits for events for so many seconds, or without end if that is negative, and handles them. */
@@ -338,7 +267,6 @@ static void wait_for_events(struct view_window *w, double seconds) {
 static void loop(struct view_window *w) {
     const double rest = 0.15; /* seconds until all pixels are drawn */
     while (!w->closed) {
-        step_keys(w, clock_now());
         wait_for_events(w, w->outdated ? 0 : w->coarse ? rest : -1);
         if (!w->closed && (w->outdated || w->coarse) && w->driver->state->shown_width > 0) {
             bool moves = w->outdated;

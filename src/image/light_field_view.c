@@ -408,30 +408,27 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
 
 /* --- distances --- */
 
-/* How much the cameras of a part of the grid differ where they show a patch around a pixel at a disparity: the variance
- * of what they show, with bright light compressed. */
+/* How much the cameras of a part of the grid differ from the first one where they show a patch around a pixel at a
+ * disparity, with bright light compressed. */
 static double difference_at(const struct drawing *d, const struct light_field_part *part, const double pixel[AXES],
                             double disparity) {
-    const uint32_t cameras = part->columns * part->rows;
     double sum = 0;
     for (int i = 0; i < PATCH * PATCH; i++) {
         const double off[AXES] = {(i % PATCH - PATCH / 2) / d->ratio, (int)(i / PATCH - PATCH / 2) / d->ratio};
         struct field_ray ray = ray_of(d, lens_middle, pixel[X] + off[X], pixel[Y] + off[Y]);
-        double mean[3] = {0, 0, 0}, square = 0;
-        for (uint32_t k = 0; k < cameras; k++) {
+        double first[3] = {0, 0, 0};
+        for (uint32_t k = 0; k < part->columns * part->rows; k++) {
             const uint32_t column = part->column + k % part->columns, row = part->row + k / part->columns;
             struct pixel_sum seen = {.weight = 0};
-            struct tap taps[AXES];
-            taps[X] = tap_of(pixel_of(d, &ray, X, camera_at(d, X, column), disparity), d->size[X]);
-            taps[Y] = tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y]);
+            const struct tap taps[AXES] = {tap_of(pixel_of(d, &ray, X, camera_at(d, X, column), disparity), d->size[X]),
+                                           tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y])};
             add_pixels(d, d->field->views[row * d->field->head.columns + column], taps, 1, &seen);
             for (int c = 0; c < 3; c++) {
                 double light = math_max(0, seen.numbers[c] / seen.weight), value = light / (1 + light);
-                mean[c] += value / cameras;
-                square += value * value / cameras;
+                first[c] = k == 0 ? value : first[c];
+                sum += (value - first[c]) * (value - first[c]);
             }
         }
-        sum += square - (mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
     }
     return sum;
 }

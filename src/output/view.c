@@ -89,14 +89,22 @@ static bool open_panorama(struct view *view, struct error *error) {
     return true;
 }
 
-static bool open_file(struct view *view, struct error *error) {
-    const char *name = view->options->scripts[0];
+static bool read_head(const char *name, uint8_t head[FILE_HEAD_SIZE], struct error *error) {
     struct file_source source;
-    uint8_t head[8];
+    memset(head, 0, FILE_HEAD_SIZE);
     if (!file_source_open(&source, name, error))
         return false;
-    view->is_field = file_source_read(&source, 0, head, sizeof head) && light_field_is(head, sizeof head);
+    (void)file_source_read(&source, 0, head, FILE_HEAD_SIZE);
     file_source_close(&source);
+    return true;
+}
+
+static bool open_file(struct view *view, struct error *error) {
+    const char *name = view->options->scripts[0];
+    uint8_t head[FILE_HEAD_SIZE];
+    if (!read_head(name, head, error))
+        return false;
+    view->is_field = light_field_is(head, sizeof head);
     const char *dot = strrchr(name, '.');
     if (!view->is_field && !(dot && picture_format(name) == PICTURE_LIGHT_FIELD))
         return open_panorama(view, error);
@@ -127,14 +135,6 @@ struct view_state view_state_of(const struct view *view, uint32_t frame) {
     const double focus = options->focus > 0 ? options->focus : view->field.head.screen - at.z;
     return (struct view_state){{at.x, at.y, at.z, focus, options->aperture, view->width, view->height, false},
                                options->fov > 0 ? options->fov : PANORAMA_FOV};
-}
-
-/* The plane in focus is in front of the eye and of the cameras. */
-static bool check_focus(const struct view *view, uint32_t frame, struct error *error) {
-    struct light_field_camera camera = view_state_of(view, frame).camera;
-    return (camera.focus > 0 && camera.focus + camera.z > 0) ||
-           error_set(error, ERROR_USAGE, "--eye: %g is behind the plane in focus, %g from the cameras", camera.z,
-                     camera.focus + camera.z);
 }
 
 /* A panorama as the sky around the camera of a picture. */
@@ -293,16 +293,20 @@ static bool write_all(struct view *view, struct error *error) {
     return ok;
 }
 
-/* One warning for all frames. */
-static void warn_of_eyes(const struct view *view) {
+/* The plane in focus is in front of the eye and of the cameras. One warning for all frames. */
+static bool check_eyes(const struct view *view, struct error *error) {
     bool outside = false;
-    for (uint32_t frame = 0; frame < view->frames && view->is_field && !outside; frame++) {
+    for (uint32_t frame = 0; frame < view->frames; frame++) {
         struct light_field_camera camera = view_state_of(view, frame).camera;
-        outside = light_field_clamp(&view->field.head, &camera);
+        if (!(camera.focus > 0 && camera.focus + camera.z > 0))
+            return error_set(error, ERROR_USAGE, "--eye: %g is behind the plane in focus, %g from the cameras",
+                             camera.z, camera.focus + camera.z);
+        outside = light_field_clamp(&view->field.head, &camera) || outside;
     }
     if (outside && !view->options->quiet)
         text_print_message(stderr, TEXT_WARNING,
                            "gray: warning: --eye: rays from outside of the field are taken from its border");
+    return true;
 }
 
 static bool prepare(struct view *view, struct error *error) {
@@ -316,13 +320,12 @@ static bool prepare(struct view *view, struct error *error) {
     view->point_count = !path;
     if (path && !read_points(view, options->eyes ? "--eye" : "--direction", path, options->eyes ? 3 : 2, error))
         return false;
-    for (uint32_t frame = 0; frame < view->frames && view->is_field; frame++)
-        if (!check_focus(view, frame, error))
-            return false;
     if (options->width) {
         view->width = (uint32_t)options->width;
         view->height = (uint32_t)options->height;
     }
+    if (view->is_field && !check_eyes(view, error))
+        return false;
     if (file_identity_of(options->scripts[0], &identity))
         picture_files_keep(&view->files, identity, false);
     view->pool = pool_create(options->threads, warning);
@@ -330,14 +333,9 @@ static bool prepare(struct view *view, struct error *error) {
 }
 
 bool view_is(const char *name) {
-    struct file_source source;
     struct error ignored;
-    uint8_t head[16];
-    if (!file_source_open(&source, name, &ignored))
-        return false;
-    bool is = file_source_read(&source, 0, head, sizeof head) && picture_file_is(head, sizeof head);
-    file_source_close(&source);
-    return is;
+    uint8_t head[FILE_HEAD_SIZE];
+    return read_head(name, head, &ignored) && picture_file_is(head, sizeof head);
 }
 
 struct view *view_open(const struct options *options, struct error *error) {
@@ -375,7 +373,5 @@ int view_close(struct view *view, const struct error *error) {
 int view_run(const struct options *options) {
     struct error error;
     struct view *view = view_open(options, &error);
-    if (view)
-        warn_of_eyes(view);
     return view_close(view, view && write_all(view, &error) ? NULL : &error);
 }

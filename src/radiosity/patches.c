@@ -27,12 +27,15 @@ static int longest_edge(const struct vec3 c[3], double *length) {
     return longest;
 }
 
-/* The surface of a primitive near a point of a triangle, seen from its front. */
-static bool find_surface(const struct world *world, uint32_t primitive, const struct vec3 c[3], struct vec3 point,
-                         struct world_scratch *scratch, struct hit *hit) {
-    const struct vec3 normal = vec3_normalize(patch_normal(c));
+bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
+                 struct hit *hit) {
+    const struct world *world = patches->world;
+    const uint32_t primitive = patch_primitive(patches, patch);
+    struct vec3 c[3];
     double size;
+    patch_corners(patches, patch, c);
     (void)longest_edge(c, &size);
+    const struct vec3 normal = vec3_normalize(patch_normal(c));
     /* From nearby first: another surface of the primitive may be above. */
     for (double height = 0x1p-10 * size; height <= size; height *= 32) {
         const struct ray ray = {
@@ -45,13 +48,6 @@ static bool find_surface(const struct world *world, uint32_t primitive, const st
             return true;
     }
     return false;
-}
-
-bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
-                 struct hit *hit) {
-    struct vec3 c[3];
-    patch_corners(patches, patch, c);
-    return find_surface(patches->world, patch_primitive(patches, patch), c, point, scratch, hit);
 }
 
 /* --- kinds --- */
@@ -89,7 +85,6 @@ static bool is_curved(const struct world *world, uint32_t primitive) {
 
 struct patch_builder {
     struct patches *out;
-    struct world_scratch scratch;
     struct list corners; /* struct vec3, three for each triangle of one primitive */
 };
 
@@ -172,15 +167,6 @@ static void map_corners(struct patch_builder *b, uint32_t primitive) {
     }
 }
 
-/* The normals of its triangles are those of shading. */
-static bool is_plain(const struct world *world, uint32_t primitive) {
-    const struct mesh *mesh = geometry_mesh(primitive_geometry(world, primitive));
-    bool plain = !is_curved(world, primitive);
-    for (uint32_t i = 0; mesh && plain && i < mesh_triangle_count(mesh); i++)
-        plain = mesh_is_plain(mesh, i);
-    return plain;
-}
-
 /* A corner of a triangle. last: of the first corner at a position, the last one there that made a vertex; before: the
  * one there before that. */
 struct weld_corner {
@@ -188,35 +174,27 @@ struct weld_corner {
     uint32_t vertex, last, before;
 };
 
-/* The normals that shading has at the corners of triangles. */
-static void find_normals(struct patch_builder *b, uint32_t primitive, struct weld_corner *out) {
-    const struct vec3 *corners = b->corners.items;
-    bool plain = is_plain(b->out->world, primitive);
-    for (size_t i = 0; i < b->corners.count; i++) {
-        const struct vec3 *c = &corners[i / 3 * 3];
-        struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-        struct hit hit;
-        out[i].normal = vec3_normalize(patch_normal(c));
-        if (!plain && find_surface(b->out->world, primitive, c,
-                                   vec3_add_scaled(vec3_scale(corners[i], 0.95), middle, 0.05), &b->scratch, &hit))
-            out[i].normal = hit.normal;
-    }
+static bool has_area(const struct vec3 c[3]) {
+    double length;
+    (void)longest_edge(c, &length);
+    return vec3_length(patch_normal(c)) > 0x1p-40 * length * length;
 }
 
-/* Corners at one position whose normals agree become a vertex. */
-static bool weld(struct patch_builder *b, uint32_t primitive) {
+/* Corners at one position become a vertex where triangles have no edge, on a ball all. */
+static bool weld(struct patch_builder *b, uint32_t primitive, bool is_ball) {
     struct patches *out = b->out;
     const struct vec3 *corners = b->corners.items;
     uint32_t count = (uint32_t)b->corners.count;
     struct weld_corner *c = mem_alloc(count * sizeof *c);
     uint32_t *same = mem_alloc(count * sizeof *same);
     bool ok = c && same && mesh_weld(b->corners.items, count, same);
-    if (ok)
-        find_normals(b, primitive, c);
     for (uint32_t i = 0; ok && i < count; i++) {
-        const uint32_t last = same[i] == i ? PATCH_NONE : c[same[i]].last;
-        uint32_t at = last;
-        while (at != PATCH_NONE && vec3_dot(c[at].normal, c[i].normal) < smooth_cosine)
+        c[i] =
+            (struct weld_corner){vec3_normalize(patch_normal(&corners[i / 3 * 3])), PATCH_NONE, PATCH_NONE, PATCH_NONE};
+        uint32_t last = c[same[i]].last, at = last;
+        if (!has_area(&corners[i / 3 * 3]))
+            continue;
+        while (at != PATCH_NONE && !is_ball && vec3_dot(c[at].normal, c[i].normal) < smooth_cosine)
             at = c[at].before;
         if (at == PATCH_NONE) {
             const struct patch_vertex own = {corners[i], primitive};
@@ -228,27 +206,14 @@ static bool weld(struct patch_builder *b, uint32_t primitive) {
         c[i].vertex = c[at].vertex;
     }
     for (uint32_t i = 0; ok && i < count; i += 3) {
+        if (!has_area(&corners[i]))
+            continue;
         const struct patch patch = {{c[i].vertex, c[i + 1].vertex, c[i + 2].vertex}};
         ok = list_add(&out->all, &patch, 1, sizeof patch);
     }
     mem_free(c);
     mem_free(same);
     return ok;
-}
-
-/* Forgets triangles without area. */
-static void drop_degenerate(struct list *corners) {
-    struct vec3 *c = corners->items;
-    size_t kept = 0;
-    for (size_t i = 0; i < corners->count; i += 3) {
-        double length;
-        (void)longest_edge(&c[i], &length);
-        if (vec3_length(patch_normal(&c[i])) > 0x1p-40 * length * length) {
-            memmove(&c[kept], &c[i], 3 * sizeof *c);
-            kept += 3;
-        }
-    }
-    corners->count = kept;
 }
 
 static bool add_primitive(struct patch_builder *b, uint32_t primitive, struct pool *pool, struct error *error) {
@@ -283,8 +248,7 @@ static bool add_primitive(struct patch_builder *b, uint32_t primitive, struct po
     }
     if (kind != PATCHES_SOLID)
         map_corners(b, primitive);
-    drop_degenerate(&b->corners);
-    return (ok && weld(b, primitive)) || error_no_memory(error, "patches");
+    return (ok && weld(b, primitive, kind == PATCHES_BALL)) || error_no_memory(error, "patches");
 }
 
 /* --- division --- */
@@ -398,12 +362,6 @@ bool patches_divide(struct patches *patches, struct key_map *edges, uint32_t lim
     return ok || error_no_memory(error, "patches");
 }
 
-/* At most so long are the edges of patches of a primitive in the beginning: small objects have some patches, too. */
-static double edge_limit(const struct patches *patches, uint32_t primitive) {
-    const struct box *box = &patches->world->boxes[primitive];
-    return math_min(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2);
-}
-
 static bool divide_long(struct patches *patches, uint32_t limit, struct error *error) {
     for (bool done = true; done;) {
         struct key_map edges = {0};
@@ -414,7 +372,9 @@ static bool divide_long(struct patches *patches, uint32_t limit, struct error *e
             double length;
             patch_corners(patches, i, c);
             int k = longest_edge(c, &length);
-            if (length > edge_limit(patches, patch_primitive(patches, i)))
+            const struct box *box = &patches->world->boxes[patch_primitive(patches, i)];
+            /* Small objects have some patches, too. */
+            if (length > math_min(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2))
                 ok = patches_mark(&edges, patch->vertex[k], patch->vertex[(k + 1) % 3]);
         }
         done = edges.count > 0;
@@ -430,7 +390,7 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
                    struct error *error) {
     struct patch_builder b = {.out = patches};
     double area = 0;
-    bool ok = world_scratch_init(&b.scratch, world) || error_no_memory(error, "patches");
+    bool ok = true;
     *patches = (struct patches){.world = world};
     for (uint32_t i = 0; ok && i < world->primitive_count; i++) {
         ok = add_primitive(&b, i, pool, error);
@@ -449,7 +409,6 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
     /* A quarter of the limit, as right isosceles triangles with edges from .7 to 1 of the longest. */
     patches->edge = sqrt(6 * area / (0.25 * limit));
     ok = ok && divide_long(patches, limit / 2, error);
-    world_scratch_destroy(&b.scratch);
     list_destroy(&b.corners);
     if (!ok)
         patches_destroy(patches);

@@ -46,7 +46,6 @@ struct preparation {
     const struct radiosity_input *input;
     struct world_lights lights;
     struct receiver_input receivers;
-    uint8_t *buries, *emissive;
     struct arena arena;
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
@@ -152,18 +151,7 @@ static bool refine(struct preparation *p, struct error *error) {
     return ok;
 }
 
-/* From what each ray meets to the receivers of each side. */
-static bool find_receivers(struct preparation *p, struct error *error) {
-    struct radiosity *out = p->out;
-    const size_t all = (size_t)p->count * p->receivers.rays;
-    if (!patches_group(p->targets, all, side_count(out), &out->first, &out->receivers))
-        return error_no_memory(error, "radiosity");
-    for (size_t i = 0; i < out->first[side_count(out)]; i++)
-        out->receivers[i] = p->sides[out->receivers[i] / p->receivers.rays];
-    out->rays += all;
-    return true;
-}
-
+/* What rays of all sides meet, and from that the receivers of each side. */
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
@@ -180,7 +168,15 @@ static bool find_rays(struct preparation *p, struct error *error) {
     if (!patches_index_space(&out->patches, p->input->pool, error))
         return false;
     show_growth(out);
-    return run(p, p->count, find_rays_of, error) && find_receivers(p, error);
+    if (!run(p, p->count, find_rays_of, error))
+        return false;
+    const size_t all = (size_t)p->count * p->receivers.rays;
+    if (!patches_group(p->targets, all, side_count(out), &out->first, &out->receivers))
+        return error_no_memory(error, "radiosity");
+    for (size_t i = 0; i < out->first[side_count(out)]; i++)
+        out->receivers[i] = p->sides[out->receivers[i] / p->receivers.rays];
+    out->rays += all;
+    return true;
 }
 
 /* --- preparation --- */
@@ -202,24 +198,22 @@ static bool begin_preparation(struct preparation *p, struct error *error) {
     const struct world *world = p->input->world;
     struct world_lights_options options = {p->input->background, LIGHT_CHOICE_TREE};
     int workers = pool_workers(p->input->pool);
-    p->buries = mem_alloc_zero((size_t)world->primitive_count + 1, 1);
-    p->emissive = mem_alloc_zero((size_t)world->material_count + 1, 1);
+    p->receivers = (struct receiver_input){.radiosity = p->out,
+                                           .lights = &p->lights,
+                                           .buries = mem_alloc_zero((size_t)world->primitive_count + 1, 1),
+                                           .emissive = mem_alloc_zero((size_t)world->material_count + 1, 1),
+                                           .bounds = box_empty(),
+                                           .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
+                                           .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
     p->scratches = mem_alloc_zero((size_t)workers, sizeof *p->scratches);
-    bool ok = p->buries && p->emissive && p->scratches;
+    bool ok = p->receivers.buries && p->receivers.emissive && p->scratches;
     for (int i = 0; ok && i < workers; i++)
         ok = world_scratch_init(&p->scratches[i], world);
     if (!ok)
         return error_no_memory(error, "radiosity");
-    receive_find_buries(world, p->buries);
+    receive_find_buries(world, p->receivers.buries);
     for (uint32_t i = 0; i < world->material_count; i++)
-        p->emissive[i] = receive_is_emissive(world, i);
-    p->receivers = (struct receiver_input){.radiosity = p->out,
-                                           .lights = &p->lights,
-                                           .buries = p->buries,
-                                           .emissive = p->emissive,
-                                           .bounds = box_empty(),
-                                           .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
-                                           .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
+        p->receivers.emissive[i] = receive_is_emissive(world, i);
     for (uint32_t i = 0; i < world->primitive_count; i++)
         p->receivers.bounds = box_join(p->receivers.bounds, world->boxes[i]);
     if (!check_emitters(world, error) ||
@@ -270,7 +264,7 @@ static struct digest digest_of(const struct preparation *p) {
     }
     /* Primitives: their placement, and what random rays meet. */
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->buries[i]};
+        const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->receivers.buries[i]};
         const struct transform placement = world_placement(world, i, 0);
         const struct box *own = &world->boxes[i], box = box_meet(*own, box_is_empty(&bounds) ? *own : bounds);
         digest = digest_bytes(flags, sizeof flags, digest);
@@ -294,8 +288,8 @@ static void end_preparation(struct preparation *p) {
         world_scratch_destroy(&p->scratches[i]);
     arena_destroy(&p->arena);
     mem_free(p->scratches);
-    mem_free(p->buries);
-    mem_free(p->emissive);
+    mem_free(p->receivers.buries);
+    mem_free(p->receivers.emissive);
     mem_free(p->sides);
     mem_free(p->targets);
 }
@@ -311,19 +305,17 @@ bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input
 }
 
 void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
-    uint32_t count = 0, first = 0;
+    uint32_t i = 0;
     char text[512];
-    for (uint32_t i = 0; i < world->primitive_count; i++) {
-        bool bare = patches_kind(world, i) == PATCHES_BARE;
-        first = bare && count == 0 ? i : first;
-        count += bare;
-    }
-    if (count == 0)
+    while (i < world->primitive_count && patches_kind(world, i) != PATCHES_BARE)
+        i++;
+    if (i == world->primitive_count)
         return;
-    (void)snprintf(text, sizeof text,
-                   "'%.100s'%s open or without end, so radiosity has no patches there: %s the lights alone",
-                   primitive_node(world, first)->name, count > 1 ? " and others are" : " is",
-                   count > 1 ? "they show" : "it shows");
+    (void)snprintf(
+        text, sizeof text,
+        "'%.100s' is open or without end, so radiosity has no patches there: it shows the lights alone, like "
+        "all such objects",
+        primitive_node(world, i)->name);
     warn(context, text);
 }
 
@@ -503,18 +495,19 @@ static bool find_solution(struct preparation *p, struct error *error) {
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
     struct radiosity next = {.watch = input->watch, .store = radiosity->store};
     struct preparation p = {.out = &next, .input = input};
-    bool ok = begin_preparation(&p, error);
-    if (ok)
+    bool ok = begin_preparation(&p, error), same = false;
+    if (ok) {
         next.digest = digest_of(&p);
-    bool same = ok && digest_equal(next.digest, radiosity->digest);
-    ok = ok && (same || find_solution(&p, error));
+        same = digest_equal(next.digest, radiosity->digest);
+        ok = same || find_solution(&p, error);
+    }
     end_preparation(&p);
-    if (!ok || same)
-        radiosity_destroy(&next);
     if (same)
         radiosity->patches.world = input->world;
-    if (!ok || same)
+    if (!ok || same) {
+        radiosity_destroy(&next);
         return ok;
+    }
     radiosity_destroy(radiosity);
     *radiosity = next;
     radiosity->watch = (struct radiosity_watch){0};

@@ -59,12 +59,6 @@ static struct sample2 stratified(const struct receiver *receiver, uint32_t posit
     return sample_cell(key, cell % SIDE, cell / SIDE, SIDE);
 }
 
-static double stratified_number(const struct receiver *receiver, uint32_t position, uint64_t dimension) {
-    uint64_t key = random_combine(receiver->key, dimension);
-    uint32_t cell = sample_permute(position, RECEIVE_POSITIONS, key);
-    return (cell + random_unit(random_combine(key, RECEIVE_POSITIONS + cell))) / RECEIVE_POSITIONS;
-}
-
 static double patch_area(const struct vec3 c[3]) {
     return vec3_length(patch_normal(c)) / 2;
 }
@@ -96,7 +90,7 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
 static struct vec3 position_of(const struct receiver *receiver, uint32_t position, uint32_t *patch) {
     const struct patches *patches = &receiver->input->radiosity->patches;
     const size_t end = patches->first[receiver->vertex + 1];
-    double until = 3 * receiver->area * stratified_number(receiver, position, 0);
+    double until = 3 * receiver->area * stratified(receiver, position, 0).x;
     struct sample2 xi = stratified(receiver, position, 1);
     struct vec3 c[3];
     size_t i = patches->first[receiver->vertex];
@@ -164,7 +158,7 @@ static struct colour light_of_sample(const struct receiver *receiver, const stru
     struct world_light_sample sample;
     double pmf, t;
     struct light_part part =
-        light_sampler_sample(&lights->sampler, at.point, at.normal, stratified_number(receiver, position, 2), &pmf);
+        light_sampler_sample(&lights->sampler, at.point, at.normal, stratified(receiver, position, 2).x, &pmf);
     if (part.light == LIGHT_NONE || !world_lights_sample(lights, &at, part, stratified(receiver, position, 3), &sample))
         return colour_all(0);
     double cosine = vec3_dot(sample.direction, hit->view);

@@ -12,9 +12,9 @@ enum { RECEIVE_POSITIONS = 64 }; /* of a side of a vertex, each with one sample 
 struct receiver_input {
     const struct radiosity *radiosity;
     const struct world_lights *lights;
-    const uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
-    const uint8_t *emissive; /* by material: receive_is_emissive */
-    struct box bounds;       /* of all that rays can meet */
+    uint8_t *buries;   /* by primitive: an opaque solid inside of which no light is seen */
+    uint8_t *emissive; /* by material: receive_is_emissive */
+    struct box bounds; /* of all that rays can meet */
     uint64_t seed;
     uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
 };
@@ -22,8 +22,8 @@ struct receiver_input {
 /* Sets reflectance, area and weight, and as light that of samples of lights. */
 void receive_direct(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                     struct side_light *out);
-/* Adds the direct light that rays meet, and the light of samples of lights that comes by one reflection: by rays and by
- * positions on bright patches. targets: of each ray the side of a vertex that it meets, or SIDE_NONE. */
+/* Adds the direct light that rays meet; all light is unshot then. targets: of each ray the side of a vertex that it
+ * meets, or SIDE_NONE. */
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                   struct side_light *out, uint32_t *targets);
 
