@@ -96,7 +96,7 @@ static bool is_of_patch(const struct headlight *headlight, const struct hit *hit
     const struct patches *patches = &headlight->stored->patches;
     uint32_t patch;
     double shares[3];
-    return hit->primitive == patch_at(patches, headlight->patch)->primitive &&
+    return hit->primitive == patch_primitive(patches, headlight->patch) &&
            patches_find(patches, hit, &patch, shares) && patch == headlight->patch;
 }
 

@@ -566,7 +566,7 @@ static void compare_with_paths(struct stage *s, const struct radiosity *radiosit
                                     fabs(normal.y) > 0.5 ? to_x : to_y, 50};
         CHECK(stage_render(s, 1, 1));
         struct hit hit = {.point = point, .normal_geometric = normal, .front = true};
-        hit.primitive = patch_at(&radiosity->patches, index)->primitive;
+        hit.primitive = patch_primitive(&radiosity->patches, index);
         struct colour light;
         CHECK(radiosity_light(radiosity, &hit, &light));
         double paths = stage_pixel(s, 0, 0).g / side->reflectance.g, own = light.g;
