@@ -23,8 +23,8 @@ bool bevel_prism(struct script_context *context, const struct prism_input *input
     return shape->mesh != NULL;
 }
 
-static bool is_narrow(double edge, double least, const char *what, struct error *error) {
-    return edge < least || error_set(error, ERROR_SCENE, "edge (%g) must be less than %s (%g)", edge, what, least);
+static bool is_narrow(double edge, double limit, const char *what, struct error *error) {
+    return edge < limit || error_set(error, ERROR_SCENE, "edge (%g) must be less than %s (%g)", edge, what, limit);
 }
 
 bool bevel_box(struct script_context *context, const struct box *box, const struct script_value *edge,

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-enum { FLAT_PARTS = 32, POINTS_LIMIT = 20000 };
+enum { CHORDS = 32, POINTS_LIMIT = 20000 };
 
 /* A torus about axes[1]. */
 struct ring {
@@ -323,9 +323,9 @@ struct curve {
     uint32_t input_count;
     struct spline_segment *segments; /* unless its lines are straight */
     uint32_t segment_count;
-    double (*points)[2];    /* a polygon: its points without repeated ones, or points near the curve */
-    uint32_t count, around; /* how many curves are around it */
-    bool left;              /* the solid is left of it */
+    double (*points)[2];     /* a polygon: its points without repeated ones, or points near the curve */
+    uint32_t count, nesting; /* how many curves enclose it */
+    bool left;               /* the solid is left of it */
     struct inset_corner *corners;
     double (*inner)[2], (*wide)[2]; /* of the inset outline, and of the one whose corners are cut */
     uint32_t inner_count, wide_count;
@@ -345,7 +345,7 @@ static double area_of(const struct curve *curve) {
     return area;
 }
 
-static bool is_around(const struct curve *curve, const double point[2]) {
+static bool encloses(const struct curve *curve, const double point[2]) {
     bool inside = false;
     for (uint32_t i = 0; i < curve->count; i++) {
         const double *a = curve->points[i], *b = curve->points[(i + 1) % curve->count];
@@ -370,12 +370,11 @@ static bool find_points(struct curve *curve, struct arena *arena, const struct p
         .kind = in->kind, .dimensions = 2, .points = &curve->input[0][0], .count = curve->input_count, .closed = true};
     if (!spline_build(arena, &spline, &curve->segments, &curve->segment_count, error))
         return false;
-    curve->count = FLAT_PARTS * curve->segment_count;
+    curve->count = CHORDS * curve->segment_count;
     curve->points = arena_alloc_array(arena, curve->count, sizeof *curve->points);
     for (uint32_t i = 0; curve->points && i < curve->count; i++)
         for (int k = 0; k < 2; k++)
-            curve->points[i][k] =
-                cubic_value(curve->segments[i / FLAT_PARTS].b[k], (double)(i % FLAT_PARTS) / FLAT_PARTS);
+            curve->points[i][k] = cubic_value(curve->segments[i / CHORDS].b[k], (double)(i % CHORDS) / CHORDS);
     return curve->points || error_no_memory(error, "a prism");
 }
 
@@ -402,8 +401,8 @@ static bool find_curves(struct curves *curves, struct arena *arena, const struct
     for (uint32_t k = 0; k < curves->count; k++) {
         struct curve *curve = &curves->all[k];
         for (uint32_t i = 0; i < curves->count; i++)
-            curve->around += i != k && is_around(&curves->all[i], curve->points[0]);
-        curve->left = (area_of(curve) > 0) == (curve->around % 2 == 0);
+            curve->nesting += i != k && encloses(&curves->all[i], curve->points[0]);
+        curve->left = (area_of(curve) > 0) == (curve->nesting % 2 == 0);
     }
     return true;
 }
@@ -427,16 +426,25 @@ static bool find_corners(struct curve *curve, struct arena *arena, double edge, 
     return true;
 }
 
-/* Whether other parts of the outline are far enough from the inset one; `slack` is for curves. */
+static bool is_inside(const struct curves *curves, const double point[2]) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < curves->count; i++)
+        count += encloses(&curves->all[i], point);
+    return count % 2 == 1;
+}
+
+/* Whether the inset outline is inside, far enough from all of the outline; `slack` is for curves. */
 static bool check_clear(const struct curves *curves, double edge, double slack, struct error *error) {
     for (uint32_t k = 0; k < curves->count; k++)
         for (uint32_t p = 0; p<curves->all[k].inner_count; p += slack> 0 ? 3 : 1) {
             const double *point = curves->all[k].inner[p];
-            for (uint32_t i = 0; i < curves->count; i++)
-                if (!inset_is_clear((const double(*)[2])curves->all[i].points, curves->all[i].count, point,
-                                    edge * (1 - slack)))
-                    return error_set(error, ERROR_SCENE, "edge (%g) is too large for the outline near {%g, %g}", edge,
-                                     point[0], point[1]);
+            bool clear = is_inside(curves, point);
+            for (uint32_t i = 0; clear && i < curves->count; i++)
+                clear = inset_is_clear((const double(*)[2])curves->all[i].points, curves->all[i].count, point,
+                                       edge * (1 - slack));
+            if (!clear)
+                return error_set(error, ERROR_SCENE, "edge (%g) is too large for the outline near {%g, %g}", edge,
+                                 point[0], point[1]);
         }
     return true;
 }
@@ -669,7 +677,7 @@ static bool same(const double a[2], const double b[2]) {
 }
 
 /* Whether no line of the curves is between two points of them. */
-static bool is_open_way(const struct curves *curves, const double a[2], const double b[2]) {
+static bool sees(const struct curves *curves, const double a[2], const double b[2]) {
     for (uint32_t k = 0; k < curves->count; k++)
         for (uint32_t i = 0; i < curves->all[k].inner_count; i++) {
             const double *c = curves->all[k].inner[i], *d = curves->all[k].inner[(i + 1) % curves->all[k].inner_count];
@@ -698,8 +706,7 @@ static void join_hole(struct cap *cap, uint32_t hole) {
     for (uint32_t i = 0; i < cap->count; i++) {
         const double *at = at_cap(cap, i), x = at[0] - from[0], y = at[1] - from[1];
         if (x * x + y * y < nearest && in_corner(before, from, after, at) &&
-            in_corner(at_cap(cap, i + cap->count - 1), at, at_cap(cap, i + 1), from) &&
-            is_open_way(cap->curves, from, at)) {
+            in_corner(at_cap(cap, i + cap->count - 1), at, at_cap(cap, i + 1), from) && sees(cap->curves, from, at)) {
             nearest = x * x + y * y;
             to = i;
         }
@@ -719,11 +726,11 @@ static void join_hole(struct cap *cap, uint32_t hole) {
 
 /* A curve with the holes that are directly in it. */
 static void fill_cap(struct cap *cap, uint32_t outer, bool *joined) {
-    const struct curve *around = &cap->curves->all[outer];
-    cap->count = around->inner_count;
+    const struct curve *outline = &cap->curves->all[outer];
+    cap->count = outline->inner_count;
     for (uint32_t i = 0; i < cap->count; i++) {
         cap->curve[i] = outer;
-        cap->point[i] = forward(around, i);
+        cap->point[i] = forward(outline, i);
     }
     /* Those that reach farthest to the right first: they see a corner that is already joined. */
     for (;;) {
@@ -732,7 +739,8 @@ static void fill_cap(struct cap *cap, uint32_t outer, bool *joined) {
         for (uint32_t k = 0; k < cap->curves->count; k++) {
             const struct curve *hole = &cap->curves->all[k];
             double x = hole->inner[forward(hole, rightmost(hole))][0];
-            if (!joined[k] && hole->around == around->around + 1 && is_around(around, hole->points[0]) && x > right) {
+            if (!joined[k] && hole->nesting == outline->nesting + 1 && encloses(outline, hole->points[0]) &&
+                x > right) {
                 right = x;
                 next = k;
             }

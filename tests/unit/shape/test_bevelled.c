@@ -130,7 +130,7 @@ TEST(a_chamfered_prism_with_holes_is_closed_and_has_the_volume_of_its_sections) 
     }
 }
 
-TEST(an_edge_that_is_too_large_is_refused_with_its_place) {
+TEST(an_edge_that_is_too_large_is_refused_with_its_position) {
     const char *const scenes[][2] = {
         {"gr.box{min = {0, 0, 0}, max = {1, 0.1, 1}, edge = 0.05}",
          "edge (0.05) must be less than half of the shortest side"},

@@ -177,12 +177,12 @@ static void grow(struct made_shape *made, double volume, double area, double cur
 }
 
 static struct made_shape made_bevelled_cylinder(struct shape_makers *makers, struct test_random *random) {
-    const struct vec3 from = random_vec3(random, 0.5), way = vec3_add(random_vec3(random, 0.3), vec3_all(0.5));
+    const struct vec3 from = random_vec3(random, 0.5), axis = vec3_add(random_vec3(random, 0.3), vec3_all(0.5));
     struct bevelled_cylinder in = {.from = from,
-                                   .to = vec3_add(from, way),
+                                   .to = vec3_add(from, axis),
                                    .radius = test_uniform(random, 0.2, 0.7),
                                    .chamfer = chance(random, 0.5)};
-    const double length = vec3_length(way), r = in.radius, limit = r < length / 2 ? r : length / 2;
+    const double length = vec3_length(axis), r = in.radius, limit = r < length / 2 ? r : length / 2;
     struct error error = {0};
     in.edge = test_uniform(random, 0.1, 0.9) * limit;
     const double e = in.edge, inner = r - e, straight = length - 2 * e;
@@ -226,9 +226,10 @@ static struct made_shape made_bevelled(struct shape_makers *makers, struct test_
     if (!made.shape.bevelled)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     if (convex) {
-        double area = scale * scale * sin(2 * M_PI / count) * count / 2, around = 2 * scale * sin(M_PI / count) * count;
+        double area = scale * scale * sin(2 * M_PI / count) * count / 2,
+               perimeter = 2 * scale * sin(M_PI / count) * count;
         double inner = height - 2 * e;
-        grow(&made, area * inner, 2 * area + around * inner, M_PI * inner + M_PI / 2 * around, e);
+        grow(&made, area * inner, 2 * area + perimeter * inner, M_PI * inner + M_PI / 2 * perimeter, e);
     }
     return made;
 }
