@@ -8,6 +8,7 @@
 #include "base/isa.h"
 #include "base/version.h"
 #include "formats/font.h"
+#include "formats/json_text.h"
 #include "formats/model.h"
 #include "host/completion.h"
 #include "host/first_scene.h"
@@ -74,7 +75,7 @@ static void print_version(void) {
     (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, "
                  "WebP by %s, "
                  "windows by %s, farms by %s\n",
-                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), json_text_library(), font_library(),
                  exr_library(), webp_library(), window, farm);
 }
 
@@ -133,6 +134,8 @@ static int perform(struct options *options, const struct program_parts *parts, s
         return manual_print(options, options->script.library_folder, arena);
     case ACTION_ROFF:
         return manual_print_page(options, arena);
+    case ACTION_SCHEMA:
+        return manual_print_schema(arena);
     case ACTION_ANNOTATIONS:
         return manual_print_annotations(arena);
     case ACTION_INIT:
