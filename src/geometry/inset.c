@@ -127,10 +127,10 @@ static bool is_smooth(const struct spline_segment *a, const struct spline_segmen
     return cosine > 0 && fabs(sine) <= 1e-6 * cosine;
 }
 
-bool inset_curve(struct arena *arena, const struct spline_segment *segments, uint32_t count, bool left, double distance,
-                 double (**points)[2], uint32_t *point_count, struct error *error) {
+bool inset_curve(struct arena *arena, const struct spline_segment *segments, uint32_t count, double to_left,
+                 struct inset_points *points, struct error *error) {
     enum { PARTS_LIMIT = 64 };
-    const double to_left = left ? distance : -distance;
+    const double distance = fabs(to_left);
     double(*out)[2] = arena_alloc_array(arena, (size_t)count * PARTS_LIMIT * 3, sizeof *out);
     uint32_t made = 0;
     if (!out)
@@ -167,7 +167,6 @@ bool inset_curve(struct arena *arena, const struct spline_segment *segments, uin
             }
         }
     }
-    *points = out;
-    *point_count = made;
+    *points = (struct inset_points){out, made};
     return true;
 }

@@ -24,9 +24,14 @@ bool inset_corners(const double (*points)[2], uint32_t count, bool left, double 
 /* Whether the point is at least so far from all lines of the outline. */
 bool inset_is_clear(const double (*points)[2], uint32_t count, const double point[2], double distance);
 
-/* The Bezier points (3 for each piece, the last one joins the first) of a smooth closed curve, within a millionth of
- * the distance. Errors: the curve has a corner or turns too sharply, no memory. */
-bool inset_curve(struct arena *arena, const struct spline_segment *segments, uint32_t count, bool left, double distance,
-                 double (**points)[2], uint32_t *point_count, struct error *error);
+/* The Bezier points (3 for each piece, the last one joins the first) of a smooth closed curve that is moved to its
+ * left, or with a negative distance to its right, within a millionth of the distance. Errors: the curve has a corner or
+ * turns too sharply, no memory. */
+struct inset_points {
+    double (*items)[2];
+    uint32_t count;
+};
+bool inset_curve(struct arena *arena, const struct spline_segment *segments, uint32_t count, double to_left,
+                 struct inset_points *out, struct error *error);
 
 #endif

@@ -553,10 +553,15 @@ const struct bevelled *bevelled_prism(struct arena *arena, const struct prism_in
         return NULL;
     for (uint32_t k = 0; k < curves.count; k++) {
         struct curve *curve = &curves.all[k];
+        struct inset_points inner_points = {0};
         if (straight ? !find_corners(curve, arena, radius, error)
-                     : !inset_curve(arena, curve->segments, curve->segment_count, curve->left, radius, &curve->inner,
-                                    &curve->inner_count, error))
+                     : !inset_curve(arena, curve->segments, curve->segment_count, curve->left ? radius : -radius,
+                                    &inner_points, error))
             return NULL;
+        if (!straight) {
+            curve->inner = inner_points.items;
+            curve->inner_count = inner_points.count;
+        }
     }
     if (!check_clear(&curves, radius, straight ? 0 : 0.02, error))
         return NULL;
@@ -767,7 +772,7 @@ static bool add_caps(struct faces *faces, const struct curves *curves, struct ar
         first[k] = all;
     }
     for (uint32_t k = 0; k < curves->count; k++) {
-        if (curves->all[k].around % 2 != 0)
+        if (curves->all[k].nesting % 2 != 0)
             continue;
         fill_cap(&cap, k, joined);
         for (int height = 0; height <= 3; height += 3) {
