@@ -208,6 +208,10 @@ static int write_picture(lua_State *L) {
     lua_createtable(L, 0, 3);
     lua_pushboolean(L, !script_of(context)->only_named_pictures);
     lua_setfield(L, -2, "classic");
+    lua_pushboolean(L, script_of(context)->host->text_is_lua);
+    lua_setfield(L, -2, "lua");
+    lua_pushboolean(L, context->scene.spins);
+    lua_setfield(L, -2, "spins");
     lua_pushnumber(L, request->time);
     lua_setfield(L, -2, "time");
     if (request->frame.number > 0) { /* in seconds already */
@@ -228,6 +232,10 @@ bool scene_write_picture(struct script_context *context, const struct render_req
     size_t length;
     if (request->changed)
         return error_set(error, ERROR_SCENE, "a scene with saved edits cannot be written");
+    if (context->scene.is_model)
+        return error_set(error, ERROR_SCENE,
+                         "a model is no scene; a script with gr.model{file = '%.400s'} can be written",
+                         context->sandbox.files.path);
     lua_pushcfunction(L, write_picture);
     lua_pushlightuserdata(L, (void *)(uintptr_t)request);
     int status = lua_pcall(L, 1, 1, 0);
