@@ -61,12 +61,6 @@ static int quote(lua_State *L) {
     return 1;
 }
 
-/* Of a light that came with a model: {model = address of its node, index = number}; nil of any other object. */
-static int model_light(lua_State *L) {
-    (void)L;
-    return 0;
-}
-
 /* The text of a program that C owns becomes one of Lua. Arguments: the function, a name, the text, a table. */
 static int call_with_code(lua_State *L) {
     lua_pushstring(L, lua_touserdata(L, 3));
@@ -196,6 +190,14 @@ void scene_write_call(struct script_context *context, const struct script_functi
     }
 }
 
+void scene_write_object(lua_State *L, const void *object, const char *kind) {
+    push_writer(L, "object");
+    lua_insert(L, -2);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)object);
+    lua_pushstring(L, kind);
+    lua_call(L, 3, 0);
+}
+
 /* --- pictures --- */
 
 /* Arguments: the request. Returns the text. */
@@ -251,11 +253,8 @@ bool scene_write_picture(struct script_context *context, const struct render_req
 }
 
 void scene_write_open(lua_State *L) {
-    static const luaL_Reg helpers[] = {{"address", address},
-                                       {"quote", quote},
-                                       {"image_function", image_function},
-                                       {"model_light", model_light},
-                                       {NULL, NULL}};
+    static const luaL_Reg helpers[] = {
+        {"address", address}, {"quote", quote}, {"image_function", image_function}, {NULL, NULL}};
     embedded_run(L, scene_write_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &writer);
     context_of(L)->noted = note;

@@ -16,14 +16,7 @@ local given -- the arguments of the call that runs, by name
 local function copy(value)
     local kind = type(value)
     if kind == 'userdata' then
-        local record = records[address(value)]
-        if not record then
-            record = model_light(value)
-            if not record then raise('an object that no function of gr has made cannot be written') end
-            record = setmetatable({kind = 'model_light', fields = {model = records[record.model], index = record.index}}, OBJECT)
-            records[address(value)] = record
-        end
-        return record
+        return records[address(value)] or raise('an object that no function of gr has made cannot be written')
     elseif kind ~= 'table' then
         return value
     end
@@ -391,6 +384,9 @@ return {
     made = function(made, kind)
         if kind == 'geometry' and given.primitive then given.primitive = snapshot(given.primitive) end
         records[made] = setmetatable({kind = kind, fields = given, calls = {}, children = {}, changes = 0}, OBJECT)
+    end,
+    object = function(fields, made, kind)
+        records[made] = setmetatable({kind = kind, fields = fields, calls = {}, children = {}, changes = 0}, OBJECT)
     end,
     called = function(self, name, order, forms)
         if records[self] then add_call(records[self], name, order, forms) end
