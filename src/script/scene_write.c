@@ -170,6 +170,8 @@ void scene_write_call(struct script_context *context, const struct script_functi
     lua_State *L = context->sandbox.lua;
     if (function->in_lua || function_renders(function) || function->result == RESULT_FRAMES)
         return;
+    const bool may_turn = context->scene.is_model && function->result == RESULT_NODE;
+    const struct model *model = may_turn ? models_find(context, result->pointer) : NULL;
     note_rest(context, function, args);
     if (function->owner == OWNER_NODE && function->result == RESULT_SELF) {
         push_writer(L, "called");
@@ -188,6 +190,16 @@ void scene_write_call(struct script_context *context, const struct script_functi
         lua_pushstring(L, function->name);
         lua_call(L, 2, 0);
     }
+    if (model) { /* without materials it is lighter than in a script, see flatten_material.c */
+        push_writer(L, "model");
+        lua_pushlightuserdata(L, result->pointer);
+        if (model->materials.count == 0)
+            lua_pushnumber(L, 0.85);
+        else
+            lua_pushnil(L);
+        lua_pushboolean(L, models_turn(context).forward.m[1][1] != 1);
+        lua_call(L, 3, 0);
+    }
 }
 
 void scene_write_object(lua_State *L, const void *object, const char *kind) {
@@ -199,6 +211,52 @@ void scene_write_object(lua_State *L, const void *object, const char *kind) {
 }
 
 /* --- pictures --- */
+
+static void set_vector(lua_State *L, const char *field, struct vec3 v) {
+    lua_createtable(L, 3, 0);
+    for (int k = 0; k < 3; k++) {
+        lua_pushnumber(L, vec3_get(v, k));
+        lua_rawseti(L, -2, k + 1);
+    }
+    lua_setfield(L, -2, field);
+}
+
+static struct vec3 vector_of(struct colour c) {
+    return vec3_make(c.r, c.g, c.b);
+}
+
+/* The light of the studio around a model, which scripts do not have: its boxes as lights, and its sky. */
+static void set_model_light(lua_State *L, const struct render_request *request) {
+    const struct scene_light *lights = request->lights;
+    for (uint32_t i = 0; i < request->light_count; i++) {
+        lua_newtable(L);
+        set_vector(L, "corner", lights[i].light.corner);
+        set_vector(L, "v1", lights[i].light.edge1);
+        set_vector(L, "v2", lights[i].light.edge2);
+        set_vector(L, "emission", vector_of(lights[i].light.colour));
+        lua_pushboolean(L, 1);
+        lua_setfield(L, -2, "visible");
+        scene_write_object(L, &lights[i], "area_light");
+        push_writer(L, "add_light");
+        lua_pushlightuserdata(L, (void *)(uintptr_t)&lights[i]);
+        lua_call(L, 1, 0);
+    }
+    set_vector(L, "background", vector_of(request->sky.colour));
+    set_vector(L, "ambient", vector_of(request->ambient));
+}
+
+/* The camera of a model is fitted to a part of the scene. */
+static void set_model_camera(lua_State *L, const struct render_request *request) {
+    const struct lens *lens = &request->settings.lens;
+    set_vector(L, "eye", request->camera.eye);
+    set_vector(L, request->settings.view_is_target ? "target" : "view", request->camera.view);
+    lua_pushnumber(L, request->camera.fov);
+    lua_setfield(L, -2, "fov");
+    if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
+        lua_pushnumber(L, lens->view_height);
+        lua_setfield(L, -2, "view_height");
+    }
+}
 
 /* Arguments: the request. Returns the text. */
 static int write_picture(lua_State *L) {
@@ -224,7 +282,12 @@ static int write_picture(lua_State *L) {
         lua_rawseti(L, -2, 2);
         lua_setfield(L, -2, "shutter");
     }
-    lua_call(L, 3, 1);
+    lua_newtable(L);
+    if (context->scene.is_model)
+        set_model_camera(L, request);
+    if (context->scene.is_model && context->scene.studio)
+        set_model_light(L, request);
+    lua_call(L, 4, 1);
     return 1;
 }
 
@@ -234,10 +297,6 @@ bool scene_write_picture(struct script_context *context, const struct render_req
     size_t length;
     if (request->changed)
         return error_set(error, ERROR_SCENE, "a scene with saved edits cannot be written");
-    if (context->scene.is_model)
-        return error_set(error, ERROR_SCENE,
-                         "a model is no scene; a script with gr.model{file = '%.400s'} can be written",
-                         context->sandbox.files.path);
     lua_pushcfunction(L, write_picture);
     lua_pushlightuserdata(L, (void *)(uintptr_t)request);
     int status = lua_pcall(L, 1, 1, 0);

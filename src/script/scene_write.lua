@@ -391,8 +391,23 @@ return {
     called = function(self, name, order, forms)
         if records[self] then add_call(records[self], name, order, forms) end
     end,
-    picture = function(kind, self, state)
+    add_light = function(light)
+        given.lights = given.lights or {}
+        given.lights[#given.lights + 1] = records[light]
+    end,
+    -- A model on the command line: `plain`, the kd of its material if the file has none; whether z is up in the file.
+    model = function(node, plain, is_turned)
+        local record = records[node]
+        if plain then record.fields.material = setmetatable({kind = 'material', fields = {kd = {plain, plain, plain}}}, OBJECT) end
+        if is_turned then
+            record.calls[1] = {name = 'rotate', fields = {axis = 'x', angle = -90}, forms = {'axis angle'}, order = 'new'}
+        end
+    end,
+    picture = function(kind, self, state, more)
         local picture, root = given, given.node or records[self]
+        for name, value in next, more do
+            if name ~= 'view' or not picture.target then picture[name] = value end
+        end
         picture.node = nil
         if kind ~= 'render' then picture.type = kind end
         if state.shutter then picture.shutter = state.shutter end

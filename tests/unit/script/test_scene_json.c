@@ -289,3 +289,36 @@ TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
     test_shell("$gray -q many.lua && $gray -q many.lua -o b.lua && $gray -q b.lua -o b.png && cmp many.png b.png", 0,
                "");
 }
+
+#define LIGHT                                                                                                          \
+    "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":%d}},\"rotation\":[0.1,0.2,0.05,0.97],\"translation\":[%s]}"
+
+TEST(models_and_their_lights_are_written_as_json_and_scripts_with_the_same_picture) {
+    char text[4096];
+    need_json();
+    (void)snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":"
+        "{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\",\"intensity\":2000},{\"type\":\"point\","
+        "\"intensity\":3000,\"color\":[1,0.5,0.2]},{\"type\":\"spot\",\"intensity\":9000,\"spot\":"
+        "{\"innerConeAngle\":0.3,\"outerConeAngle\":0.71}}]}},\"scenes\":[{\"nodes\":[0,1,2,3,4]}],"
+        "\"nodes\":[{\"mesh\":0},{\"camera\":0,\"translation\":[0,0.5,5]}," LIGHT "," LIGHT "," LIGHT "],"
+        "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":1}}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+        "AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}",
+        0, "0,0,0", 1, "1,1.5,2", 2, "-1,1,2.5");
+    test_write_text(test_path("g.gltf"), text);
+    test_write_text(test_path("o.obj"), "v -1 0 0\nv 1 0 0\nv 0 1 0.3\nv 0 0 1\nf 1 2 3\nf 1 4 3\n");
+    test_write_text(test_path("s.stl"), "solid s\nfacet normal 0 0 1\nouter loop\nvertex -1 0 0\nvertex 1 0 0\n"
+                                        "vertex 0 1 1\nendloop\nendfacet\nendsolid s\n");
+    test_write_text(test_path("l.lua"),
+                    "local m = gr.model('g.gltf')\nlocal c = m.cameras[1]\n"
+                    "gr.render{node = m, eye = c.eye, view = c.view, up = c.up, fov = c.fov, lights = m.lights}\n");
+    test_shell("for m in g.gltf o.obj s.stl l.lua; do o='-q --size 48x27 --spp 2'; $gray $o $m -o a.png && "
+               "$gray $o $m -o x.json && $gray $o x.json -o b.png && cmp a.png b.png && "
+               "$gray $o $m -o x.lua && $gray $o x.lua -o b.png && cmp a.png b.png || exit 1; done",
+               0, "");
+}
