@@ -6,6 +6,7 @@
 #include "sandbox/embedded.h"
 #include "script/gr_model_internal.h"
 #include "script/script_internal.h"
+#include "script/table_internal.h"
 
 #include <lauxlib.h>
 #include <string.h>
@@ -73,6 +74,17 @@ static int call_with_code(lua_State *L) {
 static int image_function(lua_State *L) {
     const struct script_texture *texture = lua_touserdata(L, 1);
     lua_pushlightuserdata(L, texture->function);
+    return 1;
+}
+
+/* The positional forms of a method: "axis angle". */
+static int forms(lua_State *L) {
+    const struct script_function *function = function_find(OWNER_NODE, luaL_checkstring(L, 1));
+    lua_newtable(L);
+    for (int i = 0; i < FORM_LIMIT && function->forms[i]; i++) {
+        lua_pushstring(L, function->forms[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
     return 1;
 }
 
@@ -178,12 +190,7 @@ void scene_write_call(struct script_context *context, const struct script_functi
         lua_pushlightuserdata(L, args[SELF].node);
         lua_pushstring(L, function->name);
         lua_pushstring(L, orders[context->scene.order]);
-        lua_newtable(L);
-        for (int i = 0; i < FORM_LIMIT && function->forms[i]; i++) {
-            lua_pushstring(L, function->forms[i]);
-            lua_rawseti(L, -2, i + 1);
-        }
-        lua_call(L, 4, 0);
+        lua_call(L, 3, 0);
     } else if (function->owner == OWNER_GR && result->pointer) {
         push_writer(L, "made");
         lua_pushlightuserdata(L, result->pointer);
@@ -313,7 +320,7 @@ bool scene_write_picture(struct script_context *context, const struct render_req
 
 void scene_write_open(lua_State *L) {
     static const luaL_Reg helpers[] = {
-        {"address", address}, {"quote", quote}, {"image_function", image_function}, {NULL, NULL}};
+        {"address", address}, {"quote", quote}, {"forms", forms}, {"image_function", image_function}, {NULL, NULL}};
     embedded_run(L, scene_write_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &writer);
     context_of(L)->noted = note;

@@ -57,7 +57,7 @@ local function drop(calls, names)
     end
 end
 
-local function add_call(record, name, order, forms)
+local function add_call(record, name, order)
     local calls = record.calls
     record.changes = record.changes + 1
     if name == 'reset' or name == 'pose' then drop(calls, TRANSFORMS) end
@@ -66,7 +66,7 @@ local function add_call(record, name, order, forms)
         record.children[#record.children + 1] = given.node
     elseif name ~= 'reset' then
         record.displaced = record.displaced or name == 'displace'
-        calls[#calls + 1] = {name = name, fields = given, forms = forms, order = TRANSFORMS[name] and order}
+        calls[#calls + 1] = {name = name, fields = given, order = TRANSFORMS[name] and order}
     end
 end
 
@@ -84,22 +84,33 @@ local function number_text(x)
     return format('%.17g', x)
 end
 
--- The positional form of a method whose arguments these are, or nil.
-local function in_form(call)
-    for _, form in ipairs(call.forms) do
-        local list, ends, count = {}, false, 0
-        for name, optional in gmatch(form, '([%w_]+)([?]?)') do
-            local value = call.fields[name]
-            if value == nil and optional == '' then ends, count = true, -1000 end
-            if value == nil then ends = true end
-            if value ~= nil and ends then count = -1000 end
-            if value ~= nil then list[#list + 1], count = value, count + 1 end
+-- The positional forms of a method: lists of its arguments, with the number of those that must be there.
+local parsed = {}
+local function forms_of(name)
+    if parsed[name] then return parsed[name] end
+    local out = {}
+    for k, form in ipairs(forms(name)) do
+        out[k] = {needed = 0}
+        for argument, optional in gmatch(form, '([%w_]+)([?]?)') do
+            out[k][#out[k] + 1] = argument
+            if optional == '' then out[k].needed = #out[k] end
         end
-        local total = 0
-        for _ in next, call.fields do total = total + 1 end
-        if count == total and count > 0 then
-            local only = count == 1 and (call.fields.vector or call.fields.quaternion)
-            return only or list
+    end
+    parsed[name] = out
+    return out
+end
+
+-- The arguments of a call as one of these forms, or nil.
+local function in_form(call)
+    local fields, total = call.fields, 0
+    for _ in next, fields do total = total + 1 end
+    for _, form in ipairs(forms_of(call.name)) do
+        local count = 0
+        while form[count + 1] and fields[form[count + 1]] ~= nil do count = count + 1 end
+        if count == total and count > 0 and count >= form.needed then
+            local list = count == 1 and (fields.vector or fields.quaternion) or {}
+            for k = 1, #list == 0 and count or 0 do list[k] = fields[form[k]] end
+            return list
         end
     end
 end
@@ -115,9 +126,12 @@ local function is_list(value)
     return #value > 0 or next(value) == nil
 end
 
--- What a record is in the file: a table of JSON.
+-- What a record is in the file: a table of JSON. `shown`: those of the picture.
+local shown
 local function members(record)
+    if shown[record] then return shown[record] end
     local out = {type = record.kind}
+    shown[record] = out
     for key, value in next, record.fields do out[key] = value end
     if record.children and #record.children > 0 then
         local all = {}
@@ -295,7 +309,8 @@ local function lua_of(names)
         return join(parts, '{', '}', indent, '  ')
     end
     local function record_text(record, indent)
-        local fields, calls = members(record), {}
+        local fields, calls = {}, {}
+        for key, value in next, members(record) do fields[key] = value end
         local is_group = record.kind == 'node' or record.kind == 'joint'
         local children = not is_group and fields.children or {}
         fields.type, fields.transform, fields.children = nil, nil, is_group and fields.children or nil
@@ -388,8 +403,8 @@ return {
     object = function(fields, made, kind)
         records[made] = setmetatable({kind = kind, fields = fields, calls = {}, children = {}, changes = 0}, OBJECT)
     end,
-    called = function(self, name, order, forms)
-        if records[self] then add_call(records[self], name, order, forms) end
+    called = function(self, name, order)
+        if records[self] then add_call(records[self], name, order) end
     end,
     add_light = function(light)
         given.lights = given.lights or {}
@@ -400,11 +415,12 @@ return {
         local record = records[node]
         if plain then record.fields.material = setmetatable({kind = 'material', fields = {kd = {plain, plain, plain}}}, OBJECT) end
         if is_turned then
-            record.calls[1] = {name = 'rotate', fields = {axis = 'x', angle = -90}, forms = {'axis angle'}, order = 'new'}
+            record.calls[1] = {name = 'rotate', fields = {axis = 'x', angle = -90}, order = 'new'}
         end
     end,
     picture = function(kind, self, state, more)
         local picture, root = given, given.node or records[self]
+        shown = {}
         for name, value in next, more do
             if name ~= 'view' or not picture.target then picture[name] = value end
         end
