@@ -185,12 +185,9 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     if (!options_parse(&options, argc, argv, &arena, &error) || !picture_files_check_output(&options, &error)) {
-        char line[sizeof error.text + 16];
-        (void)snprintf(line, sizeof line, "gray: %s", error.text);
-        text_print_message(stderr, TEXT_ERROR, line);
+        status = text_print_error(&error);
         if (error.kind == ERROR_USAGE)
             (void)fputs("usage: gray [options] [--] scene.lua|model.glb ...; gray --help lists all options\n", stderr);
-        status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
     } else if (options.window && !parts->window && (options.action == ACTION_RENDER || options.action == ACTION_VIEW)) {

@@ -45,20 +45,16 @@ static double largest_aperture(const struct view_window *w) {
     return math_max(half_grid(w, true), half_grid(w, false));
 }
 
-static double clamped(double x, double low, double high) {
-    return math_min(math_max(x, low), high);
-}
-
 /* The eye stays in the field, and the plane in focus in front of it. */
 static void limit(struct view_window *w) {
     struct light_field_camera *camera = &w->now.camera;
     if (w->view->is_field) {
         (void)light_field_clamp(&w->view->field.head, camera);
-        camera->aperture = clamped(camera->aperture, 0, largest_aperture(w));
+        camera->aperture = math_min(math_max(camera->aperture, 0), largest_aperture(w));
     } else {
         camera->x = remainder(camera->x, 360);
-        camera->y = clamped(camera->y, -90, 90);
-        w->now.fov = clamped(w->now.fov, 5, 150);
+        camera->y = math_min(math_max(camera->y, -90), 90);
+        w->now.fov = math_min(math_max(w->now.fov, 5), 150);
     }
     w->outdated = true;
 }
@@ -127,11 +123,10 @@ static void show(struct view_window *w, bool coarse) {
 static void fit(struct view_window *w, const struct window_event *event) {
     struct window_state *state = w->driver->state;
     struct light_field_camera *camera = &w->now.camera;
-    uint8_t *bytes = w->view->is_field ? NULL : mem_alloc_zero((size_t)event->x * (size_t)event->y, 3);
+    uint8_t *bytes = w->view->is_field ? NULL : mem_resize_array(w->bytes, (size_t)event->x * (size_t)event->y, 3);
     if (bytes) {
         camera->width = w->initial.camera.width = (uint32_t)event->x;
         camera->height = w->initial.camera.height = (uint32_t)event->y;
-        mem_free(w->bytes);
         w->bytes = bytes;
     }
     double scale = math_min(event->x / camera->width, event->y / camera->height);

@@ -253,22 +253,20 @@ static bool read_head(struct light_field *field, struct error *error) {
 }
 
 static bool read_tone(struct light_field *field, struct error *error) {
+    uint8_t bytes[TABLE_OF_TONE];
+    const uint8_t *at = bytes;
     if (field->head.tone.curve != TONE_FUNCTION)
         return true;
-    uint8_t *bytes = mem_alloc(TABLE_OF_TONE);
-    const uint8_t *at = bytes;
-    field->table = mem_alloc_zero(1, sizeof *field->table);
-    bool ok = (bytes && field->table) || error_no_memory(error, field->path);
-    ok = ok && (file_source_read(&field->source, HEAD_SIZE, bytes, TABLE_OF_TONE) ||
-                wrong(field, "it ends too early", error));
-    for (int i = 0; ok && i < TONE_ENTRIES; i++) {
+    if (!file_source_read(&field->source, HEAD_SIZE, bytes, sizeof bytes))
+        return wrong(field, "it ends too early", error);
+    for (int i = 0; i < TONE_ENTRIES; i++) {
         uint32_t bits = (uint32_t)bytes_get(&at, 4);
-        memcpy(&field->table->values[i], &bits, sizeof bits);
-        ok = isfinite(field->table->values[i]) || wrong(field, "its tone curve has an impossible number", error);
+        memcpy(&field->table.values[i], &bits, sizeof bits);
+        if (!isfinite(field->table.values[i]))
+            return wrong(field, "its tone curve has an impossible number", error);
     }
-    mem_free(bytes);
-    field->head.tone.table = field->table;
-    return ok;
+    field->head.tone.table = &field->table;
+    return true;
 }
 
 /* The table is at the end, so a file that is cut has none. */
@@ -320,7 +318,6 @@ void light_field_close(struct light_field *field) {
         mem_free(field->views[i]);
     mem_free(field->views);
     mem_free(field->entries);
-    mem_free(field->table);
     file_source_close(&field->source);
     *field = (struct light_field){0};
 }
@@ -337,18 +334,6 @@ static bool unpack(const uint8_t *packed, size_t size, uint8_t *raw, size_t want
     bool ok = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == wanted && stream.avail_in == 0;
     (void)inflateEnd(&stream);
     return ok;
-}
-
-/* Depths become their reciprocals. */
-static void find_disparities(size_t count, float *values, struct light_field_entry *entry) {
-    entry->nearest = 0;
-    entry->farthest = INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        float *last = values + i * LIGHT_FIELD_NUMBERS + COLOURS;
-        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
-        entry->nearest = math_max(entry->nearest, (double)*last);
-        entry->farthest = math_min(entry->farthest, (double)*last);
-    }
 }
 
 static bool load_view(struct light_field *field, uint32_t view, struct error *error) {
@@ -378,7 +363,14 @@ static bool load_view(struct light_field *field, uint32_t view, struct error *er
         mem_free(values);
         return false;
     }
-    find_disparities(plane, values, entry);
+    entry->farthest = INFINITY;
+    /* Depths become their reciprocals. */
+    for (size_t i = 0; i < plane; i++) {
+        float *last = values + i * LIGHT_FIELD_NUMBERS + COLOURS;
+        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
+        entry->nearest = math_max(entry->nearest, (double)*last);
+        entry->farthest = math_min(entry->farthest, (double)*last);
+    }
     field->views[view] = values;
     return true;
 }

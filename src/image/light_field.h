@@ -41,7 +41,7 @@ struct light_field_entry {
 struct light_field {
     const char *path; /* borrowed */
     struct light_field_head head;
-    struct tone_table *table;          /* of head.tone */
+    struct tone_table table;           /* of head.tone */
     struct light_field_entry *entries; /* row by row, the upper left view first */
     float **views;                     /* NULL until they are loaded */
     struct file_source source;

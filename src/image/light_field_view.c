@@ -18,7 +18,11 @@
 enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS_LIMIT = 64, PATCH = 7 };
 static const double lens_middle[AXES];
 
-struct pixel_sum;
+/* A weighted sum of pixels: all numbers of a pixel of a view. */
+struct pixel_sum {
+    double numbers[LIGHT_FIELD_NUMBERS], weight;
+};
+
 struct drawing {
     const struct light_field *field;
     struct light_field_camera camera;
@@ -110,11 +114,6 @@ static struct tap tap_of(double at, double size) {
     tap.second = tap.first + (tap.part > 0);
     return tap;
 }
-
-/* A weighted sum of pixels: all numbers of a pixel of a view. */
-struct pixel_sum {
-    double numbers[LIGHT_FIELD_NUMBERS], weight;
-};
 
 static void add_pixels(const struct drawing *d, const float *view, const struct tap taps[AXES], double weight,
                        struct pixel_sum *sum) {

@@ -174,12 +174,9 @@ static bool draw_panorama(struct view *view, const struct view_state *state, str
 }
 
 static bool resize(struct view *view, uint32_t width, uint32_t height, struct error *error) {
-    if (view->light && view->width == width && view->height == height)
-        return true;
-    float(*light)[3] = mem_alloc_zero((size_t)width * height, sizeof *light);
+    float(*light)[3] = mem_resize_array(view->light, (size_t)width * height, sizeof *light);
     if (!light)
         return error_no_memory(error, "the picture");
-    mem_free(view->light);
     view->light = light;
     view->width = width;
     view->height = height;
@@ -362,12 +359,7 @@ int view_close(struct view *view, const struct error *error) {
         picture_files_destroy(&view->files);
         mem_free(view);
     }
-    if (!error)
-        return 0;
-    char line[sizeof error->text + 16];
-    (void)snprintf(line, sizeof line, "gray: %s", error->text);
-    text_print_message(stderr, TEXT_ERROR, line);
-    return (int)error->kind;
+    return error ? text_print_error(error) : 0;
 }
 
 int view_run(const struct options *options) {

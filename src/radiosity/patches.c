@@ -83,18 +83,8 @@ static bool is_curved(const struct world *world, uint32_t primitive) {
 
 /* --- triangles of a primitive --- */
 
-struct patch_builder {
-    struct patches *out;
-    struct list corners; /* struct vec3, three for each triangle of one primitive */
-};
-
-static bool add_triangle(struct patch_builder *b, struct vec3 p, struct vec3 q, struct vec3 r) {
-    const struct vec3 corners[3] = {p, q, r};
-    return list_add(&b->corners, corners, 3, sizeof *corners);
-}
-
 /* The rectangle at a corner, or with the radius of a ball a quarter of it over the ball. */
-static bool add_rectangle(struct patch_builder *b, struct vec3 corner, struct vec3 u, struct vec3 v,
+static bool add_rectangle(struct list *corners, struct vec3 corner, struct vec3 u, struct vec3 v,
                           const struct shape *ball) {
     enum { PARTS = 2 };
     int n = ball ? PARTS : 1;
@@ -107,25 +97,27 @@ static bool add_rectangle(struct patch_builder *b, struct vec3 corner, struct ve
             if (ball)
                 c[k] = vec3_add_scaled(ball->sphere.centre, vec3_normalize(c[k]), ball->sphere.radius);
         }
-        ok = ok && add_triangle(b, c[0], c[1], c[2]) && add_triangle(b, c[0], c[2], c[3]);
+        const struct vec3 two[6] = {c[0], c[1], c[2], c[0], c[2], c[3]};
+        ok = ok && list_add(corners, two, 6, sizeof *two);
     }
     return ok;
 }
 
 /* Six rectangles. */
-static bool add_box(struct patch_builder *b, const struct box *box, const struct shape *ball) {
+static bool add_box(struct list *corners, const struct box *box, const struct shape *ball) {
     const struct vec3 size = vec3_sub(box->max, box->min);
     const struct vec3 edges[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
     bool ok = true;
     for (int i = 0; i < 3; i++) {
         const struct vec3 u = edges[(i + 1) % 3], v = edges[(i + 2) % 3];
-        ok = ok && add_rectangle(b, box->min, v, u, ball) && add_rectangle(b, vec3_add(box->min, edges[i]), u, v, ball);
+        ok = ok && add_rectangle(corners, box->min, v, u, ball) &&
+             add_rectangle(corners, vec3_add(box->min, edges[i]), u, v, ball);
     }
     return ok;
 }
 
 /* The rectangle along its axes that contains the shape. */
-static bool add_planar(struct patch_builder *b, const struct planar *planar) {
+static bool add_planar(struct list *corners, const struct planar *planar) {
     struct vec3 u = planar->u, v = planar->v, n = vec3_cross(u, v), corner = planar->origin;
     const struct vec3 across[2] = {vec3_cross(v, n), vec3_cross(n, u)};
     double low[2], high[2], squared = vec3_length_squared(n);
@@ -138,32 +130,32 @@ static bool add_planar(struct patch_builder *b, const struct planar *planar) {
     corner = vec3_add_scaled(vec3_add_scaled(corner, u, low[0]), v, low[1]);
     u = vec3_scale(u, high[0] - low[0]);
     v = vec3_scale(v, high[1] - low[1]);
-    return vec3_dot(n, planar->normal) < 0 ? add_rectangle(b, corner, v, u, NULL)
-                                           : add_rectangle(b, corner, u, v, NULL);
+    return vec3_dot(n, planar->normal) < 0 ? add_rectangle(corners, corner, v, u, NULL)
+                                           : add_rectangle(corners, corner, u, v, NULL);
 }
 
-static bool add_mesh(struct patch_builder *b, const struct mesh *mesh) {
+static bool add_mesh(struct list *corners, const struct mesh *mesh) {
     bool ok = true;
     for (uint32_t i = 0; ok && i < mesh_triangle_count(mesh); i++) {
         struct vec3 c[3];
         uint32_t slot;
         mesh_triangle(mesh, i, c, &slot);
-        ok = add_triangle(b, c[0], c[1], c[2]);
+        ok = list_add(corners, c, 3, sizeof *c);
     }
     return ok;
 }
 
 /* From the space of the primitive to the world, where a mirrored one has its outside on the other side. */
-static void map_corners(struct patch_builder *b, uint32_t primitive) {
-    struct vec3 *corners = b->corners.items;
-    struct transform map = world_placement(b->out->world, primitive, 0);
+static void map_corners(const struct world *world, uint32_t primitive, struct list *corners) {
+    struct vec3 *c = corners->items;
+    struct transform map = world_placement(world, primitive, 0);
     bool turned = affine_determinant(&map.forward) < 0;
-    for (size_t i = 0; i < b->corners.count; i++)
-        corners[i] = affine_point(&map.forward, corners[i]);
-    for (size_t i = 0; turned && i < b->corners.count; i += 3) {
-        struct vec3 second = corners[i + 1];
-        corners[i + 1] = corners[i + 2];
-        corners[i + 2] = second;
+    for (size_t i = 0; i < corners->count; i++)
+        c[i] = affine_point(&map.forward, c[i]);
+    for (size_t i = 0; turned && i < corners->count; i += 3) {
+        struct vec3 second = c[i + 1];
+        c[i + 1] = c[i + 2];
+        c[i + 2] = second;
     }
 }
 
@@ -177,17 +169,16 @@ struct weld_corner {
 static bool has_area(const struct vec3 c[3]) {
     double length;
     (void)longest_edge(c, &length);
-    return vec3_length(patch_normal(c)) > 0x1p-40 * length * length;
+    return patch_area(c) > 0x1p-41 * length * length;
 }
 
 /* Corners at one position become a vertex where triangles have no edge, on a ball all. */
-static bool weld(struct patch_builder *b, uint32_t primitive, bool is_ball) {
-    struct patches *out = b->out;
-    const struct vec3 *corners = b->corners.items;
-    uint32_t count = (uint32_t)b->corners.count;
+static bool weld(struct patches *out, uint32_t primitive, const struct list *list, bool is_ball) {
+    const struct vec3 *corners = list->items;
+    uint32_t count = (uint32_t)list->count;
     struct weld_corner *c = mem_alloc(count * sizeof *c);
     uint32_t *same = mem_alloc(count * sizeof *same);
-    bool ok = c && same && mesh_weld(b->corners.items, count, same);
+    bool ok = c && same && mesh_weld(list->items, count, same);
     for (uint32_t i = 0; ok && i < count; i++) {
         c[i] =
             (struct weld_corner){vec3_normalize(patch_normal(&corners[i / 3 * 3])), PATCH_NONE, PATCH_NONE, PATCH_NONE};
@@ -216,39 +207,40 @@ static bool weld(struct patch_builder *b, uint32_t primitive, bool is_ball) {
     return ok;
 }
 
-static bool add_primitive(struct patch_builder *b, uint32_t primitive, struct pool *pool, struct error *error) {
+static bool add_primitive(struct patches *out, uint32_t primitive, struct list *corners, struct pool *pool,
+                          struct error *error) {
     static const struct box cube = {{-1, -1, -1}, {1, 1, 1}};
-    const struct world *world = b->out->world;
+    const struct world *world = out->world;
     const struct shape *shape = &primitive_geometry(world, primitive)->shape;
     const struct box *box = &world->boxes[primitive];
     enum patch_kind kind = patches_kind(world, primitive);
     bool ok = true;
-    b->corners.count = 0;
+    corners->count = 0;
     switch (kind) {
     case PATCHES_BLACK:
     case PATCHES_BARE:
         return true;
     case PATCHES_PLANAR:
-        ok = add_planar(b, &shape->planar);
+        ok = add_planar(corners, &shape->planar);
         break;
     case PATCHES_BOX:
-        ok = add_box(b, &shape->box, NULL);
+        ok = add_box(corners, &shape->box, NULL);
         break;
     case PATCHES_BALL:
-        ok = add_box(b, &cube, shape);
+        ok = add_box(corners, &cube, shape);
         break;
     case PATCHES_MESH:
-        ok = add_mesh(b, shape->mesh);
+        ok = add_mesh(corners, shape->mesh);
         break;
     case PATCHES_SOLID:
-        if (!primitive_mesh_build(world, primitive, vec3_max_abs(vec3_sub(box->max, box->min)) / 100, pool, &b->corners,
+        if (!primitive_mesh_build(world, primitive, vec3_max_abs(vec3_sub(box->max, box->min)) / 100, pool, corners,
                                   error))
             return error->kind == ERROR_SCENE; /* it has no mesh, so it is bare */
         break;
     }
     if (kind != PATCHES_SOLID)
-        map_corners(b, primitive);
-    return (ok && weld(b, primitive, kind == PATCHES_BALL)) || error_no_memory(error, "patches");
+        map_corners(world, primitive, corners);
+    return (ok && weld(out, primitive, corners, kind == PATCHES_BALL)) || error_no_memory(error, "patches");
 }
 
 /* --- division --- */
@@ -388,12 +380,12 @@ static bool divide_long(struct patches *patches, uint32_t limit, struct error *e
 
 bool patches_build(struct patches *patches, const struct world *world, uint32_t limit, struct pool *pool,
                    struct error *error) {
-    struct patch_builder b = {.out = patches};
+    struct list corners = {0}; /* struct vec3, three for each triangle of one primitive */
     double area = 0;
     bool ok = true;
     *patches = (struct patches){.world = world};
     for (uint32_t i = 0; ok && i < world->primitive_count; i++) {
-        ok = add_primitive(&b, i, pool, error);
+        ok = add_primitive(patches, i, &corners, pool, error);
         if (ok && patches->all.count > limit)
             ok =
                 error_set(error, ERROR_SCENE,
@@ -404,12 +396,12 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
     for (uint32_t i = 0; ok && i < patches->all.count; i++) {
         struct vec3 c[3];
         patch_corners(patches, i, c);
-        area += vec3_length(patch_normal(c)) / 2;
+        area += patch_area(c);
     }
     /* A quarter of the limit, as right isosceles triangles with edges from .7 to 1 of the longest. */
     patches->edge = sqrt(6 * area / (0.25 * limit));
     ok = ok && divide_long(patches, limit / 2, error);
-    list_destroy(&b.corners);
+    list_destroy(&corners);
     if (!ok)
         patches_destroy(patches);
     return ok;

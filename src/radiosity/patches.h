@@ -45,6 +45,9 @@ void patch_corners(const struct patches *patches, uint32_t index, struct vec3 ou
 static inline struct vec3 patch_normal(const struct vec3 corners[3]) {
     return vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
 }
+static inline double patch_area(const struct vec3 corners[3]) {
+    return vec3_length(patch_normal(corners)) / 2;
+}
 
 /* What a primitive is to radiosity. BLACK: no light that arrives there is reflected diffusely. */
 enum patch_kind { PATCHES_BLACK, PATCHES_PLANAR, PATCHES_BOX, PATCHES_BALL, PATCHES_MESH, PATCHES_SOLID, PATCHES_BARE };

@@ -175,7 +175,6 @@ static bool find_rays(struct preparation *p, struct error *error) {
         return error_no_memory(error, "radiosity");
     for (size_t i = 0; i < out->first[side_count(out)]; i++)
         out->receivers[i] = p->sides[out->receivers[i] / p->receivers.rays];
-    out->rays += all;
     return true;
 }
 
@@ -380,7 +379,7 @@ static struct colour smooth(const struct radiosity *radiosity, uint32_t own, con
     for (size_t i = patches->first[own / 2]; i < patches->first[own / 2 + 1]; i++) {
         struct vec3 c[3];
         patch_corners(patches, patches->of_vertex[i], c);
-        double area = vec3_length(patch_normal(c));
+        double area = patch_area(c);
         for (int k = 0; k < 3; k++) {
             const uint32_t side = 2 * patch_at(patches, patches->of_vertex[i])->vertex[k] + own % 2;
             double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;

@@ -6,7 +6,6 @@
 #include "material/classic.h"
 #include "material/material_eval.h"
 #include "math/elementary.h"
-#include "math/frame.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -57,10 +56,6 @@ static struct sample2 stratified(const struct receiver *receiver, uint32_t posit
     uint64_t key = random_combine(receiver->key, dimension);
     uint32_t cell = sample_permute(position, RECEIVE_POSITIONS, key);
     return sample_cell(key, cell % SIDE, cell / SIDE, SIDE);
-}
-
-static double patch_area(const struct vec3 c[3]) {
-    return vec3_length(patch_normal(c)) / 2;
 }
 
 static struct receiver receiver_make(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch) {
@@ -288,33 +283,20 @@ static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
 
 /* The side of a vertex of a hit, by the shares of those that reflect light. */
 static uint32_t find_target(const struct radiosity *radiosity, const struct hit *hit, double choice) {
-    uint32_t patch, side = SIDE_NONE;
+    uint32_t patch;
     double shares[3], sum = 0;
     if (!patches_find(&radiosity->patches, hit, &patch, shares))
         return SIDE_NONE;
     const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
-    for (int k = 0; k < 3; k++)
-        sum += radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
-    choice *= sum;
     for (int k = 0; k < 3; k++) {
-        uint32_t own = 2 * vertex[k] + !hit->front;
-        if (!(radiosity->sides[own].area > 0))
-            continue;
-        side = own;
-        if (choice < shares[k])
-            break;
-        choice -= shares[k];
+        shares[k] = radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
+        sum += shares[k];
     }
-    return side;
-}
-
-/* A cosine-distributed direction. */
-static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
-    struct sample2 disc = sample_disc(xi);
-    struct vec3 a, b;
-    frame_tangents(normal, &a, &b);
-    double height = sqrt(math_max(0, 1 - disc.x * disc.x - disc.y * disc.y));
-    return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
+    choice *= sum;
+    int k = 0;
+    while (k < 2 && choice >= shares[k])
+        choice -= shares[k++];
+    return shares[k] > 0 ? 2 * vertex[k] + !hit->front : SIDE_NONE;
 }
 
 /* All of the scene is behind the surface, as outside of a room: no ray can meet anything. */
@@ -350,7 +332,7 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
             uint32_t cell = sample_permute(i * each + k, input->rays, key);
             uint64_t own = random_combine(key, input->rays + cell);
             struct receiver_ray r = {.receiver = &receiver, .from = light_receiver_of(&from)};
-            r.direction = direction_of(from.view, sample_cell(key, cell % n, cell / n, n));
+            r.direction = sample_cosine(from.view, sample_cell(key, cell % n, cell / n, n));
             r.pdf = intensity_of(vec3_dot(r.direction, from.view)) * rays_per_sample(input);
             const struct ray start = {.origin = r.from.from};
             r.ray = hit_ray(&from, &start, r.direction, NULL);
