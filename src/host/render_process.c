@@ -667,6 +667,7 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .export_model = model_export_node,
                                .write_scene = writes_scenes(process->options) ? scene_text_write : NULL,
                                .text_file = process->options->output,
+                               .text_is_lua = process->options->to_lua,
                                .message = message,
                                .cancelled = is_cancelled,
                                .error_text = scene_text,

@@ -3,6 +3,7 @@
 #include "script/gr_model_internal.h"
 
 #include "math/elementary.h"
+#include "script/scene_write_internal.h"
 #include "script/script_internal.h"
 
 #include <lauxlib.h>
@@ -95,6 +96,48 @@ double models_light_at(const struct model *model, struct vec3 point, double near
     return sum;
 }
 
+/* The degrees whose cosine a spot light computes as this one does from radians; they are near. */
+static double degrees_of(double radians) {
+    double degrees = radians * (180 / PI), low = degrees, high = degrees;
+    const double wanted = el_cos(radians), degree = PI / 180;
+    for (int i = 0; i < 64; i++) {
+        if (el_cos(low * degree) == wanted)
+            return low;
+        if (el_cos(high * degree) == wanted)
+            return high;
+        low = nextafter(low, 0);
+        high = nextafter(high, 180);
+    }
+    return degrees;
+}
+
+/* A scene that is written has the light as a call: the directions have the length that they had. */
+static void write_light(lua_State *L, const struct model_light *from, const struct scene_light *light) {
+    const struct transform turn = models_turn(context_of(L));
+    const struct vec3 along = affine_vector(&from->model_from_light, vec3_make(0, 0, -1));
+    const struct colour colour = light->light.colour;
+    const char *kind = "light";
+    lua_newtable(L);
+    set_vector(L, "colour", vec3_make(colour.r, colour.g, colour.b));
+    if (from->kind != MODEL_LIGHT_POINT)
+        set_vector(L, "direction", affine_vector(&turn.forward, along));
+    if (from->kind == MODEL_LIGHT_DIRECTIONAL) {
+        kind = "directional_light";
+    } else {
+        set_vector(L, "position", light->light.position);
+        lua_pushnumber(L, 1);
+        lua_setfield(L, -2, "intensity");
+    }
+    if (from->kind == MODEL_LIGHT_SPOT) {
+        kind = "spot_light";
+        lua_pushnumber(L, degrees_of(from->inner));
+        lua_setfield(L, -2, "inner");
+        lua_pushnumber(L, degrees_of(from->outer));
+        lua_setfield(L, -2, "outer");
+    }
+    scene_write_object(L, light, kind);
+}
+
 static void push_light(lua_State *L, const struct model_light *from) {
     struct script_context *context = context_of(L);
     const struct transform turn = models_turn(context);
@@ -123,6 +166,8 @@ static void push_light(lua_State *L, const struct model_light *from) {
         light->light.cos_outer = el_cos(from->outer);
         break;
     }
+    if (context->noted)
+        write_light(L, from, light);
     handle_push(L, HANDLE_LIGHT, light);
 }
 

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/suggestion.h"
 #include "formats/json_text.h"
+#include "math/range.h"
 #include "script/dispatch_internal.h"
 #include "script/script_internal.h"
 #include "script/table_internal.h"
@@ -407,8 +408,8 @@ static void set_state(struct scene_reader *r, const json_t *root) {
     if (defaults && (!word || (strcmp(word, "classic") != 0 && strcmp(word, "light") != 0)))
         sandbox_raise(sandbox, "defaults must be \"light\" or \"classic\"");
     r->script->only_named_pictures = !word || strcmp(word, "light") == 0;
-    if (time && (!json_is_number(time) || !(json_number_value(time) >= 0)))
-        sandbox_raise(sandbox, "time must be a number of seconds >= 0");
+    if (time && (!json_is_number(time) || !(json_number_value(time) >= 0) || !number_in_range(json_number_value(time))))
+        sandbox_raise(sandbox, "time must be a number of seconds, from 0 to %g", NUMBER_LIMIT);
     r->script->time = json_number_value(time);
     if (!order)
         return;

@@ -6,6 +6,7 @@
 #include "sandbox/embedded.h"
 #include "script/gr_model_internal.h"
 #include "script/script_internal.h"
+#include "script/table_internal.h"
 
 #include <lauxlib.h>
 #include <string.h>
@@ -61,12 +62,6 @@ static int quote(lua_State *L) {
     return 1;
 }
 
-/* Of a light that came with a model: {model = address of its node, index = number}; nil of any other object. */
-static int model_light(lua_State *L) {
-    (void)L;
-    return 0;
-}
-
 /* The text of a program that C owns becomes one of Lua. Arguments: the function, a name, the text, a table. */
 static int call_with_code(lua_State *L) {
     lua_pushstring(L, lua_touserdata(L, 3));
@@ -79,6 +74,17 @@ static int call_with_code(lua_State *L) {
 static int image_function(lua_State *L) {
     const struct script_texture *texture = lua_touserdata(L, 1);
     lua_pushlightuserdata(L, texture->function);
+    return 1;
+}
+
+/* The positional forms of a method: "axis angle". */
+static int forms(lua_State *L) {
+    const struct script_function *function = function_find(OWNER_NODE, luaL_checkstring(L, 1));
+    lua_newtable(L);
+    for (int i = 0; i < FORM_LIMIT && function->forms[i]; i++) {
+        lua_pushstring(L, function->forms[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
     return 1;
 }
 
@@ -176,27 +182,88 @@ void scene_write_call(struct script_context *context, const struct script_functi
     lua_State *L = context->sandbox.lua;
     if (function->in_lua || function_renders(function) || function->result == RESULT_FRAMES)
         return;
+    const bool may_turn = context->scene.is_model && function->result == RESULT_NODE;
+    const struct model *model = may_turn ? models_find(context, result->pointer) : NULL;
     note_rest(context, function, args);
     if (function->owner == OWNER_NODE && function->result == RESULT_SELF) {
         push_writer(L, "called");
         lua_pushlightuserdata(L, args[SELF].node);
         lua_pushstring(L, function->name);
         lua_pushstring(L, orders[context->scene.order]);
-        lua_newtable(L);
-        for (int i = 0; i < FORM_LIMIT && function->forms[i]; i++) {
-            lua_pushstring(L, function->forms[i]);
-            lua_rawseti(L, -2, i + 1);
-        }
-        lua_call(L, 4, 0);
+        lua_call(L, 3, 0);
     } else if (function->owner == OWNER_GR && result->pointer) {
         push_writer(L, "made");
         lua_pushlightuserdata(L, result->pointer);
         lua_pushstring(L, function->name);
         lua_call(L, 2, 0);
     }
+    if (model) { /* without materials it is lighter than in a script, see flatten_material.c */
+        push_writer(L, "model");
+        lua_pushlightuserdata(L, result->pointer);
+        if (model->materials.count == 0)
+            lua_pushnumber(L, 0.85);
+        else
+            lua_pushnil(L);
+        lua_pushboolean(L, models_turn(context).forward.m[1][1] != 1);
+        lua_call(L, 3, 0);
+    }
+}
+
+void scene_write_object(lua_State *L, const void *object, const char *kind) {
+    push_writer(L, "object");
+    lua_insert(L, -2);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)object);
+    lua_pushstring(L, kind);
+    lua_call(L, 3, 0);
 }
 
 /* --- pictures --- */
+
+static void set_vector(lua_State *L, const char *field, struct vec3 v) {
+    lua_createtable(L, 3, 0);
+    for (int k = 0; k < 3; k++) {
+        lua_pushnumber(L, vec3_get(v, k));
+        lua_rawseti(L, -2, k + 1);
+    }
+    lua_setfield(L, -2, field);
+}
+
+static struct vec3 vector_of(struct colour c) {
+    return vec3_make(c.r, c.g, c.b);
+}
+
+/* The light of the studio around a model, which scripts do not have: its boxes as lights, and its sky. */
+static void set_model_light(lua_State *L, const struct render_request *request) {
+    const struct scene_light *lights = request->lights;
+    for (uint32_t i = 0; i < request->light_count; i++) {
+        lua_newtable(L);
+        set_vector(L, "corner", lights[i].light.corner);
+        set_vector(L, "v1", lights[i].light.edge1);
+        set_vector(L, "v2", lights[i].light.edge2);
+        set_vector(L, "emission", vector_of(lights[i].light.colour));
+        lua_pushboolean(L, 1);
+        lua_setfield(L, -2, "visible");
+        scene_write_object(L, &lights[i], "area_light");
+        push_writer(L, "add_light");
+        lua_pushlightuserdata(L, (void *)(uintptr_t)&lights[i]);
+        lua_call(L, 1, 0);
+    }
+    set_vector(L, "background", vector_of(request->sky.colour));
+    set_vector(L, "ambient", vector_of(request->ambient));
+}
+
+/* The camera of a model is fitted to a part of the scene. */
+static void set_model_camera(lua_State *L, const struct render_request *request) {
+    const struct lens *lens = &request->settings.lens;
+    set_vector(L, "eye", request->camera.eye);
+    set_vector(L, request->settings.view_is_target ? "target" : "view", request->camera.view);
+    lua_pushnumber(L, request->camera.fov);
+    lua_setfield(L, -2, "fov");
+    if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
+        lua_pushnumber(L, lens->view_height);
+        lua_setfield(L, -2, "view_height");
+    }
+}
 
 /* Arguments: the request. Returns the text. */
 static int write_picture(lua_State *L) {
@@ -208,6 +275,10 @@ static int write_picture(lua_State *L) {
     lua_createtable(L, 0, 3);
     lua_pushboolean(L, !script_of(context)->only_named_pictures);
     lua_setfield(L, -2, "classic");
+    lua_pushboolean(L, script_of(context)->host->text_is_lua);
+    lua_setfield(L, -2, "lua");
+    lua_pushboolean(L, context->scene.spins);
+    lua_setfield(L, -2, "spins");
     lua_pushnumber(L, request->time);
     lua_setfield(L, -2, "time");
     if (request->frame.number > 0) { /* in seconds already */
@@ -218,7 +289,12 @@ static int write_picture(lua_State *L) {
         lua_rawseti(L, -2, 2);
         lua_setfield(L, -2, "shutter");
     }
-    lua_call(L, 3, 1);
+    lua_newtable(L);
+    if (context->scene.is_model)
+        set_model_camera(L, request);
+    if (context->scene.is_model && context->scene.studio)
+        set_model_light(L, request);
+    lua_call(L, 4, 1);
     return 1;
 }
 
@@ -243,11 +319,8 @@ bool scene_write_picture(struct script_context *context, const struct render_req
 }
 
 void scene_write_open(lua_State *L) {
-    static const luaL_Reg helpers[] = {{"address", address},
-                                       {"quote", quote},
-                                       {"image_function", image_function},
-                                       {"model_light", model_light},
-                                       {NULL, NULL}};
+    static const luaL_Reg helpers[] = {
+        {"address", address}, {"quote", quote}, {"forms", forms}, {"image_function", image_function}, {NULL, NULL}};
     embedded_run(L, scene_write_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &writer);
     context_of(L)->noted = note;

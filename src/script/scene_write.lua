@@ -6,7 +6,7 @@ local type, next, rawget, rawlen, setmetatable, getmetatable = type, next, rawge
 local sort, concat = table.sort, table.concat
 local format, gmatch, gsub, match, rep, sub, find = string.format, string.gmatch, string.gsub, string.match, string.rep, string.sub, string.find
 local math_type, floor, tostring, tonumber, raise = math.type, math.floor, tostring, tonumber, raise
-local WIDTH, NESTED = 120, 150
+local WIDTH, JSON_NESTED, LUA_NESTED, LOCALS = 120, 150, 20, 100
 
 local OBJECT = {} -- the metatable of records
 local records = {} -- by the address of what they made
@@ -16,14 +16,7 @@ local given -- the arguments of the call that runs, by name
 local function copy(value)
     local kind = type(value)
     if kind == 'userdata' then
-        local record = records[address(value)]
-        if not record then
-            record = model_light(value)
-            if not record then raise('an object that no function of gr has made cannot be written') end
-            record = setmetatable({kind = 'model_light', fields = {model = records[record.model], index = record.index}}, OBJECT)
-            records[address(value)] = record
-        end
-        return record
+        return records[address(value)] or raise('an object that no function of gr has made cannot be written')
     elseif kind ~= 'table' then
         return value
     end
@@ -64,7 +57,7 @@ local function drop(calls, names)
     end
 end
 
-local function add_call(record, name, order, forms)
+local function add_call(record, name, order)
     local calls = record.calls
     record.changes = record.changes + 1
     if name == 'reset' or name == 'pose' then drop(calls, TRANSFORMS) end
@@ -73,7 +66,7 @@ local function add_call(record, name, order, forms)
         record.children[#record.children + 1] = given.node
     elseif name ~= 'reset' then
         record.displaced = record.displaced or name == 'displace'
-        calls[#calls + 1] = {name = name, fields = given, forms = forms, order = TRANSFORMS[name] and order}
+        calls[#calls + 1] = {name = name, fields = given, order = TRANSFORMS[name] and order}
     end
 end
 
@@ -91,22 +84,33 @@ local function number_text(x)
     return format('%.17g', x)
 end
 
--- The positional form of a method whose arguments these are, or nil.
-local function in_form(call)
-    for _, form in ipairs(call.forms) do
-        local list, ends, count = {}, false, 0
-        for name, optional in gmatch(form, '([%w_]+)([?]?)') do
-            local value = call.fields[name]
-            if value == nil and optional == '' then ends, count = true, -1000 end
-            if value == nil then ends = true end
-            if value ~= nil and ends then count = -1000 end
-            if value ~= nil then list[#list + 1], count = value, count + 1 end
+-- The positional forms of a method: lists of its arguments, with the number of those that must be there.
+local parsed = {}
+local function forms_of(name)
+    if parsed[name] then return parsed[name] end
+    local out = {}
+    for k, form in ipairs(forms(name)) do
+        out[k] = {needed = 0}
+        for argument, optional in gmatch(form, '([%w_]+)([?]?)') do
+            out[k][#out[k] + 1] = argument
+            if optional == '' then out[k].needed = #out[k] end
         end
-        local total = 0
-        for _ in next, call.fields do total = total + 1 end
-        if count == total and count > 0 then
-            local only = count == 1 and (call.fields.vector or call.fields.quaternion)
-            return only or list
+    end
+    parsed[name] = out
+    return out
+end
+
+-- The arguments of a call as one of these forms, or nil.
+local function in_form(call)
+    local fields, total = call.fields, 0
+    for _ in next, fields do total = total + 1 end
+    for _, form in ipairs(forms_of(call.name)) do
+        local count = 0
+        while form[count + 1] and fields[form[count + 1]] ~= nil do count = count + 1 end
+        if count == total and count > 0 and count >= form.needed then
+            local list = count == 1 and (fields.vector or fields.quaternion) or {}
+            for k = 1, #list == 0 and count or 0 do list[k] = fields[form[k]] end
+            return list
         end
     end
 end
@@ -122,9 +126,12 @@ local function is_list(value)
     return #value > 0 or next(value) == nil
 end
 
--- What a record is in the file: a table of JSON.
+-- What a record is in the file: a table of JSON. `shown`: those of the picture.
+local shown
 local function members(record)
+    if shown[record] then return shown[record] end
     local out = {type = record.kind}
+    shown[record] = out
     for key, value in next, record.fields do out[key] = value end
     if record.children and #record.children > 0 then
         local all = {}
@@ -140,8 +147,9 @@ local function members(record)
     return out
 end
 
--- Counts how often each record is used, and lists them so that those inside come first.
-local function survey(roots)
+-- Counts how often each record is used, and lists them so that those inside come first. After `nested`
+-- values in each other one gets a name.
+local function survey(roots, nested)
     local uses, depths, list, orders = {}, {}, {}, {}
     local function visit(value)
         if type(value) ~= 'table' then return 0 end
@@ -159,7 +167,7 @@ local function survey(roots)
             deepest = deepest < depth and depth or deepest
         end
         if not record then return deepest + 1 end
-        if deepest > NESTED then uses[record], deepest = uses[record] + 1, 0 end -- it gets a name
+        if deepest > nested then uses[record], deepest = uses[record] + 1, 0 end -- it gets a name
         depths[record] = deepest + 1
         list[#list + 1] = record
         return deepest + 1
@@ -169,14 +177,14 @@ local function survey(roots)
 end
 
 -- Names of the records that are used more than once.
-local function name_records(uses, list, pattern)
+local function name_records(uses, list, pattern, reserved)
     local names, taken = {}, {}
     for _, record in ipairs(list) do
         if uses[record] > 1 then
             local own = type(record.fields.name) == 'string' and gsub(record.fields.name, pattern, '_') or record.kind
             if own == '' or find(own, '^%d') then own = '_' .. own end
             local name, number = own, 1
-            while taken[name] do
+            while taken[name] or reserved[name] do
                 number = number + 1
                 name = own .. '_' .. number
             end
@@ -187,13 +195,13 @@ local function name_records(uses, list, pattern)
 end
 
 -- One line if it is short, else a line for each part, and for numbers as many as fit.
-local function join(parts, open, close, indent)
+local function join(parts, open, close, indent, step)
     local width, lines = #open + #close, false
     for _, part in ipairs(parts) do
         width, lines = width + #part + 2, lines or find(part, '\n', 1, true)
     end
     if not lines and width + #indent <= WIDTH then return open .. concat(parts, ', ') .. close end
-    local out, line, inner = {}, '', indent .. ' '
+    local out, line, inner = {}, '', indent .. (step or ' ')
     for k, part in ipairs(parts) do
         local text = k < #parts and part .. ',' or part
         local short = #part < 30 and not find(part, '[\n{]')
@@ -235,16 +243,20 @@ local function json_of(names)
     return text_of
 end
 
+local function one_order(orders)
+    local order = next(orders)
+    if order and next(orders, order) then raise('gr.transform_order changes within the scene, which cannot be written') end
+    return order
+end
+
 local function write_json(root, picture, state)
-    local uses, list, orders = survey{root, picture}
-    local names = name_records(uses, list, '[%c"\\]')
+    local uses, list, orders = survey({root, picture}, JSON_NESTED)
+    local names = name_records(uses, list, '[%c"\\]', {})
     local text_of = json_of(names)
     local define, by_name = {}, {}
     for record, name in next, names do by_name[name] = record end
     for k, name in ipairs(sorted_keys(by_name)) do define[k] = '  ' .. quote(name) .. ': ' .. text_of(by_name[name], '  ', true) end
-    local order = next(orders)
-    if order and next(orders, order) then raise('gr.transform_order changes within the scene, which cannot be written') end
-    local out = {}
+    local order, out = one_order(orders), {}
     if state.classic then out[#out + 1] = '"defaults": "classic"' end
     if #define > 0 then out[#out + 1] = '"define": {\n' .. concat(define, ',\n') .. '\n }' end
     out[#out + 1] = '"gray": 1'
@@ -253,6 +265,116 @@ local function write_json(root, picture, state)
     if state.time > 0 then out[#out + 1] = '"time": ' .. number_text(state.time) end
     if order and order ~= 'new' then out[#out + 1] = '"transform_order": ' .. quote(order) end
     return '{' .. concat(out, ',\n ') .. '\n}\n'
+end
+
+-- --- Lua ---
+
+local KEYWORDS = {gr = true, scene = true, shared = true}
+for word in gmatch('and break do else elseif end false for function goto if in local nil not or repeat return then true until while', '%a+') do
+    KEYWORDS[word] = true
+end
+-- Where fields stand among the others, which are in the order of their names.
+local RANK = {name = '\1', file = '\1', node = '\1', children = '~', operands = '~'}
+
+local function lua_string(text)
+    if find(text, "[%c'\\\128-\255]") then return (gsub(format('%q', text), '\\\n', '\\n')) end
+    return "'" .. text .. "'"
+end
+
+-- The operations of a program, as many on a line as fit.
+local function code_text(code)
+    local lines, line = {}, ''
+    for statement in gmatch(code, '[^;]+;? ?') do
+        if #line + #statement > WIDTH then
+            lines[#lines + 1] = gsub(line, ' $', '')
+            line = ''
+        end
+        line = line .. statement
+    end
+    lines[#lines + 1] = line
+    return '[[\n' .. concat(lines, '\n') .. ']]'
+end
+
+-- names: of records, as expressions.
+local function lua_of(names)
+    local text_of
+    local function fields_text(t, indent)
+        local parts, keys = {}, {}
+        for key in next, t do keys[#keys + 1] = key end
+        sort(keys, function(a, b) return (RANK[a] or ' ') .. a < (RANK[b] or ' ') .. b end)
+        for k, key in ipairs(keys) do
+            local name = find(key, '^[%a_][%w_]*$') and (key == 'scene' or not KEYWORDS[key]) and key or '[' .. lua_string(key) .. ']'
+            parts[k] = name .. ' = ' .. (key == 'code' and code_text(t[key]) or text_of(t[key], indent .. '  '))
+        end
+        return join(parts, '{', '}', indent, '  ')
+    end
+    local function record_text(record, indent)
+        local fields, calls = {}, {}
+        for key, value in next, members(record) do fields[key] = value end
+        local is_group = record.kind == 'node' or record.kind == 'joint'
+        local children = not is_group and fields.children or {}
+        fields.type, fields.transform, fields.children = nil, nil, is_group and fields.children or nil
+        for _, child in ipairs(children) do calls[#calls + 1] = ':add_child(' .. text_of(child, indent .. '  ') .. ')' end
+        for _, call in ipairs(record.calls or {}) do
+            local list, parts = in_form(call), {}
+            for k, argument in ipairs(list or {}) do parts[k] = text_of(argument, indent .. '  ') end
+            calls[#calls + 1] = ':' .. call.name .. (list and '(' .. concat(parts, ', ') .. ')' or fields_text(call.fields, indent))
+        end
+        return 'gr.' .. record.kind .. fields_text(fields, indent) .. concat(calls)
+    end
+    function text_of(value, indent, defines)
+        local kind = type(value)
+        if kind == 'number' then return number_text(value) end
+        if kind == 'boolean' then return tostring(value) end
+        if kind == 'string' then return lua_string(value) end
+        if getmetatable(value) == OBJECT then return not defines and names[value] or record_text(value, indent) end
+        if not is_list(value) then return fields_text(value, indent) end
+        local parts = {}
+        for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. '  ') end
+        return join(parts, '{', '}', indent, '  ')
+    end
+    return text_of
+end
+
+-- A picture with the defaults of calls by position is such a call, if it has what that needs.
+local function positional(picture, text_of)
+    local words, rest = {'scene'}, {}
+    for key, value in next, picture do rest[key] = value end
+    for name in gmatch('file width height eye view up fov', '%a+') do
+        if picture[name] == nil then return nil end
+        words[#words + 1] = text_of(picture[name], '  ')
+        rest[name] = nil
+    end
+    for name in gmatch('ambient lights', '%a+') do
+        words[#words + 1] = text_of(picture[name] or name == 'lights' and {} or {0, 0, 0}, '  ')
+        rest[name] = nil
+    end
+    if next(rest) then words[#words + 1] = text_of(rest, '') end
+    return 'gr.render(' .. concat(words, ', ') .. ')'
+end
+
+local function write_lua(root, picture, state)
+    local uses, list, orders = survey({root, picture}, LUA_NESTED)
+    local plain = name_records(uses, list, '[^%w_]', KEYWORDS)
+    local order, count, names, out = one_order(orders), 0, {}, {'-- A scene written by gray\n'}
+    for _ in next, plain do count = count + 1 end
+    local few = count <= LOCALS
+    for record, name in next, plain do names[record] = few and name or 'shared.' .. name end
+    if not few then out[#out + 1] = 'local shared = {}\n' end
+    if order and order ~= 'new' then out[#out + 1] = 'gr.transform_order(' .. lua_string(order) .. ')\n' end
+    if state.spins and state.time > 0 then raise('a later frame of an animation with node:spin cannot be written as a script') end
+    local text_of = lua_of(names)
+    for _, record in ipairs(list) do
+        if names[record] then
+            out[#out + 1] = (few and 'local ' or '') .. names[record] .. ' = ' .. text_of(record, '', true) .. '\n'
+        end
+    end
+    out[#out + 1] = 'local scene = ' .. text_of(root, '') .. '\n'
+    local call, kind = state.classic and not picture.type and positional(picture, text_of), picture.type or 'render'
+    picture.node, picture.type = setmetatable({}, OBJECT), nil
+    names[picture.node] = 'scene'
+    out[#out + 1] = (call or 'gr.' .. kind .. text_of(picture, '')) .. '\n'
+    return concat(out)
 end
 
 -- --- what gray calls ---
@@ -278,14 +400,33 @@ return {
         if kind == 'geometry' and given.primitive then given.primitive = snapshot(given.primitive) end
         records[made] = setmetatable({kind = kind, fields = given, calls = {}, children = {}, changes = 0}, OBJECT)
     end,
-    called = function(self, name, order, forms)
-        if records[self] then add_call(records[self], name, order, forms) end
+    object = function(fields, made, kind)
+        records[made] = setmetatable({kind = kind, fields = fields, calls = {}, children = {}, changes = 0}, OBJECT)
     end,
-    picture = function(kind, self, state)
+    called = function(self, name, order)
+        if records[self] then add_call(records[self], name, order) end
+    end,
+    add_light = function(light)
+        given.lights = given.lights or {}
+        given.lights[#given.lights + 1] = records[light]
+    end,
+    -- A model on the command line: `plain`, the kd of its material if the file has none; whether z is up in the file.
+    model = function(node, plain, is_turned)
+        local record = records[node]
+        if plain then record.fields.material = setmetatable({kind = 'material', fields = {kd = {plain, plain, plain}}}, OBJECT) end
+        if is_turned then
+            record.calls[1] = {name = 'rotate', fields = {axis = 'x', angle = -90}, order = 'new'}
+        end
+    end,
+    picture = function(kind, self, state, more)
         local picture, root = given, given.node or records[self]
+        shown = {}
+        for name, value in next, more do
+            if name ~= 'view' or not picture.target then picture[name] = value end
+        end
         picture.node = nil
         if kind ~= 'render' then picture.type = kind end
         if state.shutter then picture.shutter = state.shutter end
-        return write_json(root, picture, state)
+        return (state.lua and write_lua or write_json)(root, picture, state)
     end,
 }

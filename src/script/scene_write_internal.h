@@ -17,6 +17,8 @@ void scene_write_open(lua_State *L);
 void scene_write_begin(struct script_context *context);
 void scene_write_call(struct script_context *context, const struct script_function *function,
                       const struct script_value *args, const struct script_result *result);
+/* Records an object that no call has made, with the fields in the table on top, which is popped. */
+void scene_write_object(lua_State *L, const void *object, const char *kind);
 /* Hands the scene of the picture to the host. */
 bool scene_write_picture(struct script_context *context, const struct render_request *request, struct error *error);
 

@@ -73,6 +73,7 @@ struct script_host {
     bool (*write_scene)(void *context, const struct render_request *request, const char *text, size_t size,
                         struct error *error);
     const char *text_file; /* where that is written; NULL: to no file */
+    bool text_is_lua;      /* a script, not JSON */
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);
     bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */

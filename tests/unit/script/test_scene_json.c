@@ -125,7 +125,7 @@ static void copy_demos(void) {
     CHECK_EQ_INT(system(line), 0);
 }
 
-/* Renders a scene of data/ and what is written of it, in parts, too. */
+/* Renders a scene of data/, what is written of it, and the script that is written of that. */
 static void compare(const char *scene, const char *options) {
     char line[2048];
     (void)snprintf(line, sizeof line,
@@ -133,13 +133,15 @@ static void compare(const char *scene, const char *options) {
                    "$gray -q %s -o out/x%%d.json %s && $gray -q $o %s -o out/a%%d.png %s && "
                    "for f in out/x*.json; do n=${f#out/x}; n=${n%%.json}; "
                    "$gray -q $o -o out/b.png $f && cmp out/b.png out/a$n.png || exit 1; "
-                   "$gray -q --to-json $f >out/again.json && cmp out/again.json $f || exit 1; done",
+                   "$gray -q --to-json $f >out/again.json && cmp out/again.json $f || exit 1; "
+                   "grep -q '\"time\"' $f || { $gray -q $f -o out/b.lua && $gray -q $o -o out/b.png out/b.lua && "
+                   "cmp out/b.png out/a$n.png || exit 1; }; done",
                    test_folder(), test_program(), options, scene, options, scene);
     if (system(line) != 0)
         test_fail(__FILE__, __LINE__, "%s: another picture, or other bytes of its own scene", scene);
 }
 
-TEST(a_scene_that_is_written_as_json_is_the_same_picture_and_is_written_again_with_the_same_bytes) {
+TEST(a_written_scene_is_the_same_picture_and_is_written_again_with_the_same_bytes) {
     static const char *const scenes[] = {"csg/chess", "functions/lamp", "functions/landscape", "light"};
     need_json();
     copy_demos();
@@ -151,7 +153,7 @@ TEST(a_scene_that_is_written_as_json_is_the_same_picture_and_is_written_again_wi
     compare("data/animation/walker.lua", "--frames 2-2");
 }
 
-TEST_LONG(every_demo_that_is_written_as_json_is_the_same_picture) {
+TEST_LONG(every_demo_that_is_written_as_json_and_as_a_script_is_the_same_picture) {
     need_json();
     copy_demos();
     CHECK_EQ_INT(test_run_shell("find data -name '*.lua' ! -name 'make*' ! -name 'gallery*' | sort >list", ""), 0);
@@ -244,4 +246,79 @@ TEST(what_json_cannot_have_is_an_error_that_names_it_and_writes_nothing) {
     test_write_text(test_path("s.lua"), "gr.render{node = gr.sphere{}}");
     test_shell_errors("$gray -q s.lua -o own.json", 1, "own.json");
     test_shell("cat own.json", 0, "[1]");
+}
+
+TEST(a_scene_in_json_becomes_a_script_that_a_reader_can_follow) {
+    need_json();
+    test_write_text(
+        test_path("a.json"),
+        "{\"gray\": 1, \"define\": {\"m\": {\"type\": \"material\", \"kd\": [0.1, 0.2, 0.30000000000000004]},"
+        " \"w\": {\"type\": \"torus\", \"name\": \"end\", \"minor\": 0.2, \"material\": {\"ref\": \"m\"}}},"
+        "\"nodes\": [{\"ref\": \"w\"}, {\"type\": \"node\", \"name\": \"it's\", \"children\": [{\"ref\": \"w\"}], "
+        "\"transform\": [{\"translate\": [1, 0, -0.5]}, {\"rotate\": {\"axis\": \"y\", \"angle\": 30}}]},"
+        "{\"type\": \"sphere\", \"children\": [{\"type\": \"cube\", \"material\": {\"ref\": \"m\"}}]}],"
+        "\"picture\": {\"eye\": [0, 2, 8], \"width\": 32, \"height\": 24, \"file\": \"a.png\"}}");
+    test_shell("$gray -q --to-lua a.json", 0,
+               "-- A scene written by gray\n"
+               "local material = gr.material{kd = {0.1, 0.2, 0.30000000000000004}}\n"
+               "local end_2 = gr.torus{name = 'end', material = material, minor = 0.2}\n"
+               "local scene = gr.node{\n"
+               "  name = 'scene',\n"
+               "  children = {\n"
+               "    end_2,\n"
+               "    gr.node{name = \"it's\", children = {end_2}}:translate(1, 0, -0.5):rotate('y', 30),\n"
+               "    gr.sphere{}:add_child(gr.cube{material = material})\n"
+               "  }\n"
+               "}\n"
+               "gr.render{file = 'a.png', node = scene, eye = {0, 2, 8}, height = 24, width = 32}\n");
+}
+
+TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
+    need_json();
+    test_write_text(
+        test_path("many.lua"),
+        "local s = gr.node('s')\n"
+        "for i = 1, 400 do\n"
+        "  local b = gr.sphere{name = 'b' .. i, radius = 0.4, material = gr.material{kd = {i / 400, 0.5, 0}}}\n"
+        "  s:add_child(gr.node{children = {b}}:translate(i % 20 - 10, i // 20 - 10, 0))\n"
+        "  s:add_child(gr.node{children = {b}}:translate(i % 20 - 9.5, i // 20 - 10, 1))\n"
+        "end\n"
+        "for i = 1, 100 do s = gr.node{children = {s}}:rotate('z', 0.1) end\n"
+        "gr.render(s, 'many.png', 48, 36, {0, 0, 30}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"
+        "          {gr.light({9, 9, 30}, {1, 1, 1})})\n");
+    test_shell("$gray -q many.lua && $gray -q many.lua -o b.lua && $gray -q b.lua -o b.png && cmp many.png b.png", 0,
+               "");
+}
+
+#define LIGHT                                                                                                          \
+    "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":%d}},\"rotation\":[0.1,0.2,0.05,0.97],\"translation\":[%s]}"
+
+TEST(models_and_their_lights_are_written_as_json_and_scripts_with_the_same_picture) {
+    char text[4096];
+    need_json();
+    (void)snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":"
+        "{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\",\"intensity\":2000},{\"type\":\"point\","
+        "\"intensity\":3000,\"color\":[1,0.5,0.2]},{\"type\":\"spot\",\"intensity\":9000,\"spot\":"
+        "{\"innerConeAngle\":0.3,\"outerConeAngle\":0.71}}]}},\"scenes\":[{\"nodes\":[0,1,2,3,4]}],"
+        "\"nodes\":[{\"mesh\":0},{\"camera\":0,\"translation\":[0,0.5,5]}," LIGHT "," LIGHT "," LIGHT "],"
+        "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":1}}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+        "AACAvwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}",
+        0, "0,0,0", 1, "1,1.5,2", 2, "-1,1,2.5");
+    test_write_text(test_path("g.gltf"), text);
+    test_write_text(test_path("o.obj"), "v -1 0 0\nv 1 0 0\nv 0 1 0.3\nv 0 0 1\nf 1 2 3\nf 1 4 3\n");
+    test_write_text(test_path("s.stl"), "solid s\nfacet normal 0 0 1\nouter loop\nvertex -1 0 0\nvertex 1 0 0\n"
+                                        "vertex 0 1 1\nendloop\nendfacet\nendsolid s\n");
+    test_write_text(test_path("l.lua"),
+                    "local m = gr.model('g.gltf')\nlocal c = m.cameras[1]\n"
+                    "gr.render{node = m, eye = c.eye, view = c.view, up = c.up, fov = c.fov, lights = m.lights}\n");
+    test_shell("for m in g.gltf o.obj s.stl l.lua; do o='-q --size 48x27 --spp 2'; $gray $o $m -o a.png && "
+               "$gray $o $m -o x.json && $gray $o x.json -o b.png && cmp a.png b.png && "
+               "$gray $o $m -o x.lua && $gray $o x.lua -o b.png && cmp a.png b.png || exit 1; done",
+               0, "");
 }
