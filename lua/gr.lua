@@ -507,6 +507,8 @@ function gr.bounded_by(name, object, by) end
 ---@field to? gr.triple to (a point {x, y, z}; default {0, 1, 0}): Centre of the other end.
 ---@field radius? number radius (a number, > 0; default 1): Radius.
 ---@field open? boolean open (true or false; default false): Whether it has no caps; without caps it is not a solid for CSG.
+---@field edge? number edge (a number, >= 0; default 0): Radius of its rounded edges; 0: they are sharp.
+---@field chamfer? boolean chamfer (true or false; default false): Whether edges are cut at 45 degrees instead, so far from them.
 
 ---A capped cylinder; by default about the y axis, of radius 1, from y = -1 to 1.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -585,6 +587,8 @@ function gr.square(material) end
 ---@field medium? gr.medium medium (a medium; default none): Fills the solid, instead of a material or behind its surface.
 ---@field min gr.triple min (a point {x, y, z}): A corner.
 ---@field max gr.triple max (a point {x, y, z}): The opposite corner.
+---@field edge? number edge (a number, >= 0; default 0): Radius of its rounded edges; 0: they are sharp.
+---@field chamfer? boolean chamfer (true or false; default false): Whether edges are cut at 45 degrees instead, so far from them.
 
 ---A box between two corners.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
@@ -794,6 +798,8 @@ function gr.lathe(material, points, spline) end
 ---@field from? number from (a number; default 0): Height of the bottom.
 ---@field to? number to (a number; default from + 1): Height of the top.
 ---@field spline? 'linear'|'catmull-rom'|'b-spline'|'bezier' spline ('linear'|'catmull-rom'|'b-spline'|'bezier'; default 'linear'): Kind of spline through the points; bezier needs 3 n points.
+---@field edge? number edge (a number, >= 0; default 0): Radius of its rounded edges; 0: they are sharp.
+---@field chamfer? boolean chamfer (true or false; default false): Whether edges are cut at 45 degrees instead, so far from them.
 
 ---An extrusion: an outline along y, with holes.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.

@@ -40,11 +40,12 @@ void solid_probes_destroy(struct solid_probe *probes, int count) {
     mem_free(probes);
 }
 
-/* Whether the parts of a shape are smooth pieces that meet in edges. Those of implicit solids are none; of many facets
- * most edges are to be forgotten: there an edge is where the normal turns much. */
+/* Whether the parts of a shape are smooth pieces that meet in edges. Those of implicit solids are none, those of
+ * bevelled ones touch; of many facets most edges are to be forgotten: there an edge is where the normal turns much. */
 static bool has_pieces(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_IMPLICIT:
+    case SHAPE_BEVELLED:
         return false;
     case SHAPE_MESH:
         return mesh_triangle_count(shape->mesh) <= FEW_FACETS;

@@ -2,6 +2,7 @@
  * several numbers together, which the table cannot express, and sizes that the root-finders cannot handle. */
 #include "call/context.h"
 #include "math/range.h"
+#include "script/gr_bevel_internal.h"
 #include "script/rows_internal.h"
 #include "script/table_internal.h"
 #include "shape/planar.h"
@@ -55,13 +56,15 @@ static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error)
     return length_is_fine(length, "the distance of from and to", error);
 }
 
-enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN };
+enum { CYLINDER_FROM = SHAPE_FIRST, CYLINDER_TO, CYLINDER_RADIUS, CYLINDER_OPEN, CYLINDER_EDGE, CYLINDER_CHAMFER };
 static const struct script_parameter cylinder_parameters[] = {
     SHAPE("cylinder"),
     [CYLINDER_FROM] = POSITION("from", "{0, -1, 0}", "Centre of one end."),
     [CYLINDER_TO] = POSITION("to", "{0, 1, 0}", "Centre of the other end."),
     [CYLINDER_RADIUS] = LENGTH("radius", "1", "Radius."),
     [CYLINDER_OPEN] = OPEN_ENDS,
+    [CYLINDER_EDGE] = EDGE,
+    [CYLINDER_CHAMFER] = CHAMFER,
 };
 
 static bool gr_cylinder(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -73,6 +76,12 @@ static bool gr_cylinder(struct script_context *context, const struct script_valu
     struct node *node = shape_node(context, args, "cylinder", error);
     struct shape shape = {.kind = SHAPE_REVOLVED_QUADRIC,
                           .revolved_quadric = revolved_quadric_cylinder(from, to, radius, args[CYLINDER_OPEN].boolean)};
+    struct bevelled_cylinder bevelled = {.from = from, .to = to, .radius = radius};
+    if (has_bevel(&args[CYLINDER_EDGE]) && args[CYLINDER_OPEN].boolean)
+        return error_set(error, ERROR_SCENE, "edge needs a cylinder with caps, and open is true");
+    if (node && has_bevel(&args[CYLINDER_EDGE]) &&
+        !bevel_cylinder(context, &bevelled, &args[CYLINDER_EDGE], &args[CYLINDER_CHAMFER], &shape, error))
+        return false;
     return give_shape(node, &shape, result);
 }
 
@@ -292,11 +301,13 @@ static bool gr_superellipsoid(struct script_context *context, const struct scrip
     return give_shape(node, &shape, result);
 }
 
-enum { BOX_MIN = SHAPE_FIRST, BOX_MAX };
+enum { BOX_MIN = SHAPE_FIRST, BOX_MAX, BOX_EDGE, BOX_CHAMFER };
 static const struct script_parameter box_parameters[] = {
     SHAPE("box"),
     [BOX_MIN] = {"min", KIND_POINT, 0, ANY, NULL, NULL, "A corner."},
     [BOX_MAX] = {"max", KIND_POINT, 0, ANY, NULL, NULL, "The opposite corner."},
+    [BOX_EDGE] = EDGE,
+    [BOX_CHAMFER] = CHAMFER,
 };
 
 static bool gr_box(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -307,6 +318,9 @@ static bool gr_box(struct script_context *context, const struct script_value *ar
         return error_set(error, ERROR_SCENE, "min and max must differ along every axis");
     struct node *node = shape_node(context, args, "box", error);
     struct shape shape = {.kind = SHAPE_BOX, .box = box};
+    if (node && has_bevel(&args[BOX_EDGE]) &&
+        !bevel_box(context, &box, &args[BOX_EDGE], &args[BOX_CHAMFER], &shape, error))
+        return false;
     return give_shape(node, &shape, result);
 }
 

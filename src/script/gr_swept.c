@@ -3,6 +3,7 @@
 #include "call/context.h"
 #include "mesh/patch.h"
 #include "record/record_bounds.h"
+#include "script/gr_bevel_internal.h"
 #include "script/gr_displace_internal.h"
 #include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
@@ -72,7 +73,7 @@ static bool gr_lathe(struct script_context *context, const struct script_value *
     return shape.lathe && give_node(context, args, "lathe", &shape, result, error);
 }
 
-enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE };
+enum { PRISM_OUTLINE = SHAPE_FIRST, PRISM_HOLES, PRISM_FROM, PRISM_TO, PRISM_SPLINE, PRISM_EDGE, PRISM_CHAMFER };
 static const struct script_parameter prism_parameters[] = {
     SHAPE("prism"),
     [PRISM_OUTLINE] = {"outline", KIND_PAIRS, 0, ANY, NULL, NULL, "A closed curve: pairs of x and z."},
@@ -81,6 +82,8 @@ static const struct script_parameter prism_parameters[] = {
     [PRISM_FROM] = {"from", KIND_NUMBER, OPTIONAL, ANY, NULL, "0", "Height of the bottom."},
     [PRISM_TO] = {"to", KIND_NUMBER, OPTIONAL, ANY, NULL, "from + 1", "Height of the top."},
     [PRISM_SPLINE] = SPLINE("linear", "Kind of spline through the points; bezier needs 3 n points."),
+    [PRISM_EDGE] = EDGE,
+    [PRISM_CHAMFER] = CHAMFER,
 };
 
 static bool gr_prism(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -104,6 +107,11 @@ static bool gr_prism(struct script_context *context, const struct script_value *
                              .curve_count = curves};
     in.from = args[PRISM_FROM].number;
     in.to = args[PRISM_TO].given ? args[PRISM_TO].number : in.from + 1;
+    if (has_bevel(&args[PRISM_EDGE])) {
+        struct shape bevelled;
+        return bevel_prism(context, &in, &args[PRISM_EDGE], &args[PRISM_CHAMFER], &bevelled, error) &&
+               give_node(context, args, "prism", &bevelled, result, error);
+    }
     struct shape shape = {.kind = SHAPE_PRISM, .prism = prism_build(&context->scene.arena, &in, error)};
     return shape.prism && give_node(context, args, "prism", &shape, result, error);
 }

@@ -9,8 +9,6 @@
 #include "geometry/bernstein.h"
 #include "shape/part_tree_internal.h"
 
-enum { BOTTOM, TOP, SIDES };
-
 struct prism {
     struct outline outline; /* all curves */
     struct part_tree tree;  /* x and z; y is 0 */
@@ -144,7 +142,7 @@ static bool outline_crossings(const struct prism *prism, double ox, double oz, d
             }
             for (int k = 0; k < count; k++) {
                 double x = roots[k], along = dx * (cubic_value(c->p, x) - ox) + dz * (cubic_value(c->q, x) - oz);
-                if (!geom_scratch_push(scratch, (struct crossing){.t = along, .u = x, .part = SIDES + part}))
+                if (!geom_scratch_push(scratch, (struct crossing){.t = along, .u = x, .part = PRISM_SIDES + part}))
                     return false;
             }
         }
@@ -164,7 +162,7 @@ bool prism_crossings(const struct prism *prism, const struct ray *ray, struct ge
 
     /* The part of the line between the two heights, in s. */
     double enter = -INFINITY, leave = INFINITY;
-    uint32_t enter_part = d.y > 0 ? BOTTOM : TOP, leave_part = d.y > 0 ? TOP : BOTTOM;
+    uint32_t enter_part = d.y > 0 ? PRISM_BOTTOM : PRISM_TOP, leave_part = d.y > 0 ? PRISM_TOP : PRISM_BOTTOM;
     if (d.y != 0) {
         enter = ((d.y > 0 ? prism->bounds.min.y : prism->bounds.max.y) - o.y) / d.y;
         leave = ((d.y > 0 ? prism->bounds.max.y : prism->bounds.min.y) - o.y) / d.y;
@@ -234,8 +232,8 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
     struct vec3 size = vec3_sub(max, min);
     double extent = math_max(vec3_max_abs(min), vec3_max_abs(max));
     *out = (struct surface){.has_uv = true, .error = 0x1p-48 * extent};
-    if (crossing->part < SIDES) {
-        bool top = crossing->part == TOP;
+    if (crossing->part < PRISM_SIDES) {
+        bool top = crossing->part == PRISM_TOP;
         n.y = top ? 1 : -1;
         p.y = top ? max.y : min.y;
         out->u = (p.x - min.x) / size.x;
@@ -243,7 +241,7 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
         out->dpdu = vec3_make(size.x, 0, 0);
         out->dpdv = vec3_make(0, 0, top ? -size.z : size.z);
     } else {
-        const struct outline_piece *c = &prism->outline.pieces[crossing->part - SIDES];
+        const struct outline_piece *c = &prism->outline.pieces[crossing->part - PRISM_SIDES];
         double dp, dq, by_length = c->to > c->from ? 1 / (c->to - c->from) : 0;
         outline_tangent(c, crossing->u, &dp, &dq);
         p = vec3_make(cubic_value(c->p, crossing->u), math_min(math_max(p.y, min.y), max.y),

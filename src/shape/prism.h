@@ -25,7 +25,8 @@ const struct prism *prism_build(struct arena *arena, const struct prism_input *i
 struct box prism_bounds(const struct prism *prism);
 /* The least and the greatest dot(g, p) over the shape. */
 void prism_extent(const struct prism *prism, struct vec3 g, double *lo, double *hi);
-/* Part 0 is the bottom, 1 the top, 2 and more are pieces of the outline with u the place on them. */
+/* Parts: PRISM_SIDES and more are pieces of the outline with u the place on them; of straight lines one for each. */
+enum prism_part { PRISM_BOTTOM, PRISM_TOP, PRISM_SIDES };
 bool prism_crossings(const struct prism *prism, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
 bool prism_contains(const struct prism *prism, struct vec3 point);

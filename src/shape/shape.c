@@ -3,6 +3,7 @@
 #include "shape/shape.h"
 
 #include "mesh/mesh.h"
+#include "shape/bevelled.h"
 #include "shape/blob.h"
 #include "shape/box_shape_internal.h"
 #include "shape/curve.h"
@@ -29,6 +30,7 @@ enum { ANALYTIC_MAX = SUPERELLIPSOID_MAX };
 #define LISTED_SOLIDS(X)                                                                                               \
     X(SHAPE_LATHE, lathe, shape->lathe)                                                                                \
     X(SHAPE_PRISM, prism, shape->prism)                                                                                \
+    X(SHAPE_BEVELLED, bevelled, shape->bevelled)                                                                       \
     X(SHAPE_SWEEP, sweep, shape->sweep)                                                                                \
     X(SHAPE_HEIGHT_FIELD, height_field, shape->height_field)                                                           \
     X(SHAPE_BLOB, blob, shape->blob)
@@ -220,6 +222,7 @@ const char *shape_why_open(const struct shape *shape) {
     case SHAPE_TORUS:
     case SHAPE_SUPERELLIPSOID:
     case SHAPE_PRISM:
+    case SHAPE_BEVELLED:
     case SHAPE_SWEEP:
     case SHAPE_BLOB:
         return NULL;
@@ -335,6 +338,7 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
         return analytic_nearest(shape, ray, out);
     case SHAPE_LATHE:
     case SHAPE_PRISM:
+    case SHAPE_BEVELLED:
     case SHAPE_SWEEP:
     case SHAPE_BLOB:
     case SHAPE_CURVE:
@@ -500,6 +504,7 @@ bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *o
     case SHAPE_SUPERELLIPSOID:
     case SHAPE_LATHE:
     case SHAPE_PRISM:
+    case SHAPE_BEVELLED:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
     case SHAPE_IMPLICIT:

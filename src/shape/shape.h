@@ -20,6 +20,7 @@
 struct mesh;
 struct lathe;
 struct prism;
+struct bevelled;
 struct sweep_path;
 struct height_field;
 struct blob;
@@ -42,6 +43,7 @@ struct implicit;
 #define LISTED_SHAPES(X)                                                                                               \
     X(SHAPE_LATHE, "lathe")                                                                                            \
     X(SHAPE_PRISM, "prism")                                                                                            \
+    X(SHAPE_BEVELLED, "bevelled")                                                                                      \
     X(SHAPE_SWEEP, "sweep")                                                                                            \
     X(SHAPE_HEIGHT_FIELD, "height field")                                                                              \
     X(SHAPE_BLOB, "blob")                                                                                              \
@@ -67,6 +69,7 @@ struct shape {
         struct planar planar;
         const struct lathe *lathe;
         const struct prism *prism;
+        const struct bevelled *bevelled;
         const struct sweep_path *sweep;
         const struct height_field *height_field;
         const struct blob *blob;

@@ -319,6 +319,39 @@ static struct stretch cover(const struct view *view, struct polynomial d, struct
     return out;
 }
 
+/* A straight piece of equal balls. With y counted from the ball next to the line, b = B y + ... and D = h^2 - P^2 y^2:
+ * b -+ sqrt(D) is convex or concave, and its derivative is zero at y = -+ B h / (P length). p: the centres at the ends,
+ * without their way along the line. */
+static bool capsule_crossings(const struct view *view, const struct vec3 p[2], double along, double shift,
+                              uint32_t part, struct geom_scratch *scratch) {
+    const struct vec3 across = vec3_sub(p[1], p[0]);
+    const double speed = vec3_length(across), length = sqrt(speed * speed + along * along),
+                 r = fabs(view->piece->c[3][0]);
+    double lo = 0, hi = 1, next = 0, offset = 0;
+    if (speed > 0x1p-40 * length) {
+        next = -vec3_dot(p[0], across) / (speed * speed);
+        double distance = vec3_length(vec3_add_scaled(p[0], across, next));
+        double half = distance < r ? sqrt((r - distance) * (r + distance)) / speed : -1;
+        lo = math_max(0, next - half);
+        hi = math_min(1, next + half);
+        offset = half * along / length;
+    } else if (vec3_length(p[0]) > r) {
+        hi = -1;
+    }
+    if (lo > hi)
+        return true;
+    struct stretch s = {INFINITY, -INFINITY, lo, hi};
+    consider(view, lo, &s);
+    consider(view, hi, &s);
+    if (next - offset > lo && next - offset < hi)
+        consider(view, next - offset, &s);
+    if (next + offset > lo && next + offset < hi)
+        consider(view, next + offset, &s);
+    return geom_scratch_push(scratch,
+                             (struct crossing){.t = s.enter + shift, .u = s.x_enter, .part = part, .enter = true}) &&
+           geom_scratch_push(scratch, (struct crossing){.t = s.leave + shift, .u = s.x_leave, .part = part});
+}
+
 /* The square of a linear or cubic polynomial. */
 static void square_of(const double *a, int degree, double *out) {
     if (degree == 1) {
@@ -361,6 +394,10 @@ static bool piece_crossings(const void *shape, uint32_t part, const struct line 
         nearest = math_min(nearest, p[0][k] * outer.x + p[1][k] * outer.y + p[2][k] * outer.z);
     if (nearest > (1 + 0x1p-30) * widest)
         return true;
+    if (piece->straight && r[0] == r[1]) {
+        const struct vec3 ends[2] = {{p[0][0], p[1][0], p[2][0]}, {p[0][1], p[1][1], p[2][1]}};
+        return capsule_crossings(&view, ends, b[1] - b[0], shift, part, scratch);
+    }
     square_of(r, b_degree, d);
     for (int axis = 0; axis < 3; axis++) {
         square_of(p[axis], b_degree, square);

@@ -157,6 +157,7 @@ static void add_shape(struct finder *f, struct make *make, const struct transfor
     case SHAPE_SUPERELLIPSOID:
     case SHAPE_LATHE:
     case SHAPE_PRISM:
+    case SHAPE_BEVELLED:
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:

@@ -5,6 +5,7 @@
 #include "tests/unit/shape_makers.h"
 
 #include "csg/csg.h"
+#include "shape/bevelled.h"
 #include "shape/implicit.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
@@ -169,6 +170,70 @@ static struct made_shape made_prism(struct shape_makers *makers, struct test_ran
     return (struct made_shape){shape, area * height, 2 * area + 2 * sin(M_PI / count) * count * height};
 }
 
+/* A convex solid that grew by a ball: Steiner's formula. `curvature` is the integral of its mean curvature. */
+static void grow(struct made_shape *made, double volume, double area, double curvature, double radius) {
+    made->volume = volume + area * radius + curvature * radius * radius + 4 * M_PI / 3 * radius * radius * radius;
+    made->area = area + 2 * curvature * radius + 4 * M_PI * radius * radius;
+}
+
+static struct made_shape made_bevelled_cylinder(struct shape_makers *makers, struct test_random *random) {
+    const struct vec3 from = random_vec3(random, 0.5), axis = vec3_add(random_vec3(random, 0.3), vec3_all(0.5));
+    struct bevelled_cylinder in = {.from = from,
+                                   .to = vec3_add(from, axis),
+                                   .radius = test_uniform(random, 0.2, 0.7),
+                                   .chamfer = chance(random, 0.5)};
+    const double length = vec3_length(axis), r = in.radius, limit = r < length / 2 ? r : length / 2;
+    struct error error = {0};
+    in.edge = test_uniform(random, 0.1, 0.9) * limit;
+    const double e = in.edge, inner = r - e, straight = length - 2 * e;
+    struct made_shape made = {
+        {.kind = SHAPE_BEVELLED, .bevelled = bevelled_cylinder(&makers->arena, &in, &error)}, NAN, NAN};
+    if (in.chamfer) {
+        made.volume = M_PI * r * r * straight + 2 * M_PI / 3 * e * (r * r + r * inner + inner * inner);
+        made.area = 2 * M_PI * (inner * inner + r * straight + (r + inner) * e * sqrt(2));
+    } else {
+        grow(&made, M_PI * inner * inner * straight, 2 * M_PI * inner * (inner + straight),
+             M_PI * straight + M_PI * M_PI * inner, e);
+    }
+    return made;
+}
+
+/* A regular polygon: its edges' exterior angles sum to a turn for the upright ones and are right ones above and below.
+ * A star, which is not convex, or a smooth curve. */
+static struct made_shape made_bevelled(struct shape_makers *makers, struct test_random *random) {
+    if (chance(random, 0.4))
+        return made_bevelled_cylinder(makers, random);
+    const bool convex = chance(random, 0.6), smooth = !convex && chance(random, 0.4);
+    const uint32_t sides = 3 + (uint32_t)test_uniform(random, 0, 5.99), count = convex ? sides : 2 * sides;
+    const double height = test_uniform(random, 0.3, 1), e = test_uniform(random, 0.02, smooth ? 0.04 : 0.13);
+    double points[16][2], apothem = cos(M_PI / count), scale = 1 - e / apothem;
+    const uint32_t starts[2] = {0, count};
+    for (uint32_t i = 0; i < count; i++) {
+        double angle = 2 * M_PI * i / count;
+        double radius = convex || i % 2 == 0 ? 1 : 0.75;
+        points[i][0] = radius * cos(angle);
+        points[i][1] = radius * sin(angle);
+    }
+    struct error error = {0};
+    struct prism_input in = {.kind = smooth ? SPLINE_B_SPLINE : SPLINE_LINEAR,
+                             .points = (const double(*)[2])points,
+                             .curve_starts = starts,
+                             .curve_count = 1,
+                             .from = -height / 2,
+                             .to = height / 2};
+    struct made_shape made = {
+        {.kind = SHAPE_BEVELLED, .bevelled = bevelled_prism(&makers->arena, &in, e, &error)}, NAN, NAN};
+    if (!made.shape.bevelled)
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    if (convex) {
+        double area = scale * scale * sin(2 * M_PI / count) * count / 2,
+               perimeter = 2 * scale * sin(M_PI / count) * count;
+        double inner = height - 2 * e;
+        grow(&made, area * inner, 2 * area + perimeter * inner, M_PI * inner + M_PI / 2 * perimeter, e);
+    }
+    return made;
+}
+
 static struct made_shape made_sweep(struct shape_makers *makers, struct test_random *random) {
     if (chance(random, 0.6)) {
         static const enum spline_kind kinds[] = {SPLINE_LINEAR, SPLINE_CATMULL_ROM, SPLINE_B_SPLINE};
@@ -324,6 +389,8 @@ struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, 
         return made_lathe(makers, random);
     case SHAPE_PRISM:
         return made_prism(makers, random);
+    case SHAPE_BEVELLED:
+        return made_bevelled(makers, random);
     case SHAPE_SWEEP:
         return made_sweep(makers, random);
     case SHAPE_HEIGHT_FIELD:
