@@ -79,7 +79,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     float8_store((float *)(void *)child, children);
     enter = float8_permuted(enter, order);
     leave = float8_permuted(leave, order);
-    unsigned lanes = float8_at_most_bits(enter, leave);
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     /* Including the first one, which is stored above the top. */
@@ -109,7 +109,7 @@ static inline bool node_take_any(const struct wide_node *node, float8 enter, flo
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, struct node_span span,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
     float8 enter = span.enter, leave = span.leave;
-    unsigned lanes = float8_at_most_bits(enter, leave);
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     _Alignas(32) float t[WIDTH];
@@ -132,7 +132,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
 
 static inline bool node_take_any(const struct wide_node *node, float8 enter, float8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
-    unsigned lanes = float8_at_most_bits(enter, leave);
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     *reference = node->child[__builtin_ctz(lanes)];

@@ -259,7 +259,7 @@ static inline __attribute__((always_inline)) void split_block(const struct packe
     float8_store(out->slack, float8_mul(float8_mul(e, extent), float8_all(6)));
     out->ids = b->ids;
     out->used = float8_bits(
-        float8_at_most(float8_load(b->corner[0]), float8_all(4))); /* an unused lane is outside of the frame */
+        float8_less_equal(float8_load(b->corner[0]), float8_all(4))); /* an unused lane is outside of the frame */
 }
 
 /* One ray, eight triangles. */
@@ -414,7 +414,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
             enter = floats_max(floats_max(ax, ay), floats_max(az, floats_all(0)));
             leave = floats_min(floats_min(bx, by), floats_min(bz, floats_load(p->limit + first)));
         }
-        met |= active & (uint64_t)floats_bits(floats_at_most(enter, leave)) << first;
+        met |= active & (uint64_t)floats_bits(floats_less_equal(enter, leave)) << first;
     }
     return met;
 }
@@ -445,7 +445,7 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
         float8 min = float8_mul(p->slope_min[i] > 0 ? near : far, float8_all(p->slope_min[i]));
         outside = float8_max(outside, float8_max(float8_sub(low, max), float8_sub(min, high)));
     }
-    unsigned met = float8_bits(float8_at_most(outside, zero));
+    unsigned met = float8_bits(float8_less_equal(outside, zero));
     p->nodes++;
     if (!met)
         return top;

@@ -35,7 +35,7 @@ static inline float float4_smallest_of_three(float4 a) {
 }
 /* Adds b where a <= limit; *lanes says where. */
 static inline float4 float4_add_where_reached(float4 a, float4 limit, float4 b, unsigned *lanes) {
-    float4_mask reached = float4_at_most(a, limit);
+    float4_mask reached = float4_less_equal(a, limit);
     *lanes = float4_bits(reached);
     return a + (float4)(reached & (float4_mask)b);
 }
@@ -44,7 +44,7 @@ static inline float4 float4_add_where_reached(float4 a, float4 limit, float4 b, 
 
 /* Whether from <= a < to in every lane. */
 static inline bool float8_all_within(float8 a, const float *from, const float *to) {
-    return float8_bits(float8_both(float8_at_most(float8_load_any(from), a), float8_less(a, float8_load_any(to)))) ==
+    return float8_bits(float8_both(float8_less_equal(float8_load_any(from), a), float8_less(a, float8_load_any(to)))) ==
            255;
 }
 /* One lane, with an index known only at run time. */
@@ -65,7 +65,7 @@ static inline float8 float8_max_size(float8 a, float8 b) {
 /* Minimum, maximum and comparison of the bits as integers, which takes a quarter of the time where there are
  * instructions for it and is correct for the kernels: a number less than a non-negative one stays less. Lanes must not
  * hold NaN. The latest of three is the largest, or, if all are negative, the one farthest below 0, which
- * float8_at_most_bits treats as larger than any negative number nearer to 0. (Without integers: 0.) */
+ * float8_less_equal_bits treats as larger than any negative number nearer to 0. (Without integers: 0.) */
 #if defined(LANES_AVX2)
 static inline float8 float8_min_bits(float8 a, float8 b) {
     return (float8)_mm256_min_epi32((__m256i)a, (__m256i)b);
@@ -73,7 +73,7 @@ static inline float8 float8_min_bits(float8 a, float8 b) {
 static inline float8 float8_latest_bits(float8 a, float8 b, float8 c) {
     return (float8)_mm256_max_epi32(_mm256_max_epi32((__m256i)a, (__m256i)b), (__m256i)c);
 }
-static inline unsigned float8_at_most_bits(float8 a, float8 b) {
+static inline unsigned float8_less_equal_bits(float8 a, float8 b) {
 #if defined(LANES_AVX512)
     return _mm256_cmple_epi32_mask((__m256i)a, (__m256i)b);
 #else
@@ -96,7 +96,7 @@ static inline float8 float8_latest_bits(float8 a, float8 b, float8 c) {
     float8 d = NEON_PAIR(vmaxq_s32, a, b);
     return NEON_PAIR(vmaxq_s32, d, c);
 }
-static inline unsigned float8_at_most_bits(float8 a, float8 b) {
+static inline unsigned float8_less_equal_bits(float8 a, float8 b) {
     return float8_bits(
         (float8_mask){(float4_mask)a.low <= (float4_mask)b.low, (float4_mask)a.high <= (float4_mask)b.high});
 }
@@ -106,8 +106,8 @@ static inline unsigned float8_at_most_bits(float8 a, float8 b) {
 static inline float8 float8_latest_bits(float8 a, float8 b, float8 c) {
     return float8_max(float8_max(a, b), float8_max(c, float8_all(0)));
 }
-static inline unsigned float8_at_most_bits(float8 a, float8 b) {
-    return float8_bits(float8_at_most(a, b));
+static inline unsigned float8_less_equal_bits(float8 a, float8 b) {
+    return float8_bits(float8_less_equal(a, b));
 }
 #endif
 

@@ -81,7 +81,7 @@
 #define LANES_INTEGER_MASKS(name)                                                                                      \
     typedef name##_integers name##_mask;                                                                               \
     LANES_DEFINE(name##_mask, name##_less, (name a, name b), a < b)                                                    \
-    LANES_DEFINE(name##_mask, name##_at_most, (name a, name b), a <= b)                                                \
+    LANES_DEFINE(name##_mask, name##_less_equal, (name a, name b), a <= b)                                             \
     LANES_DEFINE(name##_mask, name##_unordered, (name a, name b), (a != a) | (b != b))                                 \
     LANES_DEFINE(name##_mask, name##_both, (name##_mask a, name##_mask b), a &b)                                       \
     LANES_DEFINE(name##_mask, name##_mask_of, (name truth), (name##_mask)truth)                                        \
@@ -109,7 +109,7 @@
 #define LANES_MASKS_mm512(name, suffix)                                                                                \
     typedef __typeof__(_mm512_cmp_##suffix##_mask((name){0}, (name){0}, 0)) name##_mask;                               \
     LANES_DEFINE(name##_mask, name##_less, (name a, name b), _mm512_cmp_##suffix##_mask(a, b, _CMP_LT_OQ))             \
-    LANES_DEFINE(name##_mask, name##_at_most, (name a, name b), _mm512_cmp_##suffix##_mask(a, b, _CMP_LE_OQ))          \
+    LANES_DEFINE(name##_mask, name##_less_equal, (name a, name b), _mm512_cmp_##suffix##_mask(a, b, _CMP_LE_OQ))       \
     LANES_DEFINE(name##_mask, name##_unordered, (name a, name b), _mm512_cmp_##suffix##_mask(a, b, _CMP_UNORD_Q))      \
     LANES_DEFINE(name##_mask, name##_both, (name##_mask a, name##_mask b), (name##_mask)(a & b))                       \
     LANES_DEFINE(name##_mask, name##_mask_of, (name truth), LANES_BITS_##suffix(truth))                                \
@@ -194,7 +194,7 @@ static inline unsigned lanes_float4_bits(float4_mask low, float4_mask high) {
     LANES_DEFINE(name, name##_sign, (name a), (name){half##_sign(a.low), half##_sign(a.high)})                         \
     LANES_DEFINE(name, name##_size, (name a), (name){half##_size(a.low), half##_size(a.high)})                         \
     LANES_EACH_MASK(name, half, less, name)                                                                            \
-    LANES_EACH_MASK(name, half, at_most, name)                                                                         \
+    LANES_EACH_MASK(name, half, less_equal, name)                                                                      \
     LANES_EACH_MASK(name, half, both, name##_mask)                                                                     \
     LANES_DEFINE(unsigned, name##_bits, (name##_mask m), lanes_##half##_bits(m.low, m.high))                           \
     LANES_DEFINE(unsigned, name##_negative, (name a),                                                                  \
