@@ -35,9 +35,9 @@
 
 #include <string.h>
 
-enum { GROUPS = PACKET_RAYS / FLOATS };
+enum { GROUPS = PACKET_RAYS / FLOAT_LANES };
 /* All lanes of a group of rays. */
-#define ALL_LANES ((UINT64_C(1) << FLOATS) - 1)
+#define ALL_LANES ((UINT64_C(1) << FLOAT_LANES) - 1)
 
 /* Local units. */
 #define FARTHEST 64.0
@@ -221,8 +221,8 @@ static inline unsigned float8_not_negative(float8 a) {
     return float8_negative(a) ^ 255u;
 }
 
-static inline unsigned floats_not_negative(floats a) {
-    return floats_negative(a) ^ (unsigned)ALL_LANES;
+static inline unsigned float_lanes_not_negative(float_lanes a) {
+    return float_lanes_negative(a) ^ (unsigned)ALL_LANES;
 }
 
 static inline float8 cross_part(float8 ay, float8 az, float8 by, float8 bz) {
@@ -321,31 +321,34 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
 static inline __attribute__((always_inline)) void try_group(struct packet *p, const struct parts *b, unsigned k,
                                                             unsigned first, unsigned active, const bool any) {
     /* The steps are those of try_ray. */
-    floats dx = floats_load(p->dx + first), dy = floats_load(p->dy + first), dz = floats_load(p->dz + first);
-    floats det =
-        floats_multiply_add(dx, floats_all(b->n[0][k]),
-                            floats_multiply_add(dy, floats_all(b->n[1][k]), floats_mul(dz, floats_all(b->n[2][k]))));
-    floats u =
-        floats_multiply_add(dx, floats_all(b->a[0][k]),
-                            floats_multiply_add(dy, floats_all(b->a[1][k]), floats_mul(dz, floats_all(b->a[2][k]))));
-    floats v =
-        floats_multiply_add(dx, floats_all(b->q[0][k]),
-                            floats_multiply_add(dy, floats_all(b->q[1][k]), floats_mul(dz, floats_all(b->q[2][k]))));
-    floats sign = floats_sign(det), t = floats_flip(floats_all(b->t[k]), sign);
-    det = floats_flip(det, sign);
-    u = floats_flip(u, sign);
-    v = floats_flip(v, sign);
-    floats e = floats_all(b->e[k]), e3 = floats_mul(e, floats_all(3)), slack = floats_all(b->slack[k]);
-    floats min = floats_min(u, v), rest = floats_sub(det, floats_add(u, v));
-    floats before = floats_sub(floats_multiply_add(det, floats_load(p->limit + first), slack), t);
-    floats inside = floats_min(floats_add(min, e), floats_add(rest, e3));
-    unsigned met = active & floats_not_negative(floats_min(inside, floats_min(floats_add(t, slack), before)));
+    float_lanes dx = float_lanes_load(p->dx + first), dy = float_lanes_load(p->dy + first),
+                dz = float_lanes_load(p->dz + first);
+    float_lanes det = float_lanes_multiply_add(
+        dx, float_lanes_all(b->n[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->n[1][k]), float_lanes_mul(dz, float_lanes_all(b->n[2][k]))));
+    float_lanes u = float_lanes_multiply_add(
+        dx, float_lanes_all(b->a[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->a[1][k]), float_lanes_mul(dz, float_lanes_all(b->a[2][k]))));
+    float_lanes v = float_lanes_multiply_add(
+        dx, float_lanes_all(b->q[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->q[1][k]), float_lanes_mul(dz, float_lanes_all(b->q[2][k]))));
+    float_lanes sign = float_lanes_sign(det), t = float_lanes_flip(float_lanes_all(b->t[k]), sign);
+    det = float_lanes_flip(det, sign);
+    u = float_lanes_flip(u, sign);
+    v = float_lanes_flip(v, sign);
+    float_lanes e = float_lanes_all(b->e[k]), e3 = float_lanes_mul(e, float_lanes_all(3)),
+                slack = float_lanes_all(b->slack[k]);
+    float_lanes min = float_lanes_min(u, v), rest = float_lanes_sub(det, float_lanes_add(u, v));
+    float_lanes before = float_lanes_sub(float_lanes_multiply_add(det, float_lanes_load(p->limit + first), slack), t);
+    float_lanes inside = float_lanes_min(float_lanes_add(min, e), float_lanes_add(rest, e3));
+    unsigned met =
+        active & float_lanes_not_negative(float_lanes_min(inside, float_lanes_min(float_lanes_add(t, slack), before)));
     if (!met)
         return;
-    inside = floats_min(floats_sub(min, e), floats_sub(rest, e3));
-    floats ends = floats_sub(floats_multiply_sub(det, floats_load(p->certain + first), slack), t);
-    floats begins = floats_sub(floats_sub(t, slack), floats_mul(det, floats_all(p->begun)));
-    unsigned certain = met & floats_not_negative(floats_min(inside, floats_min(begins, ends)));
+    inside = float_lanes_min(float_lanes_sub(min, e), float_lanes_sub(rest, e3));
+    float_lanes ends = float_lanes_sub(float_lanes_multiply_sub(det, float_lanes_load(p->certain + first), slack), t);
+    float_lanes begins = float_lanes_sub(float_lanes_sub(t, slack), float_lanes_mul(det, float_lanes_all(p->begun)));
+    unsigned certain = met & float_lanes_not_negative(float_lanes_min(inside, float_lanes_min(begins, ends)));
     if (any) {
         p->found |= (uint64_t)certain << first;
         p->alive &= ~((uint64_t)certain << first);
@@ -353,9 +356,9 @@ static inline __attribute__((always_inline)) void try_group(struct packet *p, co
             decide(p, first + (unsigned)__builtin_ctz(met), b->ids[k], true);
         return;
     }
-    _Alignas(64) float from[FLOATS], to[FLOATS];
-    floats_store(from, floats_div(floats_sub(t, slack), det));
-    floats_store(to, floats_div(floats_add(t, slack), det));
+    _Alignas(64) float from[FLOAT_LANES], to[FLOAT_LANES];
+    float_lanes_store(from, float_lanes_div(float_lanes_sub(t, slack), det));
+    float_lanes_store(to, float_lanes_div(float_lanes_add(t, slack), det));
     for (; met; met &= met - 1) {
         unsigned lane = (unsigned)__builtin_ctz(met);
         if (certain >> lane & 1)
@@ -370,7 +373,7 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
     split_block(p, number, &parts);
     unsigned used = (unsigned)__builtin_popcount(parts.used), groups = 0; /* the unused ones come last */
     for (unsigned g = 0; g < p->groups; g++)
-        groups += (rays >> g * FLOATS & ALL_LANES) != 0;
+        groups += (rays >> g * FLOAT_LANES & ALL_LANES) != 0;
     unsigned count = (unsigned)__builtin_popcountll(rays);
     p->tests += (uint64_t)count * WIDTH;
     if (count <= used * groups) {
@@ -379,9 +382,9 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
         return;
     }
     for (unsigned g = 0; g < p->groups; g++) {
-        unsigned active = (unsigned)(rays >> g * FLOATS & ALL_LANES);
+        unsigned active = (unsigned)(rays >> g * FLOAT_LANES & ALL_LANES);
         for (unsigned k = 0; k < used && active; k++)
-            try_group(p, &parts, k, g * FLOATS, active, any);
+            try_group(p, &parts, k, g * FLOAT_LANES, active, any);
     }
 }
 
@@ -392,29 +395,31 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
                                                                uint64_t rays, const bool mixed) {
     uint64_t met = 0;
     /* If all rays have the same signs, the sides that they meet first are known. */
-    floats low_x = floats_all(box[p->negative[0]]), high_x = floats_all(box[!p->negative[0]]);
-    floats low_y = floats_all(box[2 + p->negative[1]]), high_y = floats_all(box[2 + !p->negative[1]]);
-    floats low_z = floats_all(box[4 + p->negative[2]]), high_z = floats_all(box[4 + !p->negative[2]]);
+    float_lanes low_x = float_lanes_all(box[p->negative[0]]), high_x = float_lanes_all(box[!p->negative[0]]);
+    float_lanes low_y = float_lanes_all(box[2 + p->negative[1]]), high_y = float_lanes_all(box[2 + !p->negative[1]]);
+    float_lanes low_z = float_lanes_all(box[4 + p->negative[2]]), high_z = float_lanes_all(box[4 + !p->negative[2]]);
     for (unsigned g = 0; g < p->groups; g++) {
-        unsigned first = g * FLOATS;
+        unsigned first = g * FLOAT_LANES;
         uint64_t active = rays & ALL_LANES << first;
         if (!active)
             continue;
         /* The parameters of the six planes for a vector of rays. */
-        floats rx = floats_load(p->rx + first), ry = floats_load(p->ry + first), rz = floats_load(p->rz + first);
-        floats ax = floats_mul(low_x, rx), ay = floats_mul(low_y, ry), az = floats_mul(low_z, rz);
-        floats bx = floats_mul(high_x, rx), by = floats_mul(high_y, ry), bz = floats_mul(high_z, rz);
-        floats enter, leave;
+        float_lanes rx = float_lanes_load(p->rx + first), ry = float_lanes_load(p->ry + first),
+                    rz = float_lanes_load(p->rz + first);
+        float_lanes ax = float_lanes_mul(low_x, rx), ay = float_lanes_mul(low_y, ry), az = float_lanes_mul(low_z, rz);
+        float_lanes bx = float_lanes_mul(high_x, rx), by = float_lanes_mul(high_y, ry),
+                    bz = float_lanes_mul(high_z, rz);
+        float_lanes enter, leave;
         if (mixed) {
-            enter = floats_max(floats_max(floats_min(ax, bx), floats_min(ay, by)),
-                               floats_max(floats_min(az, bz), floats_all(0)));
-            leave = floats_min(floats_min(floats_max(ax, bx), floats_max(ay, by)),
-                               floats_min(floats_max(az, bz), floats_load(p->limit + first)));
+            enter = float_lanes_max(float_lanes_max(float_lanes_min(ax, bx), float_lanes_min(ay, by)),
+                                    float_lanes_max(float_lanes_min(az, bz), float_lanes_all(0)));
+            leave = float_lanes_min(float_lanes_min(float_lanes_max(ax, bx), float_lanes_max(ay, by)),
+                                    float_lanes_min(float_lanes_max(az, bz), float_lanes_load(p->limit + first)));
         } else {
-            enter = floats_max(floats_max(ax, ay), floats_max(az, floats_all(0)));
-            leave = floats_min(floats_min(bx, by), floats_min(bz, floats_load(p->limit + first)));
+            enter = float_lanes_max(float_lanes_max(ax, ay), float_lanes_max(az, float_lanes_all(0)));
+            leave = float_lanes_min(float_lanes_min(bx, by), float_lanes_min(bz, float_lanes_load(p->limit + first)));
         }
-        met |= active & (uint64_t)floats_bits(floats_less_equal(enter, leave)) << first;
+        met |= active & (uint64_t)float_lanes_bits(float_lanes_less_equal(enter, leave)) << first;
     }
     return met;
 }
@@ -509,11 +514,11 @@ static void traverse(struct packet *p, uint32_t root, const bool any) {
 
 /* ---- beginning ---- */
 
-static float floats_smallest(floats a) {
-    _Alignas(64) float x[FLOATS];
-    floats_store(x, a);
+static float float_lanes_smallest(float_lanes a) {
+    _Alignas(64) float x[FLOAT_LANES];
+    float_lanes_store(x, a);
     float m = x[0];
-    for (int i = 1; i < FLOATS; i++)
+    for (int i = 1; i < FLOAT_LANES; i++)
         m = x[i] < m ? x[i] : m;
     return m;
 }
@@ -527,27 +532,27 @@ static bool set_beam(struct packet *p) {
     p->side[0] = (z + 1) % 3;
     p->side[1] = (z + 2) % 3;
     p->backwards = d[z][0] < 0;
-    floats min = floats_all(INFINITY), slope_min[2], slope_max[2];
+    float_lanes min = float_lanes_all(INFINITY), slope_min[2], slope_max[2];
     for (int k = 0; k < 2; k++) {
-        slope_min[k] = floats_all(INFINITY);
-        slope_max[k] = floats_all(-INFINITY);
+        slope_min[k] = float_lanes_all(INFINITY);
+        slope_max[k] = float_lanes_all(-INFINITY);
     }
-    floats turn = floats_all(p->backwards ? -0.0f : 0.0f);
+    float_lanes turn = float_lanes_all(p->backwards ? -0.0f : 0.0f);
     const float *inverse[3] = {p->rx, p->ry, p->rz};
     for (unsigned g = 0; g < p->groups; g++) {
-        min = floats_min(min, floats_flip(floats_load(d[z] + g * FLOATS), turn));
-        floats over = floats_flip(floats_load(inverse[z] + g * FLOATS), turn);
+        min = float_lanes_min(min, float_lanes_flip(float_lanes_load(d[z] + g * FLOAT_LANES), turn));
+        float_lanes over = float_lanes_flip(float_lanes_load(inverse[z] + g * FLOAT_LANES), turn);
         for (int k = 0; k < 2; k++) {
-            floats slope = floats_mul(floats_load(d[p->side[k]] + g * FLOATS), over);
-            slope_min[k] = floats_min(slope_min[k], slope);
-            slope_max[k] = floats_max(slope_max[k], slope);
+            float_lanes slope = float_lanes_mul(float_lanes_load(d[p->side[k]] + g * FLOAT_LANES), over);
+            slope_min[k] = float_lanes_min(slope_min[k], slope);
+            slope_max[k] = float_lanes_max(slope_max[k], slope);
         }
     }
-    if (!(floats_smallest(min) >= 0x1p-5f))
+    if (!(float_lanes_smallest(min) >= 0x1p-5f))
         return false;
     for (int k = 0; k < 2; k++) {
-        p->slope_min[k] = floats_smallest(slope_min[k]) - 0x1p-20f;
-        p->slope_max[k] = -floats_smallest(floats_sub(floats_all(0), slope_max[k])) + 0x1p-20f;
+        p->slope_min[k] = float_lanes_smallest(slope_min[k]) - 0x1p-20f;
+        p->slope_max[k] = -float_lanes_smallest(float_lanes_sub(float_lanes_all(0), slope_max[k])) + 0x1p-20f;
         p->slope_min[k] -= fabsf(p->slope_min[k]) * 0x1p-20f;
         p->slope_max[k] += fabsf(p->slope_max[k]) * 0x1p-20f;
     }
@@ -556,7 +561,7 @@ static bool set_beam(struct packet *p) {
     p->axes = kind[z][p->backwards];
     const double *exact[3] = {p->rays->direction[0], p->rays->direction[1], p->rays->direction[2]};
     int differ = 0;
-    for (unsigned i = 0; i < p->groups * FLOATS; i++)
+    for (unsigned i = 0; i < p->groups * FLOAT_LANES; i++)
         differ |= (fabs(exact[p->side[0]][i]) >= fabs(exact[z][i])) | (fabs(exact[p->side[1]][i]) >= fabs(exact[z][i]));
     if (differ)
         p->axes = -1;
@@ -592,8 +597,8 @@ static bool begin(struct packet *p, uint64_t active) {
     const struct triangle_index *index = p->index;
     const struct ray_packet *rays = p->rays;
     double longest, shortest;
-    p->groups = (rays->count + FLOATS - 1) / FLOATS;
-    unsigned slots = p->groups * FLOATS;
+    p->groups = (rays->count + FLOAT_LANES - 1) / FLOAT_LANES;
+    unsigned slots = p->groups * FLOAT_LANES;
     if (index->voxel_count != 27 || !(rays->t_min >= 0) || !measure_rays(rays, slots, &longest, &shortest))
         return false;
     double scaled = longest * index->scale;
@@ -622,11 +627,12 @@ static bool begin(struct packet *p, uint64_t active) {
             d[k][i] = (float)(rays->direction[k][i] * shrink);
         unsigned any = 0, all = 1;
         for (unsigned g = 0; g < p->groups; g++) {
-            floats x = floats_load(d[k] + g * FLOATS), sign = floats_sign(x);
+            float_lanes x = float_lanes_load(d[k] + g * FLOAT_LANES), sign = float_lanes_sign(x);
             /* A zero becomes so small that no way along it counts. */
-            floats size = floats_min(floats_size(floats_div(floats_all(1), x)), floats_all(0x1p60f));
-            floats_store(inverse[k] + g * FLOATS, floats_flip(size, sign));
-            unsigned positive = floats_not_negative(x);
+            float_lanes size =
+                float_lanes_min(float_lanes_size(float_lanes_div(float_lanes_all(1), x)), float_lanes_all(0x1p60f));
+            float_lanes_store(inverse[k] + g * FLOAT_LANES, float_lanes_flip(size, sign));
+            unsigned positive = float_lanes_not_negative(x);
             any |= positive != ALL_LANES;
             all &= positive == 0;
         }
@@ -676,7 +682,7 @@ bool PACKET(nearest)(const struct triangle_index *index, const struct triangle_s
     if (!begin(&p, active))
         return false;
     for (unsigned g = 0; g < p.groups; g++)
-        floats_store(p.nearer + g * FLOATS, floats_all(INFINITY));
+        float_lanes_store(p.nearer + g * FLOAT_LANES, float_lanes_all(INFINITY));
     search(&p, cost, false);
     decide_candidates(&p);
     *answer_bits = p.found;

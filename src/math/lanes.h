@@ -19,10 +19,12 @@
 
 /* What the file is compiled for. GRAY_NO_SIMD: as for a processor without vectors. */
 #if defined(__SSE2__) && !defined(GRAY_NO_SIMD)
-#include <immintrin.h>
 #define LANES_X86
 #if defined(__AVX2__)
+#include <immintrin.h>
 #define LANES_AVX2
+#else
+#include <emmintrin.h> /* the other takes as long to compile as many a file of gray */
 #endif
 #if defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
 #define LANES_AVX512
@@ -82,7 +84,6 @@
     typedef name##_integers name##_mask;                                                                               \
     LANES_DEFINE(name##_mask, name##_less, (name a, name b), a < b)                                                    \
     LANES_DEFINE(name##_mask, name##_less_equal, (name a, name b), a <= b)                                             \
-    LANES_DEFINE(name##_mask, name##_unordered, (name a, name b), (a != a) | (b != b))                                 \
     LANES_DEFINE(name##_mask, name##_both, (name##_mask a, name##_mask b), a &b)                                       \
     LANES_DEFINE(name##_mask, name##_mask_of, (name truth), (name##_mask)truth)                                        \
     LANES_DEFINE(name, name##_of_mask, (name##_mask m), (name)m)
@@ -96,9 +97,12 @@
 #define LANES_MASKS_mm(name, suffix)                                                                                   \
     LANES_INTEGER_MASKS(name)                                                                                          \
     LANES_CHOOSE(name)                                                                                                 \
+    LANES_DEFINE(name##_mask, name##_unordered, (name a, name b), (name##_mask)_mm_cmpunord_##suffix(a, b))            \
     LANES_DEFINE(unsigned, name##_bits, (name##_mask m), (unsigned)_mm_movemask_##suffix((name)m))
 #define LANES_MASKS_mm256(name, suffix)                                                                                \
     LANES_INTEGER_MASKS(name)                                                                                          \
+    LANES_DEFINE(name##_mask, name##_unordered, (name a, name b),                                                      \
+                 (name##_mask)_mm256_cmp_##suffix(a, b, _CMP_UNORD_Q))                                                 \
     LANES_DEFINE(name, name##_choose, (name##_mask m, name a, name b), _mm256_blendv_##suffix(b, a, (name)m))          \
     LANES_DEFINE(unsigned, name##_bits, (name##_mask m), (unsigned)_mm256_movemask_##suffix((name)m))
 
@@ -123,6 +127,7 @@
 #define LANES_MASKS_mm(name, suffix)                                                                                   \
     LANES_INTEGER_MASKS(name)                                                                                          \
     LANES_CHOOSE(name)                                                                                                 \
+    LANES_DEFINE(name##_mask, name##_unordered, (name a, name b), (a != a) | (b != b))                                 \
     static inline unsigned name##_bits(name##_mask m) {                                                                \
         unsigned bits = 0;                                                                                             \
         for (unsigned i = 0; i < sizeof m / sizeof m[0]; i++)                                                          \
@@ -244,20 +249,54 @@ static inline double4 double4_make(double x, double y, double z, double w) {
 
 /* At least eight floats, and at least two doubles. */
 #if defined(LANES_AVX512)
-enum { FLOATS = 16, DOUBLES = 8 };
-LANES_VECTOR(floats, float, int32_t, 64, _mm512, ps)
-LANES_PRODUCTS(floats, _mm512)
-LANES_VECTOR(doubles, double, int64_t, 64, _mm512, pd)
+enum { FLOAT_LANES = 16, DOUBLE_LANES = 8 };
+LANES_VECTOR(float_lanes, float, int32_t, 64, _mm512, ps)
+LANES_PRODUCTS(float_lanes, _mm512)
+LANES_VECTOR(double_lanes, double, int64_t, 64, _mm512, pd)
 #elif defined(LANES_AVX2)
-enum { FLOATS = 8, DOUBLES = 4 };
-LANES_VECTOR(floats, float, int32_t, 32, _mm256, ps)
-LANES_PRODUCTS(floats, _mm256)
-LANES_VECTOR(doubles, double, int64_t, 32, _mm256, pd)
+enum { FLOAT_LANES = 8, DOUBLE_LANES = 4 };
+LANES_VECTOR(float_lanes, float, int32_t, 32, _mm256, ps)
+LANES_PRODUCTS(float_lanes, _mm256)
+LANES_VECTOR(double_lanes, double, int64_t, 32, _mm256, pd)
 #else
-enum { FLOATS = 8, DOUBLES = 2 };
-LANES_PAIR(floats, float, float4, 8)
-LANES_PAIR_PRODUCTS(floats, float4)
-LANES_VECTOR(doubles, double, int64_t, 16, _mm, pd)
+enum { FLOAT_LANES = 8, DOUBLE_LANES = 2 };
+LANES_PAIR(float_lanes, float, float4, 8)
+LANES_PAIR_PRODUCTS(float_lanes, float4)
+LANES_VECTOR(double_lanes, double, int64_t, 16, _mm, pd)
 #endif
+
+/* A mask from one bit a lane; further bits do not matter. */
+static inline double_lanes_mask double_lanes_mask_of_bits(uint64_t bits) {
+#if defined(LANES_AVX512)
+    return (double_lanes_mask)bits;
+#else
+    const double_lanes_integers lane = {
+        1,
+        2
+#if defined(LANES_AVX2)
+        ,
+        4,
+        8
+#endif
+    };
+    return (((int64_t)bits - (double_lanes_integers){0}) & lane) == lane;
+#endif
+}
+
+#if defined(LANES_AVX512)
+#define LANES_WHOLE(x86, neon, function) _mm512_##x86(a)
+#elif defined(LANES_AVX2)
+#define LANES_WHOLE(x86, neon, function) _mm256_##x86(a)
+#elif defined(LANES_NEON)
+#define LANES_WHOLE(x86, neon, function) neon(a)
+#else
+#define LANES_WHOLE(x86, neon, function)                                                                               \
+    (double_lanes) {                                                                                                   \
+        function(a[0]), function(a[1])                                                                                 \
+    }
+#endif
+LANES_DEFINE(double_lanes, double_lanes_root, (double_lanes a), LANES_WHOLE(sqrt_pd, vsqrtq_f64, sqrt))
+LANES_DEFINE(double_lanes, double_lanes_floor, (double_lanes a), LANES_WHOLE(floor_pd, vrndmq_f64, floor))
+LANES_DEFINE(double_lanes, double_lanes_ceil, (double_lanes a), LANES_WHOLE(ceil_pd, vrndpq_f64, ceil))
 
 #endif
