@@ -949,6 +949,19 @@ function node:displace(f, edge) end
 ---@overload fun(fields: gr.fn.fields): gr.texture
 function gr.fn(f, points) end
 
+---@class gr.program.fields
+---@field code string code (a string): Its operations, such as 'v0 = p.x; v1 = sin v0; result v1'.
+---@field image1? string|gr.texture image1 (the name of a picture file or a texture; default none): A picture that texel reads.
+---@field image2? string|gr.texture image2 (the name of a picture file or a texture; default none): A picture that texel reads.
+---@field image3? string|gr.texture image3 (the name of a picture file or a texture; default none): A picture that texel reads.
+---@field image4? string|gr.texture image4 (the name of a picture file or a texture; default none): A picture that texel reads.
+
+---A function as the text of its operations, as gray writes it into scenes of JSON.
+---@param code string code (a string): Its operations, such as 'v0 = p.x; v1 = sin v0; result v1'.
+---@return gr.texture
+---@overload fun(fields: gr.program.fields): gr.texture
+function gr.program(code) end
+
 ---@class gr.marble_texture.fields
 ---@field f number f (a number): Factor of the point before the noise.
 ---@field multiplier number multiplier (a number): Strength of the noise in the veins.

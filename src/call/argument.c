@@ -789,8 +789,13 @@ static bool read_value(struct script_context *c, int index, const struct script_
 
 /* Reads one parameter unless it is nil. False: the whole call has no effect. */
 bool argument_read(struct script_context *c, int index, const struct script_parameter *p, struct script_value *value) {
-    if (lua_isnoneornil(c->sandbox.lua, index) || read_value(c, index, p, value))
+    if (lua_isnoneornil(c->sandbox.lua, index))
         return true;
+    if (read_value(c, index, p, value)) {
+        if (c->noted)
+            c->noted(c, index, p, value);
+        return true;
+    }
     *value = (struct script_value){0};
     return (p->flags & GHOST_IS_NONE) != 0;
 }

@@ -226,7 +226,7 @@ static void check_nil_fields(struct script_context *c, const struct script_funct
     const char *names[PARAMETER_LIMIT];
     struct nil_field found;
     size_t count = 0;
-    if (!sandbox_is_new_line(&c->sandbox, function)) /* a loop */
+    if (c->sandbox.locate || !sandbox_is_new_line(&c->sandbox, function)) /* no script, or a loop */
         return;
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
@@ -254,7 +254,7 @@ static bool read_named(struct script_context *c, const struct script_function *f
     int value = lua_gettop(L) + 1;
     for (int k = 0; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
-        if (p->kind != KIND_TEXT)
+        if (p->kind != KIND_TEXT || function->result == RESULT_TEXTURE)
             continue;
         lua_pushstring(L, p->name);
         if (lua_rawget(L, table) == LUA_TSTRING)
@@ -327,7 +327,8 @@ static bool read_positional(struct script_context *c, const struct script_functi
     bool optional;
     for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
         /* Messages about the arguments after it contain the name; no method has one, which a test checks. */
-        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, slot))
+        if (function->parameters[index].kind == KIND_TEXT && function->result != RESULT_TEXTURE &&
+            lua_isstring(L, slot))
             c->sandbox.running.subject = argument_read_text(c, slot, &function->parameters[index]);
     }
     if (best_fit.leading == 0 && function->forms[1])

@@ -18,6 +18,9 @@ struct script_context {
     struct function_warnings *warned;
     const char *line_source; /* context_note_line: the source that scene.file is of */
     struct lenient *lenient; /* NULL without --lenient */
+    /* While the scene is written: an argument at a stack index was read; it may raise. Else NULL. */
+    void (*noted)(struct script_context *context, int index, const struct script_parameter *parameter,
+                  const struct script_value *value);
     /* With it: the node or material that stands for a ghost, or NULL; if `make` is set, a missing node is created. */
     void *(*ghost_as)(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
 };

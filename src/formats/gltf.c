@@ -17,22 +17,15 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
     return error_set(error, ERROR_SCENE, "%s: this build cannot read glTF (it was made without jansson)", model->path);
 }
 
-const char *gltf_library(void) {
-    return "none";
-}
-
 #else
 
-#include "base/hash.h"
 #include "formats/gltf_internal.h"
+#include "formats/json_text.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-
-/* jansson needs about 40 bytes for a number and 300 for an object. */
-enum { OBJECT_LIMIT = 1 << 20, VALUE_LIMIT = 1 << 24 };
 
 bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...) {
     char text[512];
@@ -232,55 +225,6 @@ static bool load(struct gltf *g) {
     return !lack || gltf_fail(g, lack->first, "%s", lack->what);
 }
 
-/* Bounds the memory that jansson needs before it starts. */
-static bool check_json(const struct gltf *g, const char *text, size_t size) {
-    size_t objects = 0, values = 0;
-    bool string = false;
-    for (size_t i = 0; i < size; i++) {
-        if (string && text[i] == '\\')
-            i++;
-        else if (text[i] == '"')
-            string = !string;
-        else if (!string) {
-            objects += text[i] == '{' || text[i] == '[';
-            values += text[i] == ',';
-        }
-    }
-    if (objects > OBJECT_LIMIT || values > VALUE_LIMIT)
-        return gltf_fail(g, "its JSON", "more than %d objects or %d values", OBJECT_LIMIT, VALUE_LIMIT);
-    return true;
-}
-
-/* jansson reports lack of memory as a syntax error, and its allocator has no context for an error. Hence this
- * variable outside of struct gltf; it is valid from the start of a parse to its end. */
-static _Thread_local bool json_memory_failed;
-
-static void *json_memory(size_t size) {
-    void *block = mem_alloc(size);
-    json_memory_failed |= block == NULL;
-    return block;
-}
-
-static bool parse_json(struct gltf *g, const char *text, size_t size) {
-    if (!check_json(g, text, size))
-        return false;
-    /* jansson allocates from base/mem.h. Its hash seed depends on all bytes of the file, so that a file cannot contain
-     * names that collide, and the library needs no random numbers. */
-    json_set_alloc_funcs(json_memory, mem_free);
-    json_object_seed((size_t)hash_bytes(text, size, 1) | 1);
-    json_error_t error;
-    json_memory_failed = false;
-    g->root = json_loadb(text, size, 0, &error);
-    if (json_memory_failed) /* characters may be missing then even if the text seems complete */
-        return error_no_memory(g->error, g->path);
-    if (g->root)
-        return json_is_object(g->root) || gltf_fail(g, "its JSON", "an object must be at the top");
-    for (char *c = error.text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    return error_set(g->error, ERROR_SCENE, "%s:%d: broken JSON: %s", g->path, error.line, error.text);
-}
-
 /* The two chunks of a GLB (section 4.4); a file with another start is JSON as a whole. */
 static bool split(struct gltf *g, const uint8_t *data, size_t size, const char **text, size_t *length) {
     *text = (const char *)data;
@@ -320,15 +264,12 @@ static bool split(struct gltf *g, const uint8_t *data, size_t size, const char *
     return true;
 }
 
-const char *gltf_library(void) {
-    return "jansson " JANSSON_VERSION;
-}
-
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error) {
     struct gltf g = {.model = model, .path = model->path, .error = error, .bytes = size};
     const char *text;
     size_t length;
-    bool ok = split(&g, data, size, &text, &length) && parse_json(&g, text, length) && load(&g);
+    bool ok = split(&g, data, size, &text, &length) && (g.root = json_text_parse(g.path, text, length, false, error)) &&
+              load(&g);
     for (size_t i = 0; g.buffers && i < g.buffer_count; i++) {
         mem_free(g.buffers[i].decoded);
         file_unmap(&g.buffers[i].file);

@@ -236,8 +236,6 @@ void model_warn_missing(struct model *model, const char *where, const char *name
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
-/* The JSON parser for --version: "jansson 2.14" or "none". */
-const char *gltf_library(void);
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error);
 /* Reads a library of materials; `line` of the model names it. */
 bool mtl_load(struct model *model, const char *path, const char *text, size_t size, struct error *error);

@@ -5,6 +5,7 @@
 
 const char model_stl_header[] = "gray: binary STL";
 const char model_obj_header[] = "# written by gray";
+const char model_scene_header[] = "-- A scene written by gray";
 const char model_glb_header[] = "{\"asset\":{\"generator\":\"gray\",";
 
 enum model_format model_format_written(const char *name) {
@@ -32,6 +33,8 @@ bool model_file_is(const uint8_t *head, size_t size) {
      */
     bool package = begins(head, size, "PK\3\4") && size > 33 && memcmp(head + 30, "3D/", 3) == 0;
     bool glb = begins(head, size, "glTF") && size > 20 && begins(head + 20, size - 20, model_glb_header);
-    return package || glb || begins(head, size, model_stl_header) || begins(head, size, model_obj_header) ||
-           begins(head, size, "solid ") || begins(head, size, "ply\n");
+    bool json = begins(head, size, "{\"define\": {\n") || begins(head, size, "{\"defaults\": \"classic\",\n") ||
+                begins(head, size, "{\"gray\": 1,\n");
+    return package || glb || json || begins(head, size, model_scene_header) || begins(head, size, model_stl_header) ||
+           begins(head, size, model_obj_header) || begins(head, size, "solid ") || begins(head, size, "ply\n");
 }

@@ -25,7 +25,7 @@ enum model_format model_format_written(const char *name);
 /* The same for --bake, which writes PLY and GLB. */
 enum model_format model_format_baked(const char *name);
 /* The first line or bytes of files that gray writes. */
-extern const char model_stl_header[], model_obj_header[], model_glb_header[];
+extern const char model_stl_header[], model_obj_header[], model_glb_header[], model_scene_header[];
 /* Whether a file that begins so is a model of a format that gray writes, so that another may replace it. Binary STL and
  * OBJ files have no signature, and GLB files are models of others: only those of gray. */
 bool model_file_is(const uint8_t *head, size_t size);

@@ -66,9 +66,7 @@ int first_scene_write(const struct options *options, const char *library) {
     bool can_name = library && !strpbrk(library, "\"\\\n") && size < (int)sizeof settings;
     if (options->script_count > 1 || !write_new(folder, "first.lua", scene, &error) ||
         (can_name && !write_new(folder, ".luarc.json", settings, &error))) {
-        (void)snprintf(line, sizeof line, "gray: %s", error.text);
-        text_print_message(stderr, TEXT_ERROR, line);
-        return (int)error.kind;
+        return text_print_error(&error);
     }
     (void)snprintf(line, sizeof line, "next: %s%.4000s%sgray first.lua", folder[0] ? "cd " : "", folder,
                    folder[0] ? " && " : "");

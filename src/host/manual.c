@@ -9,6 +9,7 @@
 #include "base/suggestion.h"
 #include "base/version.h"
 #include "script/document.h"
+#include "script/schema.h"
 #include "session/options_table.h"
 #include "session/text.h"
 #include "settings/foreign_words.h"
@@ -252,6 +253,12 @@ int manual_print(const struct options *options, const char *library, struct aren
 int manual_print_annotations(struct arena *arena) {
     struct document document = {.arena = arena};
     script_annotations(&document);
+    return print(&document);
+}
+
+int manual_print_schema(struct arena *arena) {
+    struct document document = {.arena = arena};
+    script_json_schema(&document);
     return print(&document);
 }
 

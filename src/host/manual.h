@@ -10,5 +10,6 @@ int manual_print(const struct options *options, const char *library, struct aren
 /* --roff: the page that the word names, gray or gray-scene. */
 int manual_print_page(const struct options *options, struct arena *arena);
 int manual_print_annotations(struct arena *arena); /* lua/gr.lua */
+int manual_print_schema(struct arena *arena);      /* of scenes in JSON */
 
 #endif

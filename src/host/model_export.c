@@ -345,7 +345,7 @@ bool model_export_picture(struct render_process *process, const struct render_re
                               .file = options->model ? options->model : "check.stl",
                               .where = request->where,
                               .tolerance = options->tolerance,
-                              .time = options->script.frames.turntable > 0 ? 0 : frame_time(&request->frame),
+                              .time = options->script.frames.turntable > 0 ? 0 : request->time,
                               .write = {.unit = (enum model_unit)options->unit},
                               .view =
                                   request->settings.view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view,

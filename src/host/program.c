@@ -8,6 +8,7 @@
 #include "base/isa.h"
 #include "base/version.h"
 #include "formats/font.h"
+#include "formats/json_text.h"
 #include "formats/model.h"
 #include "host/completion.h"
 #include "host/first_scene.h"
@@ -74,7 +75,7 @@ static void print_version(void) {
     (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, "
                  "WebP by %s, "
                  "windows by %s, farms by %s\n",
-                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), json_text_library(), font_library(),
                  exr_library(), webp_library(), window, farm);
 }
 
@@ -133,6 +134,8 @@ static int perform(struct options *options, const struct program_parts *parts, s
         return manual_print(options, options->script.library_folder, arena);
     case ACTION_ROFF:
         return manual_print_page(options, arena);
+    case ACTION_SCHEMA:
+        return manual_print_schema(arena);
     case ACTION_ANNOTATIONS:
         return manual_print_annotations(arena);
     case ACTION_INIT:
@@ -182,12 +185,9 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     if (!options_parse(&options, argc, argv, &arena, &error) || !picture_files_check_output(&options, &error)) {
-        char line[sizeof error.text + 16];
-        (void)snprintf(line, sizeof line, "gray: %s", error.text);
-        text_print_message(stderr, TEXT_ERROR, line);
+        status = text_print_error(&error);
         if (error.kind == ERROR_USAGE)
             (void)fputs("usage: gray [options] [--] scene.lua|model.glb ...; gray --help lists all options\n", stderr);
-        status = (int)error.kind;
     } else if (options.mpi && options.action == ACTION_RENDER && !parts->transport) {
         status = exec_variant("mpi", "ompi-c (Debian: libopenmpi-dev)", argv);
     } else if (options.window && !parts->window && (options.action == ACTION_RENDER || options.action == ACTION_VIEW)) {

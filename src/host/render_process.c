@@ -12,6 +12,7 @@
 #include "formats/model.h"
 #include "host/model_export.h"
 #include "host/render_reports.h"
+#include "host/scene_text.h"
 #include "inspect/inspect.h"
 #include "output/progress.h"
 #include "preview/preview_session.h"
@@ -402,7 +403,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (!reserve_memory(process, picture, &job->settings, error))
         return false;
     bool turns = process->options->script.frames.turntable > 0;
-    scene_set_time(work->request->scene, turns ? 0 : frame_time(&work->request->frame));
+    scene_set_time(work->request->scene, turns ? 0 : work->request->time);
     work->shows = digest_of_frame(work);
     picture->repeats = repeats_frame(work);
     if (!settle(process, error))
@@ -648,6 +649,10 @@ static void note_rewind(void *context) {
     begin_frame(process);
 }
 
+static bool writes_scenes(const struct options *options) {
+    return options->to_json || options->to_lua;
+}
+
 /* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0;
  * repeats: an earlier run did not call gr.frames. */
 static int run_once(struct render_process *process, const char *path, const struct frame *frame, bool repeats) {
@@ -660,6 +665,8 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .height = process->options->height,
                                .render = render,
                                .export_model = model_export_node,
+                               .write_scene = writes_scenes(process->options) ? scene_text_write : NULL,
+                               .text_file = process->options->output,
                                .message = message,
                                .cancelled = is_cancelled,
                                .error_text = scene_text,
@@ -673,8 +680,9 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .prints = wait_for_files,
                                .next_frame = process->options->window ? next_frame : NULL,
                                .rewinds = note_rewind,
-                               .output_is_error =
-                                   options_output_is_stream(process->options) && (sandboxed || in_process)};
+                               .output_is_error = (options_output_is_stream(process->options) ||
+                                                   (writes_scenes(process->options) && !process->options->output)) &&
+                                                  (sandboxed || in_process)};
     struct arena arena = {0};
     struct error error = {0};
     const char *traceback = NULL;
@@ -701,15 +709,18 @@ static void report_no_picture(struct render_process *process, const char *path) 
     message(process, SCRIPT_NOTICE, line);
 }
 
-/* The model of the command line, after the script. Returns the exit status. */
+/* The model or the scene of the command line, after the script. Returns the exit status. */
 static int finish_model(struct render_process *process, int status) {
     struct error error = {0};
     struct arena arena = {0};
-    if (status != 0)
+    if (status != 0) {
         model_export_forget(process);
-    if (status != 0 || !(process->options->model || process->options->check_print) ||
-        model_export_finish(process, &error))
+        list_destroy(&process->scene);
         return status;
+    }
+    bool is_model = process->options->model || process->options->check_print;
+    if (scene_text_finish(process, &error) && (!is_model || model_export_finish(process, &error)))
+        return 0;
     report_error(process, &arena, &error, NULL);
     arena_destroy(&arena);
     return (int)error.kind;

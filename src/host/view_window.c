@@ -4,7 +4,6 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
-#include "image/light_field_view.h"
 #include "math/elementary.h"
 #include "math/portable.h"
 #include "output/view.h"
@@ -15,26 +14,19 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double picture_seconds = 1 / 35.0, click_pixels = 4, flight_seconds = 2; /* across the grid, half around */
+static const double picture_seconds = 1 / 35.0, click_pixels = 4;
 enum { DIVIDE_LIMIT = 8, WHEEL_STEPS = 16 };
-/* Fields of the form; 0 is none. */
-enum view_number { EYE_X = 1, EYE_Y, EYE_Z, FOCUS, APERTURE, LONGITUDE, LATITUDE, FOV, NUMBER_COUNT };
 
 struct view_window {
     struct view *view;
     const struct window_driver *driver;
-    struct view_state initial, now;
-    uint32_t width, height; /* of a picture with all pixels */
-    uint32_t divide;        /* pixels of the picture in one that is drawn while something moves */
+    struct view_state initial, now; /* of a picture with all pixels */
+    uint32_t divide;                /* pixels of the picture in one that is drawn while something moves */
     uint8_t *bytes;
     bool outdated, coarse, closed;
-    bool fine;             /* what is being drawn ends when something happens */
-    double shown, seconds; /* when the last picture was; between pictures of a movement */
+    bool fine; /* what is being drawn ends when something happens */
     bool drags, has_moved;
-    double pressed_x, pressed_y, stepped;
-    bool held[FLY_KEYS];
-    char name[1024]; /* of a picture to be saved; or empty */
-    bool saves;
+    double pressed_x, pressed_y;
 };
 
 /* --- what is shown --- */
@@ -53,98 +45,45 @@ static double largest_aperture(const struct view_window *w) {
     return math_max(half_grid(w, true), half_grid(w, false));
 }
 
-/* The numbers of the inspector. */
-static const struct number {
-    bool of_field;
-    const char *name, *help;
-    double low, high; /* high 0: the largest aperture */
-} numbers[] = {[EYE_X] = {true, "eye right", "From the middle of the cameras to the right.", -HUGE_VAL, HUGE_VAL},
-               [EYE_Y] = {true, "eye up", "From the middle of the cameras upwards.", -HUGE_VAL, HUGE_VAL},
-               [EYE_Z] = {true, "eye along", "From the plane of the cameras along the view.", -HUGE_VAL, HUGE_VAL},
-               [FOCUS] = {true, "focus", "The distance from the eye to the plane that is sharp.", 0, HUGE_VAL},
-               [APERTURE] = {true, "aperture", "The radius of the lens.", 0, 0},
-               [LONGITUDE] = {false, "longitude", "Degrees to the right of the middle.", -180, 180},
-               [LATITUDE] = {false, "latitude", "Degrees above the middle.", -90, 90},
-               [FOV] = {false, "fov", "The vertical angle of view, degrees.", 5, 150}};
-
-static double *number_at(struct view_state *state, enum view_number number) {
-    double *const at[] = {
-        [EYE_X] = &state->at.x,        [EYE_Y] = &state->at.y,     [EYE_Z] = &state->at.z,    [FOCUS] = &state->focus,
-        [APERTURE] = &state->aperture, [LONGITUDE] = &state->at.x, [LATITUDE] = &state->at.y, [FOV] = &state->fov};
-    return at[number];
-}
-
-static double highest(const struct view_window *w, const struct number *number) {
-    return number->high <= 0 ? largest_aperture(w) : number->high;
-}
-
 /* The eye stays in the field, and the plane in focus in front of it. */
 static void limit(struct view_window *w) {
-    struct view_state *now = &w->now;
-    const double screen = w->view->field.head.screen;
-    if (!w->view->is_field)
-        now->at.x = remainder(now->at.x, 360);
-    for (int i = EYE_X; i < NUMBER_COUNT; i++) {
-        double *number = number_at(now, (enum view_number)i);
-        if (numbers[i].of_field == w->view->is_field)
-            *number = math_min(math_max(*number, numbers[i].low), highest(w, &numbers[i]));
-    }
+    struct light_field_camera *camera = &w->now.camera;
     if (w->view->is_field) {
-        struct light_field_camera camera = view_camera(w->view, now);
-        (void)light_field_clamp(&w->view->field.head, &camera);
-        now->at = vec3_make(camera.x, camera.y, math_min(camera.z, 0.9 * screen));
-        now->focus = math_max(now->focus, 1e-3 * screen + math_max(0, -now->at.z));
+        (void)light_field_clamp(&w->view->field.head, camera);
+        camera->aperture = math_min(math_max(camera->aperture, 0), largest_aperture(w));
+    } else {
+        camera->x = remainder(camera->x, 360);
+        camera->y = math_min(math_max(camera->y, -90), 90);
+        w->now.fov = math_min(math_max(w->now.fov, 5), 150);
     }
     w->outdated = true;
 }
 
-static void make_form(struct view_window *w, struct window_form *form) {
-    *form = (struct window_form){.subject = 1};
-    (void)snprintf(form->title, sizeof form->title, w->view->is_field ? "Light Field" : "Panorama");
-    for (uint32_t i = EYE_X; i < NUMBER_COUNT; i++) {
-        if (numbers[i].of_field != w->view->is_field)
-            continue;
-        struct window_field *field = &form->fields[form->count++];
-        *field = (struct window_field){.kind = FIELD_NUMBER,
-                                       .number = i,
-                                       .resets = true,
-                                       .group = "View",
-                                       .numbers = {*number_at(&w->now, (enum view_number)i)},
-                                       .initial = *number_at(&w->initial, (enum view_number)i),
-                                       .low = numbers[i].low,
-                                       .high = highest(w, &numbers[i])};
-        (void)snprintf(field->name, sizeof field->name, "%s", numbers[i].name);
-        (void)snprintf(field->help, sizeof field->help, "%s", numbers[i].help);
-    }
-}
-
+/* The size, and the options of gray view. */
 static void describe(struct view_window *w) {
     struct window_state *state = w->driver->state;
-    const struct light_field_head *head = &w->view->field.head;
-    make_form(w, &state->form);
-    char rate[32] = "", field[64] = "";
-    if (w->seconds > 0)
-        (void)snprintf(rate, sizeof rate, ", %.0f pictures/s", 1 / w->seconds);
+    const struct light_field_camera *c = &w->now.camera;
+    int length = snprintf(state->figures, sizeof state->figures, "%ux%u, ", c->width, c->height);
     if (w->view->is_field)
-        (void)snprintf(field, sizeof field, " of %ux%u cameras%s", head->columns, head->rows,
-                       head->depth ? ", with depths" : "");
-    (void)snprintf(state->figures, sizeof state->figures, "%ux%u%s%s", w->width, w->height, field, rate);
+        (void)snprintf(state->figures + length, sizeof state->figures - (size_t)length,
+                       "--eye %.4g,%.4g,%.4g --focus %.4g --aperture %.4g", c->x, c->y, c->z, c->focus, c->aperture);
+    else
+        (void)snprintf(state->figures + length, sizeof state->figures - (size_t)length,
+                       "--direction %.4g,%.4g --fov %.4g", c->x, c->y, w->now.fov);
     (void)snprintf(state->state, sizeof state->state, w->coarse ? "moving" : "ready");
     state->share = 1;
 }
 
 /* A picture of the present view, with fewer pixels while something moves. */
 static bool draw(struct view_window *w, bool coarse, struct error *error) {
-    uint32_t divide = coarse ? w->divide : 1;
+    const uint32_t divide = coarse ? w->divide : 1;
+    struct view_state state = w->now;
     struct tone_bytes tone;
     double began = clock_now();
-    w->fine = !coarse && !w->saves;
-    w->now.quick = coarse;
-    bool ok = view_resize(w->view, (w->width + divide - 1) / divide, (w->height + divide - 1) / divide, error) &&
-              view_draw(w->view, &w->now, error);
-    w->fine = false;
-    pool_reset_cancel(w->view->pool);
-    if (!ok)
+    state.camera.width = (state.camera.width + divide - 1) / divide;
+    state.camera.height = (state.camera.height + divide - 1) / divide;
+    state.camera.quick = coarse;
+    if (!view_draw(w->view, &state, error))
         return false;
     tone_bytes_make(&w->view->tone, &tone);
     const float *light = w->view->light[0];
@@ -152,7 +91,7 @@ static bool draw(struct view_window *w, bool coarse, struct error *error) {
         w->bytes[i] = tone_byte(&tone, light[i]);
     double seconds = clock_now() - began, fits = divide * sqrt(seconds / picture_seconds);
     w->divide = (uint32_t)math_min(math_max(ceil(fits - 0.1), 1), DIVIDE_LIMIT);
-    w->coarse = coarse && (divide > 1 || (w->now.aperture > 0 && w->view->field.head.depth));
+    w->coarse = coarse && (divide > 1 || (state.camera.aperture > 0 && w->view->field.head.depth));
     return true;
 }
 
@@ -166,16 +105,16 @@ static void stop_for_events(void *context) {
 static void show(struct view_window *w, bool coarse) {
     struct window_state *state = w->driver->state;
     struct error error;
+    w->fine = !coarse;
     bool ok = draw(w, coarse, &error);
+    w->fine = false;
+    pool_reset_cancel(w->view->pool);
     if (!ok && error.kind == ERROR_CANCELLED)
         return;
-    double now = clock_now(), passed = now - w->shown;
-    if (coarse && passed < 0.5)
-        w->seconds = w->seconds > 0 ? 0.8 * w->seconds + 0.2 * passed : passed;
-    w->shown = now;
     (void)snprintf(state->message, sizeof state->message, "%.500s", ok ? "" : error.text);
     describe(w);
-    w->driver->show(w->driver->context, w->bytes, ok ? w->view->width : w->width, ok ? w->view->height : w->height);
+    w->driver->show(w->driver->context, w->bytes, ok ? w->view->width : w->now.camera.width,
+                    ok ? w->view->height : w->now.camera.height);
 }
 
 /* --- input --- */
@@ -183,19 +122,16 @@ static void show(struct view_window *w, bool coarse) {
 /* The picture in the place for it: all of a view of a field; a panorama fills the place. */
 static void fit(struct view_window *w, const struct window_event *event) {
     struct window_state *state = w->driver->state;
-    struct error error;
-    if (!w->view->is_field) {
-        uint8_t *bytes = mem_alloc_zero((size_t)event->x * (size_t)event->y, 3);
-        if (bytes && view_resize(w->view, (uint32_t)event->x, (uint32_t)event->y, &error)) {
-            w->width = w->view->width;
-            w->height = w->view->height;
-            mem_free(w->bytes);
-            w->bytes = bytes;
-        }
+    struct light_field_camera *camera = &w->now.camera;
+    uint8_t *bytes = w->view->is_field ? NULL : mem_resize_array(w->bytes, (size_t)event->x * (size_t)event->y, 3);
+    if (bytes) {
+        camera->width = w->initial.camera.width = (uint32_t)event->x;
+        camera->height = w->initial.camera.height = (uint32_t)event->y;
+        w->bytes = bytes;
     }
-    double scale = math_min(event->x / w->width, event->y / w->height);
-    state->shown_width = (int)math_max(1, floor(w->width * scale));
-    state->shown_height = (int)math_max(1, floor(w->height * scale));
+    double scale = math_min(event->x / camera->width, event->y / camera->height);
+    state->shown_width = (int)math_max(1, floor(camera->width * scale));
+    state->shown_height = (int)math_max(1, floor(camera->height * scale));
     state->left = (int)(event->x - state->shown_width) / 2;
     state->top = (int)(event->y - state->shown_height) / 2;
     w->outdated = true;
@@ -204,13 +140,14 @@ static void fit(struct view_window *w, const struct window_event *event) {
 /* The picture follows the mouse: a point at the plane in focus, a direction. */
 static void drag(struct view_window *w, double dx, double dy) {
     const struct window_state *state = w->driver->state;
-    struct vec3 *at = &w->now.at;
+    const double across = dx / state->shown_width, down = dy / state->shown_height;
+    struct light_field_camera *camera = &w->now.camera;
     if (w->view->is_field) {
-        at->x -= dx / state->shown_width * 2 * half_grid(w, true);
-        at->y += dy / state->shown_height * 2 * half_grid(w, false);
+        camera->x -= across * 2 * half_grid(w, true);
+        camera->y += down * 2 * half_grid(w, false);
     } else {
-        at->x -= dx * w->now.fov / state->shown_height;
-        at->y += dy * w->now.fov / state->shown_height;
+        camera->x -= dx * w->now.fov / state->shown_height;
+        camera->y += down * w->now.fov;
     }
     limit(w);
 }
@@ -218,35 +155,40 @@ static void drag(struct view_window *w, double dx, double dy) {
 static void focus_at(struct view_window *w, double x, double y) {
     struct window_state *state = w->driver->state;
     struct view *view = w->view;
+    struct light_field_camera *camera = &w->now.camera;
     const double across = (x - state->left) / state->shown_width, down = (y - state->top) / state->shown_height;
     struct error error;
+    double distance;
     if (!view->is_field || !(across >= 0 && across < 1 && down >= 0 && down < 1))
         return;
-    struct light_field_camera camera = view_camera(view, &w->now);
-    camera.width = w->width;
-    camera.height = w->height;
-    camera.quick = false;
-    const double pixel[2] = {across * w->width, down * w->height};
-    if (light_field_distance(&view->field, &camera, pixel, view->pool, &w->now.focus, &error))
-        (void)snprintf(state->notice, sizeof state->notice, "Focus at %.4g", w->now.focus);
-    else
+    const double pixel[2] = {across * camera->width, down * camera->height};
+    if (light_field_distance(&view->field, camera, pixel, view->pool, &distance, &error)) {
+        (void)snprintf(state->notice, sizeof state->notice, "Focus at %.4g", distance);
+        camera->focus = distance;
+    } else {
         (void)snprintf(state->notice, sizeof state->notice, "%.500s",
                        error.text[0] != '\0' ? error.text : "Nothing is there to focus on");
+    }
     limit(w);
 }
 
 static void turn_wheel(struct view_window *w, double steps) {
     if (w->view->is_field)
-        w->now.aperture += steps * largest_aperture(w) / WHEEL_STEPS;
+        w->now.camera.aperture += steps * largest_aperture(w) / WHEEL_STEPS;
     else
         w->now.fov *= el_pow(0.9, steps);
     limit(w);
 }
 
-static void change_field(struct view_window *w, const struct window_event *event) {
-    if (event->field >= EYE_X && event->field < NUMBER_COUNT)
-        *number_at(&w->now, (enum view_number)event->field) = event->numbers[0];
-    limit(w);
+static void save(struct view_window *w, const char *name) {
+    struct window_state *state = w->driver->state;
+    struct error error;
+    char own[1024];
+    const char *base = file_name_of(w->view->options), *dot = strrchr(base, '.');
+    (void)snprintf(own, sizeof own, "%.*s-view.png", (int)(dot ? dot - base : (long)strlen(base)), base);
+    name = name[0] == '\0' ? own : name;
+    bool ok = draw(w, false, &error) && view_write(w->view, name, &error);
+    (void)snprintf(state->notice, sizeof state->notice, ok ? "%.480s is written" : "%.480s", ok ? name : error.text);
 }
 
 static void do_action(struct view_window *w, const struct window_event *event) {
@@ -259,8 +201,8 @@ static void do_action(struct view_window *w, const struct window_event *event) {
         w->view->tone.exposure += event->action == DO_BRIGHTER ? 0.25 : -0.25;
     else if (event->action == DO_FULL_SCREEN)
         state->full_screen = !state->full_screen;
-    w->saves = event->action == DO_SAVE_PICTURE;
-    (void)snprintf(w->name, sizeof w->name, "%s", event->text);
+    else if (event->action == DO_SAVE_PICTURE)
+        save(w, event->text);
     w->outdated = true;
 }
 
@@ -268,12 +210,6 @@ static void handle(struct view_window *w, const struct window_event *event) {
     switch (event->kind) {
     case WINDOW_CLOSE:
         w->closed = true;
-        return;
-    case WINDOW_KEY:
-        w->held[event->key] = event->down;
-        return;
-    case WINDOW_LEAVE:
-        memset(w->held, 0, sizeof w->held);
         return;
     case WINDOW_MOVE:
         w->has_moved = w->has_moved || fabs(event->x - w->pressed_x) + fabs(event->y - w->pressed_y) >= click_pixels;
@@ -301,9 +237,9 @@ static void handle(struct view_window *w, const struct window_event *event) {
     case WINDOW_ACTION:
         do_action(w, event);
         return;
+    case WINDOW_KEY:
+    case WINDOW_LEAVE:
     case WINDOW_FIELD:
-        change_field(w, event);
-        return;
     case WINDOW_TYPE:
     case WINDOW_NODES:
     case WINDOW_SELECT:
@@ -312,33 +248,6 @@ static void handle(struct view_window *w, const struct window_event *event) {
     case WINDOW_HIDE:
         return;
     }
-}
-
-/* The arrow keys. */
-static void step_keys(struct view_window *w, double now) {
-    double seconds = math_min(now - w->stepped, 0.1), dx = w->held[FLY_RIGHT] - w->held[FLY_LEFT],
-           dy = w->held[FLY_FORWARD] - w->held[FLY_BACK];
-    double across = w->view->is_field ? 2 * half_grid(w, true) : 180,
-           up = w->view->is_field ? 2 * half_grid(w, false) : 90;
-    w->stepped = now;
-    if (dx == 0 && dy == 0)
-        return;
-    w->now.at.x += dx * across * seconds / flight_seconds;
-    w->now.at.y += dy * up * seconds / flight_seconds;
-    limit(w);
-}
-
-static void save(struct view_window *w) {
-    struct window_state *state = w->driver->state;
-    struct error error;
-    char name[sizeof w->name];
-    const char *base = file_name_of(w->view->options), *dot = strrchr(base, '.');
-    (void)snprintf(name, sizeof name, "%s", w->name);
-    if (name[0] == '\0')
-        (void)snprintf(name, sizeof name, "%.*s-view.png", (int)(dot ? dot - base : (long)strlen(base)), base);
-    bool ok = draw(w, false, &error) && view_write(w->view, name, &error);
-    (void)snprintf(state->notice, sizeof state->notice, ok ? "%.480s is written" : "%.480s", ok ? name : error.text);
-    w->saves = false;
 }
 
 /* Waits for events for so many seconds, or without end if that is negative, and handles them. */
@@ -353,10 +262,7 @@ static void wait_for_events(struct view_window *w, double seconds) {
 static void loop(struct view_window *w) {
     const double rest = 0.15; /* seconds until all pixels are drawn */
     while (!w->closed) {
-        step_keys(w, clock_now());
         wait_for_events(w, w->outdated ? 0 : w->coarse ? rest : -1);
-        if (w->saves)
-            save(w);
         if (!w->closed && (w->outdated || w->coarse) && w->driver->state->shown_width > 0) {
             bool moves = w->outdated;
             w->outdated = false;
@@ -370,10 +276,8 @@ int view_window_run(const struct options *options, const struct window_driver *d
     struct view_window w = {.driver = driver, .divide = DIVIDE_LIMIT, .view = view_open(options, &error)};
     bool ok = w.view != NULL;
     if (ok) {
-        w.width = w.view->width;
-        w.height = w.view->height;
         w.now = w.initial = view_state_of(w.view, 0);
-        w.bytes = mem_alloc_zero((size_t)w.width * w.height, 3);
+        w.bytes = mem_alloc_zero((size_t)w.view->width * w.view->height, 3);
         ok = w.bytes || error_no_memory(&error, "the picture");
     }
     if (ok) {

@@ -21,7 +21,9 @@ enum {
     VERSION = 1,
     HAS_DEPTH = 1,
     HAS_SRGB = 2,
-    HEAD_SIZE = 8 + 4 * 7 + 8 * 4,
+    WHOLE = 7, /* numbers of the head */
+    NUMBERS = 4,
+    HEAD_SIZE = 8 + 4 * WHOLE + 8 * NUMBERS,
     TABLE_OF_TONE = 4 * TONE_ENTRIES,
     ENTRY_SIZE = 8, /* the size of a view */
     TAIL_SIZE = 16, /* the place of the table, its CRC-32 and the first half of the magic word */
@@ -75,7 +77,7 @@ static void join_row(const uint8_t *bytes, size_t plane, uint32_t width, float *
 struct packing {
     const struct light_field_head *head;
     float *colours, *depths; /* rows of the grid, three numbers a pixel */
-    uint8_t **raw, **packed; /* of each worker; of each view */
+    uint8_t *raw, *packed;   /* of each worker; of each view */
     uint64_t *sizes;         /* of each view */
     size_t room;             /* of a packed view */
     _Atomic bool failed;
@@ -85,7 +87,7 @@ static void pack_view(void *context, uint32_t column, int worker) {
     struct packing *p = context;
     const struct light_field_head *head = p->head;
     size_t plane = (size_t)head->width * head->height, line = (size_t)head->columns * head->width * COLOURS;
-    uint8_t *raw = p->raw[worker];
+    uint8_t *raw = p->raw + (size_t)worker * raw_size(head);
     for (uint32_t channel = 0; channel < channels_of(head); channel++) {
         const float *from = channel < COLOURS ? p->colours + channel : p->depths;
         for (uint32_t y = 0; y < head->height; y++)
@@ -97,7 +99,7 @@ static void pack_view(void *context, uint32_t column, int worker) {
     if (ok) {
         stream.next_in = raw;
         stream.avail_in = (uInt)raw_size(head);
-        stream.next_out = p->packed[column];
+        stream.next_out = p->packed + column * p->room;
         stream.avail_out = (uInt)p->room;
         ok = deflate(&stream, Z_FINISH) == Z_STREAM_END;
         p->sizes[column] = stream.total_out;
@@ -107,31 +109,24 @@ static void pack_view(void *context, uint32_t column, int worker) {
         atomic_store(&p->failed, true);
 }
 
+/* The tone curve as well. */
 static bool write_head(struct file_output *file, const struct light_field_head *head, struct error *error) {
-    uint8_t bytes[HEAD_SIZE], *at = bytes + sizeof magic;
+    const uint32_t flags = (head->depth ? HAS_DEPTH : 0) | (head->tone.srgb ? HAS_SRGB : 0);
+    const uint32_t whole[WHOLE] = {VERSION,      head->columns, head->rows,      head->width,
+                                   head->height, flags,         head->tone.curve};
+    const double numbers[NUMBERS] = {head->spacing, head->screen, head->fov, head->tone.exposure};
+    uint8_t bytes[HEAD_SIZE + TABLE_OF_TONE], *at = bytes + sizeof magic;
     memcpy(bytes, magic, sizeof magic);
-    bytes_put(&at, VERSION, 4);
-    bytes_put(&at, head->columns, 4);
-    bytes_put(&at, head->rows, 4);
-    bytes_put(&at, head->width, 4);
-    bytes_put(&at, head->height, 4);
-    bytes_put(&at, (head->depth ? HAS_DEPTH : 0) | (head->tone.srgb ? HAS_SRGB : 0), 4);
-    bytes_put(&at, (uint64_t)head->tone.curve, 4);
-    bytes_put_number(&at, head->spacing);
-    bytes_put_number(&at, head->screen);
-    bytes_put_number(&at, head->fov);
-    bytes_put_number(&at, head->tone.exposure);
-    if (!file_output_write(file, bytes, sizeof bytes, error))
-        return false;
+    for (int i = 0; i < WHOLE; i++)
+        bytes_put(&at, whole[i], 4);
+    for (int i = 0; i < NUMBERS; i++)
+        bytes_put_number(&at, numbers[i]);
     for (int i = 0; i < TONE_ENTRIES && head->tone.curve == TONE_FUNCTION; i++) {
-        uint8_t value[4], *end = value;
         uint32_t bits;
         memcpy(&bits, &head->tone.table->values[i], sizeof bits);
-        bytes_put(&end, bits, 4);
-        if (!file_output_write(file, value, sizeof value, error))
-            return false;
+        bytes_put(&at, bits, 4);
     }
-    return true;
+    return file_output_write(file, bytes, (size_t)(at - bytes), error);
 }
 
 /* Reads the rows of a row of the grid and packs its views. */
@@ -166,7 +161,7 @@ static bool write_views(struct file_output *file, struct packing *p, const struc
         for (uint32_t i = 0; ok && i < head->columns; i++) {
             bytes_put(&entry, p->sizes[i], 8);
             at += p->sizes[i];
-            ok = file_output_write(file, p->packed[i], (size_t)p->sizes[i], error);
+            ok = file_output_write(file, p->packed + i * p->room, (size_t)p->sizes[i], error);
         }
     }
     if (ok) {
@@ -179,45 +174,23 @@ static bool write_views(struct file_output *file, struct packing *p, const struc
     return ok;
 }
 
-static bool make_packing(struct packing *p, int workers) {
-    const struct light_field_head *head = p->head;
-    size_t line = (size_t)head->columns * head->width * COLOURS, raw = raw_size(head);
-    p->room = compressBound((uLong)raw);
-    p->colours = mem_alloc_zero(line * head->height, sizeof *p->colours);
-    p->depths = mem_alloc_zero(head->depth ? line * head->height : 1, sizeof *p->depths);
-    p->raw = mem_alloc_zero((size_t)workers, sizeof *p->raw);
-    p->packed = mem_alloc_zero(head->columns, sizeof *p->packed);
-    p->sizes = mem_alloc_zero(head->columns, sizeof *p->sizes);
-    bool ok = p->colours && p->depths && p->raw && p->packed && p->sizes;
-    for (int i = 0; ok && i < workers; i++)
-        ok = (p->raw[i] = mem_alloc(raw)) != NULL;
-    for (uint32_t i = 0; ok && i < head->columns; i++)
-        ok = (p->packed[i] = mem_alloc(p->room)) != NULL;
-    return ok;
-}
-
-static void free_packing(struct packing *p, int workers) {
-    for (int i = 0; p->raw && i < workers; i++)
-        mem_free(p->raw[i]);
-    for (uint32_t i = 0; p->packed && i < p->head->columns; i++)
-        mem_free(p->packed[i]);
-    mem_free(p->raw);
-    mem_free(p->packed);
-    mem_free(p->colours);
-    mem_free(p->depths);
-    mem_free(p->sizes);
-}
-
 bool light_field_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
                        struct error *error) {
     const struct light_field_head single = {
         .columns = 1, .rows = 1, .width = source->width, .height = source->height, .screen = 1, .fov = LIGHT_FIELD_FOV};
     struct packing p = {.head = source->field ? source->field : &single};
     struct file_output file;
-    int workers = pool ? pool_workers(pool) : 1;
     if ((uint64_t)p.head->width * p.head->height > VIEW_LIMIT / 4)
         return error_set(error, ERROR_SCENE, "%s: a view of a light field has at most 2^26 pixels", target->path);
-    bool ok = make_packing(&p, workers) || error_no_memory(error, target->path);
+    const size_t line = (size_t)p.head->columns * p.head->width * COLOURS,
+                 workers = pool ? (size_t)pool_workers(pool) : 1;
+    p.room = compressBound((uLong)raw_size(p.head));
+    p.colours = mem_alloc_zero(line * p.head->height, sizeof *p.colours);
+    p.depths = mem_alloc_zero(p.head->depth ? line * p.head->height : 1, sizeof *p.depths);
+    p.raw = mem_alloc(workers * raw_size(p.head));
+    p.packed = mem_alloc(p.head->columns * p.room);
+    p.sizes = mem_alloc_zero(p.head->columns, sizeof *p.sizes);
+    bool ok = (p.colours && p.depths && p.raw && p.packed && p.sizes) || error_no_memory(error, target->path);
     if (ok) {
         ok = file_output_open(&file, target, error);
         if (ok && write_head(&file, p.head, error) && write_views(&file, &p, source, pool, error))
@@ -225,7 +198,11 @@ bool light_field_write(const struct file_target *target, const struct picture_so
         else if (ok)
             file_output_abandon(&file), ok = false;
     }
-    free_packing(&p, workers);
+    mem_free(p.raw);
+    mem_free(p.packed);
+    mem_free(p.colours);
+    mem_free(p.depths);
+    mem_free(p.sizes);
     return ok;
 }
 
@@ -247,52 +224,49 @@ static bool read_head(struct light_field *field, struct error *error) {
     uint8_t bytes[HEAD_SIZE];
     const uint8_t *at = bytes + sizeof magic;
     struct light_field_head *head = &field->head;
+    uint32_t whole[WHOLE];
+    double numbers[NUMBERS];
     if (!file_source_read(&field->source, 0, bytes, sizeof magic) || !light_field_is(bytes, sizeof magic))
         return error_set(error, ERROR_SCENE, "%s: is no light field", field->path);
     if (!file_source_read(&field->source, 0, bytes, sizeof bytes))
         return wrong(field, "it ends too early", error);
-    uint32_t version = (uint32_t)bytes_get(&at, 4);
-    if (version != VERSION)
+    for (int i = 0; i < WHOLE; i++)
+        whole[i] = (uint32_t)bytes_get(&at, 4);
+    for (int i = 0; i < NUMBERS; i++)
+        numbers[i] = bytes_get_number(&at);
+    if (whole[0] != VERSION)
         return error_set(error, ERROR_SCENE, "%s: is a light field of version %u, and gray reads version %d",
-                         field->path, version, VERSION);
-    head->columns = (uint32_t)bytes_get(&at, 4);
-    head->rows = (uint32_t)bytes_get(&at, 4);
-    head->width = (uint32_t)bytes_get(&at, 4);
-    head->height = (uint32_t)bytes_get(&at, 4);
-    uint32_t flags = (uint32_t)bytes_get(&at, 4), curve = (uint32_t)bytes_get(&at, 4);
-    head->depth = flags & HAS_DEPTH;
-    head->tone = (struct tone){.srgb = flags & HAS_SRGB, .curve = (enum tone_curve)curve};
-    head->spacing = bytes_get_number(&at);
-    head->screen = bytes_get_number(&at);
-    head->fov = bytes_get_number(&at);
-    head->tone.exposure = bytes_get_number(&at);
+                         field->path, whole[0], VERSION);
+    const uint32_t flags = whole[5], curve = whole[6];
+    *head = (struct light_field_head){
+        whole[1],   whole[2],          whole[3],
+        whole[4],   flags & HAS_DEPTH, numbers[0],
+        numbers[1], numbers[2],        {numbers[3], (enum tone_curve)curve, flags & HAS_SRGB, NULL}};
     bool sizes = head->columns >= 1 && head->columns <= GRID_LIMIT && head->rows >= 1 && head->rows <= GRID_LIMIT &&
                  head->width >= 1 && head->width <= SIDE_LIMIT && head->height >= 1 && head->height <= SIDE_LIMIT &&
                  (uint64_t)head->width * head->height <= VIEW_LIMIT / 4;
-    bool numbers = is_positive(head->screen) && is_positive(head->fov) && head->fov < 180 && isfinite(head->spacing) &&
-                   head->spacing >= 0 && fabs(head->tone.exposure) <= 1000;
-    if (!sizes || !numbers || flags > (HAS_DEPTH | HAS_SRGB) || curve > TONE_FUNCTION)
+    bool possible = is_positive(head->screen) && is_positive(head->fov) && head->fov < 180 && isfinite(head->spacing) &&
+                    head->spacing >= 0 && fabs(head->tone.exposure) <= 1000;
+    if (!sizes || !possible || flags > (HAS_DEPTH | HAS_SRGB) || curve > TONE_FUNCTION)
         return wrong(field, "its head has an impossible number", error);
     return true;
 }
 
 static bool read_tone(struct light_field *field, struct error *error) {
+    uint8_t bytes[TABLE_OF_TONE];
+    const uint8_t *at = bytes;
     if (field->head.tone.curve != TONE_FUNCTION)
         return true;
-    uint8_t *bytes = mem_alloc(TABLE_OF_TONE);
-    const uint8_t *at = bytes;
-    field->table = mem_alloc_zero(1, sizeof *field->table);
-    bool ok = (bytes && field->table) || error_no_memory(error, field->path);
-    ok = ok && (file_source_read(&field->source, HEAD_SIZE, bytes, TABLE_OF_TONE) ||
-                wrong(field, "it ends too early", error));
-    for (int i = 0; ok && i < TONE_ENTRIES; i++) {
+    if (!file_source_read(&field->source, HEAD_SIZE, bytes, sizeof bytes))
+        return wrong(field, "it ends too early", error);
+    for (int i = 0; i < TONE_ENTRIES; i++) {
         uint32_t bits = (uint32_t)bytes_get(&at, 4);
-        memcpy(&field->table->values[i], &bits, sizeof bits);
-        ok = isfinite(field->table->values[i]) || wrong(field, "its tone curve has an impossible number", error);
+        memcpy(&field->table.values[i], &bits, sizeof bits);
+        if (!isfinite(field->table.values[i]))
+            return wrong(field, "its tone curve has an impossible number", error);
     }
-    mem_free(bytes);
-    field->head.tone.table = field->table;
-    return ok;
+    field->head.tone.table = &field->table;
+    return true;
 }
 
 /* The table is at the end, so a file that is cut has none. */
@@ -340,13 +314,10 @@ bool light_field_open(struct light_field *field, const char *path, struct error 
 
 void light_field_close(struct light_field *field) {
     size_t count = (size_t)field->head.columns * field->head.rows;
-    for (size_t i = 0; field->views && i < count; i++) {
+    for (size_t i = 0; field->views && i < count; i++)
         mem_free(field->views[i]);
-        mem_free(field->entries[i].blocks);
-    }
     mem_free(field->views);
     mem_free(field->entries);
-    mem_free(field->table);
     file_source_close(&field->source);
     *field = (struct light_field){0};
 }
@@ -363,27 +334,6 @@ static bool unpack(const uint8_t *packed, size_t size, uint8_t *raw, size_t want
     bool ok = inflate(&stream, Z_FINISH) == Z_STREAM_END && stream.total_out == wanted && stream.avail_in == 0;
     (void)inflateEnd(&stream);
     return ok;
-}
-
-/* Depths become their reciprocals. */
-static bool find_disparities(const struct light_field_head *head, float *values, struct light_field_entry *entry) {
-    const uint32_t across = light_field_across(head), down = (head->height - 1) / LIGHT_FIELD_BLOCK + 1;
-    entry->blocks = mem_alloc((size_t)across * down * sizeof *entry->blocks);
-    entry->nearest = 0;
-    entry->farthest = INFINITY;
-    for (uint32_t i = 0; entry->blocks && i < across * down; i++)
-        entry->blocks[i] = (struct light_field_block){0, INFINITY};
-    for (uint32_t i = 0; entry->blocks && i < head->width * head->height; i++) {
-        struct light_field_block *block =
-            &entry->blocks[i / head->width / LIGHT_FIELD_BLOCK * across + i % head->width / LIGHT_FIELD_BLOCK];
-        float *last = values + (size_t)i * LIGHT_FIELD_NUMBERS + COLOURS;
-        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
-        block->nearest = *last > block->nearest ? *last : block->nearest;
-        block->farthest = *last < block->farthest ? *last : block->farthest;
-        entry->nearest = math_max(entry->nearest, (double)*last);
-        entry->farthest = math_min(entry->farthest, (double)*last);
-    }
-    return entry->blocks != NULL;
 }
 
 static bool load_view(struct light_field *field, uint32_t view, struct error *error) {
@@ -409,12 +359,20 @@ static bool load_view(struct light_field *field, uint32_t view, struct error *er
         ok = isfinite(values[i]) || wrong(field, "a view has a number that is not finite", error);
     mem_free(packed);
     mem_free(raw);
-    ok = ok && (find_disparities(head, values, entry) || error_no_memory(error, field->path));
-    if (ok)
-        field->views[view] = values;
-    else
+    if (!ok) {
         mem_free(values);
-    return ok;
+        return false;
+    }
+    entry->farthest = INFINITY;
+    /* Depths become their reciprocals. */
+    for (size_t i = 0; i < plane; i++) {
+        float *last = values + i * LIGHT_FIELD_NUMBERS + COLOURS;
+        *last = *last > 0 ? (float)math_min(1 / (double)*last, (double)FLT_MAX) : 0;
+        entry->nearest = math_max(entry->nearest, (double)*last);
+        entry->farthest = math_min(entry->farthest, (double)*last);
+    }
+    field->views[view] = values;
+    return true;
 }
 
 struct loading {

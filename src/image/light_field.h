@@ -32,22 +32,16 @@ struct light_field_head {
 bool light_field_write(const struct file_target *target, const struct picture_source *source, struct pool *pool,
                        struct error *error);
 
-/* Where a view lies in the file; once it is loaded, the reciprocals of its smallest and of its largest depth, also of
- * each square of LIGHT_FIELD_BLOCK pixels. */
-enum { LIGHT_FIELD_BLOCK = 8 };
-struct light_field_block {
-    float nearest, farthest;
-};
+/* Where a view lies in the file; once it is loaded, the reciprocals of its smallest and of its largest depth. */
 struct light_field_entry {
     uint64_t at, size;
     double nearest, farthest;
-    struct light_field_block *blocks; /* row by row */
 };
 /* A file that is open: its head and table are checked; views are read when they are needed. Zero value: closed. */
 struct light_field {
     const char *path; /* borrowed */
     struct light_field_head head;
-    struct tone_table *table;          /* of head.tone */
+    struct tone_table table;           /* of head.tone */
     struct light_field_entry *entries; /* row by row, the upper left view first */
     float **views;                     /* NULL until they are loaded */
     struct file_source source;
@@ -61,10 +55,6 @@ void light_field_close(struct light_field *field);
  * and the reciprocal of the depth (0: nothing is there), rows from the top. Errors: the file is damaged, no memory,
  * cancelled. */
 enum { LIGHT_FIELD_NUMBERS = 4 };
-/* Blocks in a row of a view. */
-static inline uint32_t light_field_across(const struct light_field_head *head) {
-    return (head->width - 1) / LIGHT_FIELD_BLOCK + 1;
-}
 struct light_field_part {
     uint32_t column, row, columns, rows;
 };

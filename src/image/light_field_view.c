@@ -16,14 +16,13 @@
 #include <string.h>
 
 enum { X, Y, AXES, LENS_FEWEST = 32, LENS_LIMIT = 256, STEPS_LIMIT = 64, PATCH = 7 };
-#define GOLDEN_ANGLE 2.39996322972865332
+static const double lens_middle[AXES];
 
-/* A point of the lens: its share of the picture is the same for all. */
-struct lens_point {
-    double offset[AXES];
+/* A weighted sum of pixels: all numbers of a pixel of a view. */
+struct pixel_sum {
+    double numbers[LIGHT_FIELD_NUMBERS], weight;
 };
 
-struct pixel_sum;
 struct drawing {
     const struct light_field *field;
     struct light_field_camera camera;
@@ -32,14 +31,13 @@ struct drawing {
     double spacing, pixel;          /* pixel: its side at distance 1 */
     double per_spacing, per_screen, per_focus, per_pixel; /* reciprocals; of spacing 0: 0 */
     double eye[AXES];
-    double ratio;                   /* of a pixel of the picture to one of a view */
-    double disparity, shares[AXES]; /* of the plane in focus; half of the picture, pixels of a view */
-    struct lens_point *points;      /* LENS_FEWEST of them, then twice as many, and so on */
-    uint32_t point_count;           /* of the largest disc: 1, or a power of two */
-    double blur;                    /* its radius, pixels of a view */
-    double *weights;                /* of all cameras for the whole picture; NULL: they differ by pixel */
-    struct pixel_sum *sums;         /* for each worker a row of it */
-    double *lines;                  /* for each worker a row of a view */
+    double ratio;                    /* of a pixel of the picture to one of a view */
+    double disparity, shares[AXES];  /* of the plane in focus; half of the picture, pixels of a view */
+    double points[LENS_LIMIT][AXES]; /* of the lens: as many as there are count as much as each other */
+    uint32_t point_count;
+    double *weights;        /* of all cameras for the whole picture; NULL: they differ by pixel */
+    struct pixel_sum *sums; /* for each worker a row of it */
+    double *lines;          /* for each worker a row of a view */
     float (*out)[3];
 };
 
@@ -79,14 +77,14 @@ static double camera_at(const struct drawing *d, int axis, double index) {
     return (index - middle_of(d->count[axis])) * d->spacing;
 }
 
-static struct field_ray ray_of(const struct drawing *d, const struct lens_point *point, double x, double y) {
+static struct field_ray ray_of(const struct drawing *d, const double offset[AXES], double x, double y) {
     const double at[AXES] = {x, y};
     struct field_ray ray;
     for (int k = 0; k < AXES; k++) {
         ray.picture[k] = at[k] * d->ratio - d->shares[k];
-        ray.lens[k] = -d->eye[k] * d->per_screen - point->offset[k] * d->per_focus;
+        ray.lens[k] = -d->eye[k] * d->per_screen - offset[k] * d->per_focus;
         double slope = ray.picture[k] * d->pixel + ray.lens[k];
-        ray.crossing[k] = d->eye[k] + point->offset[k] - d->camera.z * slope;
+        ray.crossing[k] = d->eye[k] + offset[k] - d->camera.z * slope;
     }
     return ray;
 }
@@ -116,11 +114,6 @@ static struct tap tap_of(double at, double size) {
     tap.second = tap.first + (tap.part > 0);
     return tap;
 }
-
-/* A weighted sum of pixels: all numbers of a pixel of a view. */
-struct pixel_sum {
-    double numbers[LIGHT_FIELD_NUMBERS], weight;
-};
 
 static void add_pixels(const struct drawing *d, const float *view, const struct tap taps[AXES], double weight,
                        struct pixel_sum *sum) {
@@ -213,25 +206,21 @@ static bool find_surface(const struct drawing *d, const struct field_ray *ray, c
     return false;
 }
 
-static int first_camera(const struct near_camera *cameras, int count) {
-    int first = 0;
-    for (int i = 1; i < count; i++)
-        first = cameras[i].weight > cameras[first].weight ? i : first;
-    return first;
-}
-
 /* The surface that the nearest camera sees, else another one, else the plane in focus. */
 static double disparity_of(const struct drawing *d, const struct field_ray *ray, const struct near_camera *cameras,
                            int count) {
-    int first = first_camera(cameras, count);
+    int first = 0;
     double disparity;
+    for (int i = 1; i < count; i++)
+        first = cameras[i].weight > cameras[first].weight ? i : first;
     for (int i = 0; i < count; i++)
         if (find_surface(d, ray, &cameras[(first + i) % count], &disparity))
             return disparity;
     return d->disparity;
 }
 
-static void add_ray(const struct drawing *d, const struct field_ray *ray, bool inside, struct pixel_sum *sum) {
+/* Returns how far its surface is from the plane in focus, or may be. */
+static double add_ray(const struct drawing *d, const struct field_ray *ray, bool inside, struct pixel_sum *sum) {
     struct near_camera cameras[4];
     int count = find_cameras(d, ray, inside, cameras);
     bool has_depth = d->depth && count > 0;
@@ -244,18 +233,10 @@ static void add_ray(const struct drawing *d, const struct field_ray *ray, bool i
         const struct tap taps[AXES] = {tap_of(at[X], d->size[X]), tap_of(at[Y], d->size[Y])};
         add_pixels(d, cameras[i].view, taps, hidden ? weight * 1e-6 : weight, sum);
     }
+    return d->depth ? fabs(disparity - d->disparity) : d->disparity;
 }
 
 /* --- the picture --- */
-
-static bool is_in_grid(const struct drawing *d, const struct field_ray *ray) {
-    bool inside = true;
-    for (int k = 0; k < AXES; k++) {
-        double u = among_cameras(d, k, ray->crossing[k]);
-        inside = inside && u >= 0 && u <= d->count[k] - 1;
-    }
-    return inside;
-}
 
 static void prepare(struct drawing *d, const struct light_field_head *head, const struct light_field_camera *camera) {
     *d = (struct drawing){.camera = *camera,
@@ -279,15 +260,26 @@ static void prepare(struct drawing *d, const struct light_field_head *head, cons
     }
 }
 
+/* Where its rays through the middle of the lens cross the plane, among the cameras. */
+static void find_range(const struct drawing *d, double low[AXES], double high[AXES]) {
+    for (int i = 0; i < 4; i++) {
+        struct field_ray ray = ray_of(d, lens_middle, i & 1 ? d->camera.width : 0, i & 2 ? d->camera.height : 0);
+        for (int k = 0; k < AXES; k++) {
+            double u = among_cameras(d, k, ray.crossing[k]);
+            low[k] = i == 0 ? u : math_min(low[k], u);
+            high[k] = i == 0 ? u : math_max(high[k], u);
+        }
+    }
+}
+
 bool light_field_clamp(const struct light_field_head *head, struct light_field_camera *camera) {
-    const struct lens_point middle = {{0, 0}};
     struct drawing d;
+    double low[AXES], high[AXES];
     bool outside = false;
     prepare(&d, head, camera);
-    for (int i = 0; i < 4; i++) {
-        struct field_ray ray = ray_of(&d, &middle, i & 1 ? camera->width : 0, i & 2 ? camera->height : 0);
-        outside = outside || !is_in_grid(&d, &ray);
-    }
+    find_range(&d, low, high);
+    for (int k = 0; k < AXES; k++)
+        outside = outside || !(low[k] >= 0 && high[k] <= d.count[k] - 1);
     double half_width = middle_of(d.count[X]) * d.spacing, half_height = middle_of(d.count[Y]) * d.spacing;
     if (camera->z == 0) {
         camera->x = math_min(math_max(camera->x, -half_width), half_width);
@@ -296,75 +288,16 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
     return outside;
 }
 
-/* How far the nearest surface of the loaded views, or the farthest one, is from the plane in focus. */
-static double largest_disparity(const struct drawing *d) {
-    double largest = d->depth ? 0 : d->disparity;
-    for (size_t i = 0; i < (size_t)d->field->head.columns * d->field->head.rows && d->depth; i++) {
-        const struct light_field_entry *entry = &d->field->entries[i];
-        if (d->field->views[i])
-            largest = math_max(largest, math_max(entry->nearest - d->disparity, d->disparity - entry->farthest));
+/* Points of a lens, so that any number of the first ones cover it evenly: multiples of the powers of 1 / 1.3247, the
+ * root of x^3 = x + 1. It is a line in a grid of one row or column. */
+static void make_lens(struct drawing *d) {
+    d->point_count = d->camera.aperture * d->per_spacing > 0 ? LENS_LIMIT : 1;
+    for (uint32_t i = 0; i < d->point_count && d->point_count > 1; i++) {
+        double radius = d->camera.aperture * sqrt(fmod(0.5 + i * 0.7548776662466927, 1)), sine, cosine;
+        el_sincos(2 * PI * fmod(i * 0.5698402909980532, 1), &sine, &cosine);
+        d->points[i][X] = d->count[X] > 1 ? radius * cosine : 0;
+        d->points[i][Y] = d->count[Y] > 1 ? radius * sine : 0;
     }
-    return largest;
-}
-
-/* One for each pixel of a disc. */
-static uint32_t points_of_disc(double radius) {
-    uint32_t count = LENS_FEWEST;
-    while (count < LENS_LIMIT && count < PI * radius * radius)
-        count *= 2;
-    return count;
-}
-
-static const struct lens_point *points_at(const struct drawing *d, uint32_t count) {
-    return d->points + (count < LENS_FEWEST ? 0 : count - LENS_FEWEST);
-}
-
-/* Points of a lens, as evenly as the seeds of a sunflower, for discs of all sizes. It is a line in a grid of one row or
- * column. */
-static bool make_lens(struct drawing *d) {
-    bool has_lens = d->camera.aperture * d->per_spacing > 0;
-    d->blur = d->camera.aperture * largest_disparity(d) * d->per_pixel;
-    d->point_count = has_lens ? points_of_disc(d->blur) : 1;
-    d->points = mem_alloc_zero(2 * LENS_LIMIT, sizeof *d->points);
-    for (uint32_t count = LENS_FEWEST; d->points && has_lens && count <= d->point_count; count *= 2) {
-        for (uint32_t i = 0; i < count; i++) {
-            double radius = d->camera.aperture * sqrt((i + 0.5) / count), sine, cosine;
-            el_sincos(i * GOLDEN_ANGLE, &sine, &cosine);
-            d->points[count - LENS_FEWEST + i] =
-                (struct lens_point){{d->count[X] > 1 ? radius * cosine : 0, d->count[Y] > 1 ? radius * sine : 0}};
-        }
-    }
-    return d->points != NULL;
-}
-
-/* Those for a pixel: of the largest disc of a surface that reaches it, by the depths that the nearest camera sees. */
-static uint32_t points_for(const struct drawing *d, uint32_t x, uint32_t y) {
-    struct near_camera cameras[4];
-    struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
-    int count = d->depth && d->point_count > LENS_FEWEST ? find_cameras(d, &ray, false, cameras) : 0;
-    if (count == 0)
-        return d->point_count;
-    const struct near_camera *camera = &cameras[first_camera(cameras, count)];
-    const uint32_t across = light_field_across(&d->field->head);
-    double at[AXES], low[AXES], high[AXES], largest = 0;
-    find_pixel(d, &ray, camera, d->disparity, at);
-    double moved = math_max(fabs(ray.crossing[X] - camera->at[X]), fabs(ray.crossing[Y] - camera->at[Y]));
-    double scale = d->camera.aperture + moved, extent = d->blur * (scale / d->camera.aperture) + 1;
-    for (int k = 0; k < AXES; k++) {
-        low[k] = floor(limited(at[k] - extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
-        high[k] = floor(limited(at[k] + extent, 0, d->size[k] - 1) / LIGHT_FIELD_BLOCK);
-    }
-    for (double row = low[Y]; row <= high[Y]; row++) {
-        for (double column = low[X]; column <= high[X]; column++) {
-            const struct light_field_block *block = &camera->entry->blocks[(size_t)row * across + (size_t)column];
-            double apart = math_max((double)block->nearest - d->disparity, d->disparity - (double)block->farthest);
-            double beside_x = fabs(at[X] - (column + 0.5) * LIGHT_FIELD_BLOCK),
-                   beside_y = fabs(at[Y] - (row + 0.5) * LIGHT_FIELD_BLOCK);
-            if (apart * scale * d->per_pixel + 1 + LIGHT_FIELD_BLOCK / 2.0 >= math_max(beside_x, beside_y))
-                largest = math_max(largest, apart);
-        }
-    }
-    return points_of_disc(largest * d->camera.aperture * d->per_pixel);
 }
 
 /* On the plane of the cameras, and without depths, all pixels have the same weights of cameras. */
@@ -375,7 +308,7 @@ static bool make_weights(struct drawing *d) {
     d->weights = mem_alloc_zero((size_t)head->columns * head->rows, sizeof *d->weights);
     for (uint32_t i = 0; d->weights && i < d->point_count; i++) {
         struct near_camera cameras[4];
-        struct field_ray ray = ray_of(d, &points_at(d, d->point_count)[i], 0, 0);
+        struct field_ray ray = ray_of(d, d->points[i], 0, 0);
         int count = find_cameras(d, &ray, true, cameras);
         for (int k = 0; k < count; k++) {
             double column = among_cameras(d, X, cameras[k].at[X]), row = among_cameras(d, Y, cameras[k].at[Y]);
@@ -389,10 +322,9 @@ static bool make_weights(struct drawing *d) {
  * at that height, linear between two. */
 static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double *line, struct pixel_sum *sums) {
     const struct light_field_head *head = &d->field->head;
-    const struct lens_point middle = {{0, 0}};
     const double camera[AXES] = {camera_at(d, X, view % head->columns), camera_at(d, Y, view / head->columns)};
     const size_t numbers = (size_t)head->width * LIGHT_FIELD_NUMBERS;
-    struct field_ray ray = ray_of(d, &middle, 0, y + 0.5);
+    struct field_ray ray = ray_of(d, lens_middle, 0, y + 0.5);
     const struct tap across = tap_of(pixel_of(d, &ray, Y, camera[Y], d->disparity), d->size[Y]);
     const float *upper = d->field->views[view] + across.first * numbers;
     const float *lower = d->field->views[view] + across.second * numbers;
@@ -410,15 +342,17 @@ static void add_view(const struct drawing *d, uint32_t view, uint32_t y, double 
     }
 }
 
+/* A lens over depths has a point for each pixel of the largest disc that its rays find. */
 static void draw_pixel(const struct drawing *d, uint32_t x, uint32_t y, struct pixel_sum *sum) {
-    const uint32_t count = d->weights ? 0 : points_for(d, x, y);
-    for (uint32_t i = 0; i < count; i++) {
-        struct field_ray ray = ray_of(d, &points_at(d, count)[i], x + 0.5, y + 0.5);
-        add_ray(d, &ray, true, sum);
+    double count = d->weights ? 0 : LENS_FEWEST;
+    for (uint32_t i = 0; i < d->point_count && i < count; i++) {
+        struct field_ray ray = ray_of(d, d->points[i], x + 0.5, y + 0.5);
+        double radius = add_ray(d, &ray, true, sum) * d->camera.aperture * d->per_pixel;
+        count = math_max(count, PI * radius * radius);
     }
-    struct field_ray ray = ray_of(d, &(struct lens_point){{0, 0}}, x + 0.5, y + 0.5);
+    struct field_ray ray = ray_of(d, lens_middle, x + 0.5, y + 0.5);
     if (!(sum->weight > 0)) /* all of the lens is outside */
-        add_ray(d, &ray, false, sum);
+        (void)add_ray(d, &ray, false, sum);
 }
 
 static void draw_row(void *context, uint32_t y, int worker) {
@@ -440,21 +374,12 @@ static void draw_row(void *context, uint32_t y, int worker) {
 
 /* The views that it needs. */
 static bool load_views(const struct drawing *d, struct light_field *field, struct pool *pool, struct error *error) {
-    double low[AXES] = {INFINITY, INFINITY}, high[AXES] = {0, 0};
-    for (int i = 0; i < 4; i++) {
-        const struct lens_point middle = {{0, 0}};
-        struct field_ray ray = ray_of(d, &middle, i & 1 ? d->camera.width : 0, i & 2 ? d->camera.height : 0);
-        double extent = d->camera.aperture * fabs(1 + d->camera.z * d->per_focus) * d->per_spacing;
-        for (int k = 0; k < AXES; k++) {
-            double u = among_cameras(d, k, ray.crossing[k]);
-            low[k] = math_min(low[k], u - extent);
-            high[k] = math_max(high[k], u + extent);
-        }
-    }
+    double low[AXES], high[AXES], extent = d->camera.aperture * fabs(1 + d->camera.z * d->per_focus) * d->per_spacing;
     uint32_t first[AXES], last[AXES];
+    find_range(d, low, high);
     for (int k = 0; k < AXES; k++) {
-        first[k] = (uint32_t)floor(math_min(math_max(low[k], 0), d->count[k] - 1));
-        last[k] = (uint32_t)ceil(math_min(math_max(high[k], 0), d->count[k] - 1));
+        first[k] = (uint32_t)floor(limited(low[k] - extent, 0, d->count[k] - 1));
+        last[k] = (uint32_t)ceil(limited(high[k] + extent, 0, d->count[k] - 1));
     }
     const struct light_field_part part = {first[X], first[Y], last[X] - first[X] + 1, last[Y] - first[Y] + 1};
     return light_field_load_part(field, &part, pool, error);
@@ -468,45 +393,41 @@ bool light_field_draw(struct light_field *field, const struct light_field_camera
     d.camera.aperture = math_min(camera->aperture, 2 * d.spacing * sqrt(wide * wide + high * high));
     d.field = field;
     d.out = out;
+    make_lens(&d);
     d.sums = mem_alloc_zero((size_t)pool_workers(pool) * camera->width, sizeof *d.sums);
     d.lines = mem_alloc_zero((size_t)pool_workers(pool) * d.field->head.width, LIGHT_FIELD_NUMBERS * sizeof *d.lines);
     bool ok = load_views(&d, field, pool, error) &&
-              ((d.sums && d.lines && make_lens(&d) && make_weights(&d)) || error_no_memory(error, field->path));
+              ((d.sums && d.lines && make_weights(&d)) || error_no_memory(error, field->path));
     ok = ok && (pool_run(pool, camera->height, draw_row, &d) || error_set(error, ERROR_CANCELLED, "interrupted"));
     mem_free(d.sums);
     mem_free(d.lines);
-    mem_free(d.points);
     mem_free(d.weights);
     return ok;
 }
 
 /* --- distances --- */
 
-/* How much the cameras of a part of the grid differ where they show a patch around a pixel at a disparity: the variance
- * of what they show, with bright light compressed. */
+/* How much the cameras of a part of the grid differ from the first one where they show a patch around a pixel at a
+ * disparity, with bright light compressed. */
 static double difference_at(const struct drawing *d, const struct light_field_part *part, const double pixel[AXES],
                             double disparity) {
-    const struct lens_point middle = {{0, 0}};
-    const uint32_t cameras = part->columns * part->rows;
     double sum = 0;
     for (int i = 0; i < PATCH * PATCH; i++) {
         const double off[AXES] = {(i % PATCH - PATCH / 2) / d->ratio, (int)(i / PATCH - PATCH / 2) / d->ratio};
-        struct field_ray ray = ray_of(d, &middle, pixel[X] + off[X], pixel[Y] + off[Y]);
-        double mean[3] = {0, 0, 0}, square = 0;
-        for (uint32_t k = 0; k < cameras; k++) {
+        struct field_ray ray = ray_of(d, lens_middle, pixel[X] + off[X], pixel[Y] + off[Y]);
+        double first[3] = {0, 0, 0};
+        for (uint32_t k = 0; k < part->columns * part->rows; k++) {
             const uint32_t column = part->column + k % part->columns, row = part->row + k / part->columns;
             struct pixel_sum seen = {.weight = 0};
-            struct tap taps[AXES];
-            taps[X] = tap_of(pixel_of(d, &ray, X, camera_at(d, X, column), disparity), d->size[X]);
-            taps[Y] = tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y]);
+            const struct tap taps[AXES] = {tap_of(pixel_of(d, &ray, X, camera_at(d, X, column), disparity), d->size[X]),
+                                           tap_of(pixel_of(d, &ray, Y, camera_at(d, Y, row), disparity), d->size[Y])};
             add_pixels(d, d->field->views[row * d->field->head.columns + column], taps, 1, &seen);
             for (int c = 0; c < 3; c++) {
                 double light = math_max(0, seen.numbers[c] / seen.weight), value = light / (1 + light);
-                mean[c] += value / cameras;
-                square += value * value / cameras;
+                first[c] = k == 0 ? value : first[c];
+                sum += (value - first[c]) * (value - first[c]);
             }
         }
-        sum += square - (mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
     }
     return sum;
 }
@@ -531,7 +452,7 @@ bool light_field_distance(struct light_field *field, const struct light_field_ca
     uint32_t first[AXES], count[AXES];
     prepare(&d, &field->head, camera);
     d.field = field;
-    struct field_ray ray = ray_of(&d, &(struct lens_point){{0, 0}}, pixel[X], pixel[Y]);
+    struct field_ray ray = ray_of(&d, lens_middle, pixel[X], pixel[Y]);
     for (int k = 0; k < AXES; k++) {
         double u = limited(among_cameras(&d, k, ray.crossing[k]), 0, d.count[k] - 1);
         first[k] = (uint32_t)math_max(0, floor_of(u) - 1);

@@ -156,15 +156,6 @@ static double cosine_on(const struct bsdf *bsdf, bool behind, struct vec3 wi) {
     return n_l > 0 && height > 0 ? n_l : 0;
 }
 
-static struct vec3 cosine_sample(struct vec3 normal, struct sample2 u) {
-    struct sample2 disc = sample_disc(u);
-    struct vec3 a, b;
-    frame_tangents(normal, &a, &b);
-    double height = 1 - disc.x * disc.x - disc.y * disc.y;
-    struct vec3 out = vec3_scale(normal, height > 0 ? sqrt(height) : 0);
-    return vec3_add_scaled(vec3_add_scaled(out, a, disc.x), b, disc.y);
-}
-
 static struct vec3 uniform_sample(struct vec3 normal, struct sample2 u) {
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
@@ -539,7 +530,7 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
     case LOBE_DIFFUSE_THROUGH:
-        *direction = cosine_sample(*transmits ? vec3_negate(bsdf->side) : bsdf->side, u);
+        *direction = sample_cosine(*transmits ? vec3_negate(bsdf->side) : bsdf->side, u);
         break;
     case LOBE_GLOSS:
     case LOBE_METAL:

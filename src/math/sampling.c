@@ -6,6 +6,7 @@
 #include "math/sampling.h"
 
 #include "math/elementary.h"
+#include "math/frame.h"
 
 #include <math.h>
 
@@ -65,6 +66,15 @@ struct sample2 sample_disc(struct sample2 square) {
     }
     el_sincos(angle, &sine, &cosine);
     return (struct sample2){radius * cosine, radius * sine};
+}
+
+struct vec3 sample_cosine(struct vec3 normal, struct sample2 square) {
+    struct sample2 disc = sample_disc(square);
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    double height = 1 - disc.x * disc.x - disc.y * disc.y;
+    struct vec3 out = vec3_scale(normal, height > 0 ? sqrt(height) : 0);
+    return vec3_add_scaled(vec3_add_scaled(out, a, disc.x), b, disc.y);
 }
 
 /* A rectangle sampled by its solid angle: Urena, Fajardo, King, "An Area-Preserving Parametrization for

@@ -39,6 +39,8 @@ struct sample2 sample_multi(uint64_t set, uint64_t key, struct sample_part part)
 uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key);
 /* Maps the unit square onto the unit disc; keeps the ratio of areas, and is continuous. */
 struct sample2 sample_disc(struct sample2 square);
+/* A direction on the side of a unit normal, with the density of its cosine over pi. */
+struct vec3 sample_cosine(struct vec3 normal, struct sample2 square);
 
 /* The entry of a table that a number of [0, 1) selects; until: rising shares up to and with each of the entries. */
 static inline uint64_t sample_entry(const double *until, uint64_t count, double x) {

@@ -8,6 +8,12 @@
 static bool choose_name(struct model_output *model, const struct picture_files *files,
                         const struct model_request *request, struct error *error) {
     const struct options *options = files->options;
+    if (request->role == MODEL_SCENE) {
+        model->by_user = true;
+        model->is_beside = false;
+        return (options->output && output_name(options->output, request->number, model->name, sizeof model->name)) ||
+               error_set(error, ERROR_SCENE, "the name of the scene is longer than %d bytes", NAME_LIMIT - 1);
+    }
     const char *own = request->role == MODEL_BAKED ? options->bake : request->role ? options->model : NULL;
     const char *file = own ? own : request->file;
     size_t length = strlen(file);

@@ -161,7 +161,7 @@ static bool is_replaced(const uint8_t *head, size_t size) {
 bool picture_files_check_output(const struct options *options, struct error *error) {
     static const char *const animations[] = {ANIMATION_FORMATS(LIST_WORD)};
     char name[NAME_LIMIT], extensions[PICTURE_EXTENSIONS_SIZE], moving[128] = "";
-    bool free_name = !options->output || strcmp(options->output, "-") == 0 || options->force;
+    bool free_name = !options->output || options->to_json || options->to_lua || strcmp(options->output, "-") == 0 || options->force;
     if (free_name || options->animation != ANIMATION_NONE || !output_name(options->output, 1, name, NAME_LIMIT) ||
         ending_of(name) != ENDING_OTHER ||
         /* Later checks refuse it by its contents, or write to it. */

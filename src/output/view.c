@@ -5,10 +5,10 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/image.h"
-#include "image/light_field_view.h"
 #include "image/png_write.h"
 #include "math/elementary.h"
 #include "output/animation.h"
+#include "render/camera.h"
 #include "session/text.h"
 
 #include <stdlib.h>
@@ -89,14 +89,22 @@ static bool open_panorama(struct view *view, struct error *error) {
     return true;
 }
 
-static bool open_file(struct view *view, struct error *error) {
-    const char *name = view->options->scripts[0];
+static bool read_head(const char *name, uint8_t head[FILE_HEAD_SIZE], struct error *error) {
     struct file_source source;
-    uint8_t head[8];
+    memset(head, 0, FILE_HEAD_SIZE);
     if (!file_source_open(&source, name, error))
         return false;
-    view->is_field = file_source_read(&source, 0, head, sizeof head) && light_field_is(head, sizeof head);
+    (void)file_source_read(&source, 0, head, FILE_HEAD_SIZE);
     file_source_close(&source);
+    return true;
+}
+
+static bool open_file(struct view *view, struct error *error) {
+    const char *name = view->options->scripts[0];
+    uint8_t head[FILE_HEAD_SIZE];
+    if (!read_head(name, head, error))
+        return false;
+    view->is_field = light_field_is(head, sizeof head);
     const char *dot = strrchr(name, '.');
     if (!view->is_field && !(dot && picture_format(name) == PICTURE_LIGHT_FIELD))
         return open_panorama(view, error);
@@ -123,69 +131,64 @@ static struct vec3 point_of_frame(const struct view *view, uint32_t frame) {
 
 struct view_state view_state_of(const struct view *view, uint32_t frame) {
     const struct options *options = view->options;
-    struct vec3 at = point_of_frame(view, frame);
-    return (struct view_state){.at = at,
-                               .focus = options->focus > 0 ? options->focus : view->field.head.screen - at.z,
-                               .aperture = options->aperture,
-                               .fov = options->fov > 0 ? options->fov : PANORAMA_FOV};
+    const struct vec3 at = point_of_frame(view, frame);
+    const double focus = options->focus > 0 ? options->focus : view->field.head.screen - at.z;
+    return (struct view_state){{at.x, at.y, at.z, focus, options->aperture, view->width, view->height, false},
+                               options->fov > 0 ? options->fov : PANORAMA_FOV};
 }
 
-struct light_field_camera view_camera(const struct view *view, const struct view_state *state) {
-    return (struct light_field_camera){state->at.x,     state->at.y, state->at.z,  state->focus,
-                                       state->aperture, view->width, view->height, state->quick};
-}
-
-static struct light_field_camera camera_of_frame(const struct view *view, uint32_t frame) {
-    struct view_state state = view_state_of(view, frame);
-    return view_camera(view, &state);
-}
-
-/* The plane in focus is in front of the eye and of the cameras. */
-static bool check_focus(const struct view *view, uint32_t frame, struct error *error) {
-    struct light_field_camera camera = camera_of_frame(view, frame);
-    return (camera.focus > 0 && camera.focus + camera.z > 0) ||
-           error_set(error, ERROR_USAGE, "--eye: %g is behind the plane in focus, %g from the cameras", camera.z,
-                     camera.focus + camera.z);
-}
-
-/* One row of a panorama. */
-struct turned {
+/* A panorama as the sky around the camera of a picture. */
+struct panorama {
     struct view *view;
-    struct vec3 forward, right, up;
-    double pixel;
+    struct camera_frame camera;
 };
 
-static void turned_row(void *context, uint32_t y, int worker) {
-    const struct turned *turned = context;
-    struct view *view = turned->view;
+static void panorama_row(void *context, uint32_t y, int worker) {
+    const struct panorama *panorama = context;
+    struct view *view = panorama->view;
     (void)worker;
     for (uint32_t x = 0; x < view->width; x++) {
-        struct vec3 d = vec3_add_scaled(turned->forward, turned->right, (x + 0.5 - view->width / 2.0) * turned->pixel);
-        d = vec3_add_scaled(d, turned->up, (view->height / 2.0 - y - 0.5) * turned->pixel);
-        struct colour c = sky_colour(&view->sky, vec3_normalize(d), turned->pixel);
+        struct ray ray = camera_ray(&panorama->camera, x + 0.5, y + 0.5);
+        struct colour c = sky_colour(&view->sky, vec3_normalize(ray.direction), panorama->camera.spread);
         float *out = view->light[(size_t)y * view->width + x];
         out[0] = (float)c.r, out[1] = (float)c.g, out[2] = (float)c.b;
     }
 }
 
 static bool draw_panorama(struct view *view, const struct view_state *state, struct error *error) {
-    const struct vec3 at = state->at;
-    double fov = state->fov, sine[2], cosine[2];
-    el_sincos(at.x * (PI / 180), &sine[0], &cosine[0]);
-    el_sincos(at.y * (PI / 180), &sine[1], &cosine[1]);
+    const struct settings settings = settings_default();
+    struct panorama panorama = {.view = view};
+    double sine[2], cosine[2];
+    char warning[256];
+    el_sincos(state->camera.x * (PI / 180), &sine[0], &cosine[0]);
+    el_sincos(state->camera.y * (PI / 180), &sine[1], &cosine[1]);
     /* A map has -z in its middle, a cross +z. */
-    double front = view->sky.kind == SKY_MAP ? -1 : 1;
-    struct turned turned = {.view = view, .pixel = 2 * el_tan(fov * (PI / 360)) / view->height};
-    turned.forward = vec3_make(-front * sine[0] * cosine[1], sine[1], front * cosine[0] * cosine[1]);
-    turned.right = vec3_make(-front * cosine[0], 0, -front * sine[0]);
-    turned.up = vec3_cross(turned.right, turned.forward);
-    return pool_run(view->pool, view->height, turned_row, &turned) || error_set(error, ERROR_CANCELLED, "interrupted");
+    const double front = view->sky.kind == SKY_MAP ? -1 : 1;
+    const struct camera camera = {.view = {-front * sine[0] * cosine[1], sine[1], front * cosine[0] * cosine[1]},
+                                  .up = {front * sine[0] * sine[1], cosine[1], -front * cosine[0] * sine[1]},
+                                  .fov = state->fov};
+    return camera_prepare(&camera, &settings, (struct picture_size){view->width, view->height}, &panorama.camera,
+                          warning, error) &&
+           (pool_run(view->pool, view->height, panorama_row, &panorama) ||
+            error_set(error, ERROR_CANCELLED, "interrupted"));
+}
+
+static bool resize(struct view *view, uint32_t width, uint32_t height, struct error *error) {
+    float(*light)[3] = mem_resize_array(view->light, (size_t)width * height, sizeof *light);
+    if (!light)
+        return error_no_memory(error, "the picture");
+    view->light = light;
+    view->width = width;
+    view->height = height;
+    return true;
 }
 
 bool view_draw(struct view *view, const struct view_state *state, struct error *error) {
+    struct light_field_camera camera = state->camera;
+    if (!resize(view, camera.width, camera.height, error))
+        return false;
     if (!view->is_field)
         return draw_panorama(view, state, error);
-    struct light_field_camera camera = view_camera(view, state);
     (void)light_field_clamp(&view->field.head, &camera);
     return light_field_draw(&view->field, &camera, view->pool, view->light, error);
 }
@@ -199,7 +202,8 @@ static bool draw(struct view *view, uint32_t frame, struct error *error) {
 static bool draw_all_views(struct view *view, struct error *error) {
     const struct light_field_head *head = &view->field.head;
     const struct light_field_part all = {0, 0, head->columns, head->rows};
-    if (!light_field_load_part(&view->field, &all, view->pool, error))
+    if (!light_field_load_part(&view->field, &all, view->pool, error) ||
+        !resize(view, head->columns * head->width, head->rows * head->height, error))
         return false;
     for (uint32_t y = 0; y < view->height; y++) {
         for (uint32_t x = 0; x < view->width; x++) {
@@ -254,17 +258,12 @@ static bool write_picture(struct view *view, uint32_t frame, struct error *error
            view_write(view, name, error);
 }
 
-static void frame_row(void *context, uint32_t y, int worker) {
-    const struct view *view = context;
-    (void)worker;
-    row_bytes(context, y, view->rgb + (size_t)3 * view->width * y);
-}
-
 static bool frame_bytes(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
     struct view *view = context;
-    view->rgb = rgb;
-    return draw(view, index, error) &&
-           (pool_run(view->pool, view->height, frame_row, view) || error_set(error, ERROR_CANCELLED, "interrupted"));
+    bool ok = draw(view, index, error);
+    for (uint32_t y = 0; ok && y < view->height; y++)
+        row_bytes(view, y, rgb + (size_t)3 * view->width * y);
+    return ok;
 }
 
 static bool write_animation(struct view *view, struct error *error) {
@@ -291,21 +290,24 @@ static bool write_all(struct view *view, struct error *error) {
     return ok;
 }
 
-/* One warning for all frames. */
-static void warn_of_eyes(const struct view *view) {
+/* The plane in focus is in front of the eye and of the cameras. One warning for all frames. */
+static bool check_eyes(const struct view *view, struct error *error) {
     bool outside = false;
-    for (uint32_t frame = 0; frame < view->frames && view->is_field && !outside; frame++) {
-        struct light_field_camera camera = camera_of_frame(view, frame);
-        outside = light_field_clamp(&view->field.head, &camera);
+    for (uint32_t frame = 0; frame < view->frames; frame++) {
+        struct light_field_camera camera = view_state_of(view, frame).camera;
+        if (!(camera.focus > 0 && camera.focus + camera.z > 0))
+            return error_set(error, ERROR_USAGE, "--eye: %g is behind the plane in focus, %g from the cameras",
+                             camera.z, camera.focus + camera.z);
+        outside = light_field_clamp(&view->field.head, &camera) || outside;
     }
     if (outside && !view->options->quiet)
         text_print_message(stderr, TEXT_WARNING,
                            "gray: warning: --eye: rays from outside of the field are taken from its border");
+    return true;
 }
 
 static bool prepare(struct view *view, struct error *error) {
     const struct options *options = view->options;
-    const struct light_field_head *head = &view->field.head;
     const char *path = options->eyes ? options->eyes : options->directions;
     char warning[256];
     struct file_identity identity;
@@ -315,45 +317,22 @@ static bool prepare(struct view *view, struct error *error) {
     view->point_count = !path;
     if (path && !read_points(view, options->eyes ? "--eye" : "--direction", path, options->eyes ? 3 : 2, error))
         return false;
-    for (uint32_t frame = 0; frame < view->frames && view->is_field; frame++)
-        if (!check_focus(view, frame, error))
-            return false;
     if (options->width) {
         view->width = (uint32_t)options->width;
         view->height = (uint32_t)options->height;
     }
-    if (options->contact_sheet) {
-        view->width *= head->columns;
-        view->height *= head->rows;
-    }
+    if (view->is_field && !check_eyes(view, error))
+        return false;
     if (file_identity_of(options->scripts[0], &identity))
         picture_files_keep(&view->files, identity, false);
     view->pool = pool_create(options->threads, warning);
-    return view->pool ? view_resize(view, view->width, view->height, error) : error_no_memory(error, "the picture");
-}
-
-bool view_resize(struct view *view, uint32_t width, uint32_t height, struct error *error) {
-    if (view->light && view->width == width && view->height == height)
-        return true;
-    float(*light)[3] = mem_alloc_zero((size_t)width * height, sizeof *light);
-    if (!light)
-        return error_no_memory(error, "the picture");
-    mem_free(view->light);
-    view->light = light;
-    view->width = width;
-    view->height = height;
-    return true;
+    return view->pool || error_no_memory(error, "the picture");
 }
 
 bool view_is(const char *name) {
-    struct file_source source;
     struct error ignored;
-    uint8_t head[16];
-    if (!file_source_open(&source, name, &ignored))
-        return false;
-    bool is = file_source_read(&source, 0, head, sizeof head) && picture_file_is(head, sizeof head);
-    file_source_close(&source);
-    return is;
+    uint8_t head[FILE_HEAD_SIZE];
+    return read_head(name, head, &ignored) && picture_file_is(head, sizeof head);
 }
 
 struct view *view_open(const struct options *options, struct error *error) {
@@ -380,18 +359,11 @@ int view_close(struct view *view, const struct error *error) {
         picture_files_destroy(&view->files);
         mem_free(view);
     }
-    if (!error)
-        return 0;
-    char line[sizeof error->text + 16];
-    (void)snprintf(line, sizeof line, "gray: %s", error->text);
-    text_print_message(stderr, TEXT_ERROR, line);
-    return (int)error->kind;
+    return error ? text_print_error(error) : 0;
 }
 
 int view_run(const struct options *options) {
     struct error error;
     struct view *view = view_open(options, &error);
-    if (view)
-        warn_of_eyes(view);
     return view_close(view, view && write_all(view, &error) ? NULL : &error);
 }

@@ -2,7 +2,7 @@
 #ifndef GRAY_OUTPUT_VIEW_H
 #define GRAY_OUTPUT_VIEW_H
 
-#include "image/light_field.h"
+#include "image/light_field_view.h"
 #include "light/sky.h"
 #include "output/picture_files.h"
 #include "session/options.h"
@@ -21,14 +21,12 @@ struct view {
     struct vec3 points[VIEW_POINTS]; /* of the path */
     uint32_t point_count, frames, width, height;
     float (*light)[3]; /* of the picture */
-    uint8_t *rgb;      /* of a frame; borrowed */
 };
-/* How it is seen: the eye in the field, focus and lens; or the direction (degrees to the right and up) and the angle of
- * view (degrees). */
+/* How it is seen: by a camera in the field; or x and y are the direction (degrees to the right and up), and fov is the
+ * angle of view (degrees). */
 struct view_state {
-    struct vec3 at;
-    double focus, aperture, fov;
-    bool quick; /* as in struct light_field_camera */
+    struct light_field_camera camera;
+    double fov;
 };
 
 /* Whether a file holds a picture or a light field. */
@@ -38,9 +36,7 @@ struct view *view_open(const struct options *options, struct error *error);
 /* Closes it (or NULL), and prints the error unless it is NULL. Returns the exit status. */
 int view_close(struct view *view, const struct error *error);
 struct view_state view_state_of(const struct view *view, uint32_t frame);
-struct light_field_camera view_camera(const struct view *view, const struct view_state *state);
-/* Draws view->light, view->width x view->height: another size needs room for it first (view_resize). */
-bool view_resize(struct view *view, uint32_t width, uint32_t height, struct error *error);
+/* Draws view->light, view->width x view->height: the size of state->camera. */
 bool view_draw(struct view *view, const struct view_state *state, struct error *error);
 /* Writes view->light into a picture of this name. */
 bool view_write(struct view *view, const char *name, struct error *error);

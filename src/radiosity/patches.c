@@ -27,12 +27,15 @@ static int longest_edge(const struct vec3 c[3], double *length) {
     return longest;
 }
 
-/* The surface of a primitive near a point of a triangle, seen from its front. */
-static bool find_surface(const struct world *world, uint32_t primitive, const struct vec3 c[3], struct vec3 point,
-                         struct world_scratch *scratch, struct hit *hit) {
-    const struct vec3 normal = vec3_normalize(patch_normal(c));
+bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
+                 struct hit *hit) {
+    const struct world *world = patches->world;
+    const uint32_t primitive = patch_primitive(patches, patch);
+    struct vec3 c[3];
     double size;
+    patch_corners(patches, patch, c);
     (void)longest_edge(c, &size);
+    const struct vec3 normal = vec3_normalize(patch_normal(c));
     /* From nearby first: another surface of the primitive may be above. */
     for (double height = 0x1p-10 * size; height <= size; height *= 32) {
         const struct ray ray = {
@@ -45,13 +48,6 @@ static bool find_surface(const struct world *world, uint32_t primitive, const st
             return true;
     }
     return false;
-}
-
-bool patches_hit(const struct patches *patches, uint32_t patch, struct vec3 point, struct world_scratch *scratch,
-                 struct hit *hit) {
-    struct vec3 c[3];
-    patch_corners(patches, patch, c);
-    return find_surface(patches->world, patch_at(patches, patch)->primitive, c, point, scratch, hit);
 }
 
 /* --- kinds --- */
@@ -69,38 +65,26 @@ enum patch_kind patches_kind(const struct world *world, uint32_t primitive) {
         return PATCHES_BLACK;
     if (!vec3_finite(box->min) || !vec3_finite(box->max))
         return PATCHES_BARE;
-    if (geometry->csg || geometry_is_closed(geometry) || geometry->shape.kind == SHAPE_MESH ||
-        geometry->shape.kind == SHAPE_PLANAR) {
-        if (geometry->csg)
-            return geometry->csg->clipped || geometry->csg->inside_out ? PATCHES_BARE : PATCHES_SOLID;
-        return geometry->shape.kind == SHAPE_MESH     ? PATCHES_MESH
-               : geometry->shape.kind == SHAPE_PLANAR ? PATCHES_PLANAR
-               : geometry->shape.kind == SHAPE_BOX    ? PATCHES_BOX
-               : geometry->shape.kind == SHAPE_SPHERE ? PATCHES_BALL
-                                                      : PATCHES_SOLID;
-    }
-    return PATCHES_BARE;
+    if (geometry->csg)
+        return geometry->csg->clipped || geometry->csg->inside_out ? PATCHES_BARE : PATCHES_SOLID;
+    return geometry->shape.kind == SHAPE_MESH     ? PATCHES_MESH
+           : geometry->shape.kind == SHAPE_PLANAR ? PATCHES_PLANAR
+           : geometry->shape.kind == SHAPE_BOX    ? PATCHES_BOX
+           : geometry->shape.kind == SHAPE_SPHERE ? PATCHES_BALL
+           : geometry_is_closed(geometry)         ? PATCHES_SOLID
+                                                  : PATCHES_BARE;
 }
 
-static bool is_curved(enum patch_kind kind) {
+/* Its patches are only near its surface. */
+static bool is_curved(const struct world *world, uint32_t primitive) {
+    enum patch_kind kind = patches_kind(world, primitive);
     return kind == PATCHES_BALL || kind == PATCHES_SOLID;
 }
 
 /* --- triangles of a primitive --- */
 
-struct patch_builder {
-    struct patches *out;
-    struct world_scratch scratch;
-    struct list corners; /* struct vec3, three for each triangle of one primitive */
-};
-
-static bool add_triangle(struct patch_builder *b, struct vec3 p, struct vec3 q, struct vec3 r) {
-    const struct vec3 corners[3] = {p, q, r};
-    return list_add(&b->corners, corners, 3, sizeof *corners);
-}
-
 /* The rectangle at a corner, or with the radius of a ball a quarter of it over the ball. */
-static bool add_rectangle(struct patch_builder *b, struct vec3 corner, struct vec3 u, struct vec3 v,
+static bool add_rectangle(struct list *corners, struct vec3 corner, struct vec3 u, struct vec3 v,
                           const struct shape *ball) {
     enum { PARTS = 2 };
     int n = ball ? PARTS : 1;
@@ -113,25 +97,27 @@ static bool add_rectangle(struct patch_builder *b, struct vec3 corner, struct ve
             if (ball)
                 c[k] = vec3_add_scaled(ball->sphere.centre, vec3_normalize(c[k]), ball->sphere.radius);
         }
-        ok = ok && add_triangle(b, c[0], c[1], c[2]) && add_triangle(b, c[0], c[2], c[3]);
+        const struct vec3 two[6] = {c[0], c[1], c[2], c[0], c[2], c[3]};
+        ok = ok && list_add(corners, two, 6, sizeof *two);
     }
     return ok;
 }
 
 /* Six rectangles. */
-static bool add_box(struct patch_builder *b, const struct box *box, const struct shape *ball) {
+static bool add_box(struct list *corners, const struct box *box, const struct shape *ball) {
     const struct vec3 size = vec3_sub(box->max, box->min);
     const struct vec3 edges[3] = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}};
     bool ok = true;
     for (int i = 0; i < 3; i++) {
         const struct vec3 u = edges[(i + 1) % 3], v = edges[(i + 2) % 3];
-        ok = ok && add_rectangle(b, box->min, v, u, ball) && add_rectangle(b, vec3_add(box->min, edges[i]), u, v, ball);
+        ok = ok && add_rectangle(corners, box->min, v, u, ball) &&
+             add_rectangle(corners, vec3_add(box->min, edges[i]), u, v, ball);
     }
     return ok;
 }
 
 /* The rectangle along its axes that contains the shape. */
-static bool add_planar(struct patch_builder *b, const struct planar *planar) {
+static bool add_planar(struct list *corners, const struct planar *planar) {
     struct vec3 u = planar->u, v = planar->v, n = vec3_cross(u, v), corner = planar->origin;
     const struct vec3 across[2] = {vec3_cross(v, n), vec3_cross(n, u)};
     double low[2], high[2], squared = vec3_length_squared(n);
@@ -144,149 +130,117 @@ static bool add_planar(struct patch_builder *b, const struct planar *planar) {
     corner = vec3_add_scaled(vec3_add_scaled(corner, u, low[0]), v, low[1]);
     u = vec3_scale(u, high[0] - low[0]);
     v = vec3_scale(v, high[1] - low[1]);
-    return vec3_dot(n, planar->normal) < 0 ? add_rectangle(b, corner, v, u, NULL)
-                                           : add_rectangle(b, corner, u, v, NULL);
+    return vec3_dot(n, planar->normal) < 0 ? add_rectangle(corners, corner, v, u, NULL)
+                                           : add_rectangle(corners, corner, u, v, NULL);
 }
 
-static bool add_mesh(struct patch_builder *b, const struct mesh *mesh) {
+static bool add_mesh(struct list *corners, const struct mesh *mesh) {
     bool ok = true;
     for (uint32_t i = 0; ok && i < mesh_triangle_count(mesh); i++) {
         struct vec3 c[3];
         uint32_t slot;
         mesh_triangle(mesh, i, c, &slot);
-        ok = add_triangle(b, c[0], c[1], c[2]);
+        ok = list_add(corners, c, 3, sizeof *c);
     }
     return ok;
 }
 
 /* From the space of the primitive to the world, where a mirrored one has its outside on the other side. */
-static void map_corners(struct patch_builder *b, uint32_t primitive) {
-    struct vec3 *corners = b->corners.items;
-    struct transform map = world_placement(b->out->world, primitive, 0);
+static void map_corners(const struct world *world, uint32_t primitive, struct list *corners) {
+    struct vec3 *c = corners->items;
+    struct transform map = world_placement(world, primitive, 0);
     bool turned = affine_determinant(&map.forward) < 0;
-    for (size_t i = 0; i < b->corners.count; i++)
-        corners[i] = affine_point(&map.forward, corners[i]);
-    for (size_t i = 0; turned && i < b->corners.count; i += 3) {
-        struct vec3 second = corners[i + 1];
-        corners[i + 1] = corners[i + 2];
-        corners[i + 2] = second;
+    for (size_t i = 0; i < corners->count; i++)
+        c[i] = affine_point(&map.forward, c[i]);
+    for (size_t i = 0; turned && i < corners->count; i += 3) {
+        struct vec3 second = c[i + 1];
+        c[i + 1] = c[i + 2];
+        c[i + 2] = second;
     }
 }
 
-static bool is_plain_mesh(const struct world *world, uint32_t primitive) {
-    const struct mesh *mesh = geometry_mesh(primitive_geometry(world, primitive));
-    bool plain = mesh != NULL;
-    for (uint32_t i = 0; plain && i < mesh_triangle_count(mesh); i++)
-        plain = mesh_is_plain(mesh, i);
-    return plain;
+/* A corner of a triangle. last: of the first corner at a position, the last one there that made a vertex; before: the
+ * one there before that. */
+struct weld_corner {
+    struct vec3 normal;
+    uint32_t vertex, last, before;
+};
+
+static bool has_area(const struct vec3 c[3]) {
+    double length;
+    (void)longest_edge(c, &length);
+    return patch_area(c) > 0x1p-41 * length * length;
 }
 
-/* The normals that shading has at the corners of triangles. */
-static void find_normals(struct patch_builder *b, uint32_t primitive, bool plain, struct vec3 *normals) {
-    const struct vec3 *corners = b->corners.items;
-    for (size_t i = 0; i < b->corners.count; i++) {
-        const struct vec3 *c = &corners[i / 3 * 3];
-        struct vec3 middle = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-        struct hit hit;
-        normals[i] = vec3_normalize(patch_normal(c));
-        if (!plain && find_surface(b->out->world, primitive, c,
-                                   vec3_add_scaled(vec3_scale(corners[i], 0.95), middle, 0.05), &b->scratch, &hit))
-            normals[i] = hit.normal;
-    }
-}
-
-/* Corners at one position whose normals agree become a vertex. */
-static bool weld(struct patch_builder *b, uint32_t primitive, enum patch_kind kind) {
-    struct patches *out = b->out;
-    const struct vec3 *corners = b->corners.items;
-    uint32_t count = (uint32_t)b->corners.count;
-    double(*positions)[3] = mem_alloc(count * sizeof *positions);
-    struct vec3 *normals = mem_alloc(count * sizeof *normals);
-    uint32_t *same = mem_alloc(count * sizeof *same), *vertex = mem_alloc(count * sizeof *vertex);
-    uint32_t *last = mem_alloc(count * sizeof *last), *before = mem_alloc(count * sizeof *before);
-    bool ok = positions && normals && same && vertex && last && before;
-    for (uint32_t i = 0; ok && i < 3 * count; i++)
-        positions[i / 3][i % 3] = vec3_get(corners[i / 3], (int)(i % 3));
-    ok = ok && mesh_weld((const double(*)[3])positions, count, same);
-    if (ok)
-        find_normals(b, primitive, !is_curved(kind) && (kind != PATCHES_MESH || is_plain_mesh(out->world, primitive)),
-                     normals);
-    /* last: by position the last corner that made a vertex; before: the one before that. */
+/* Corners at one position become a vertex where triangles have no edge, on a ball all. */
+static bool weld(struct patches *out, uint32_t primitive, const struct list *list, bool is_ball) {
+    const struct vec3 *corners = list->items;
+    uint32_t count = (uint32_t)list->count;
+    struct weld_corner *c = mem_alloc(count * sizeof *c);
+    uint32_t *same = mem_alloc(count * sizeof *same);
+    bool ok = c && same && mesh_weld(list->items, count, same);
     for (uint32_t i = 0; ok && i < count; i++) {
-        uint32_t at = same[i] == i ? PATCH_NONE : last[same[i]];
-        while (at != PATCH_NONE && vec3_dot(normals[at], normals[i]) < smooth_cosine)
-            at = before[at];
+        c[i] =
+            (struct weld_corner){vec3_normalize(patch_normal(&corners[i / 3 * 3])), PATCH_NONE, PATCH_NONE, PATCH_NONE};
+        uint32_t last = c[same[i]].last, at = last;
+        if (!has_area(&corners[i / 3 * 3]))
+            continue;
+        while (at != PATCH_NONE && !is_ball && vec3_dot(c[at].normal, c[i].normal) < smooth_cosine)
+            at = c[at].before;
         if (at == PATCH_NONE) {
             const struct patch_vertex own = {corners[i], primitive};
-            before[i] = same[i] == i ? PATCH_NONE : last[same[i]];
-            last[same[i]] = at = i;
-            vertex[i] = (uint32_t)out->vertices.count;
+            c[i].before = last;
+            c[same[i]].last = at = i;
+            c[i].vertex = (uint32_t)out->vertices.count;
             ok = list_add(&out->vertices, &own, 1, sizeof own);
         }
-        vertex[i] = vertex[at];
+        c[i].vertex = c[at].vertex;
     }
     for (uint32_t i = 0; ok && i < count; i += 3) {
-        const struct patch patch = {{vertex[i], vertex[i + 1], vertex[i + 2]}, primitive};
+        if (!has_area(&corners[i]))
+            continue;
+        const struct patch patch = {{c[i].vertex, c[i + 1].vertex, c[i + 2].vertex}};
         ok = list_add(&out->all, &patch, 1, sizeof patch);
     }
-    mem_free(positions);
-    mem_free(normals);
+    mem_free(c);
     mem_free(same);
-    mem_free(vertex);
-    mem_free(last);
-    mem_free(before);
     return ok;
 }
 
-/* Forgets triangles without area. */
-static void drop_degenerate(struct list *corners) {
-    struct vec3 *c = corners->items;
-    size_t kept = 0;
-    for (size_t i = 0; i < corners->count; i += 3) {
-        double length;
-        (void)longest_edge(&c[i], &length);
-        if (vec3_length(patch_normal(&c[i])) > 0x1p-40 * length * length) {
-            memmove(&c[kept], &c[i], 3 * sizeof *c);
-            kept += 3;
-        }
-    }
-    corners->count = kept;
-}
-
-static bool add_primitive(struct patch_builder *b, uint32_t primitive, struct pool *pool, struct error *error) {
+static bool add_primitive(struct patches *out, uint32_t primitive, struct list *corners, struct pool *pool,
+                          struct error *error) {
     static const struct box cube = {{-1, -1, -1}, {1, 1, 1}};
-    const struct world *world = b->out->world;
+    const struct world *world = out->world;
     const struct shape *shape = &primitive_geometry(world, primitive)->shape;
     const struct box *box = &world->boxes[primitive];
     enum patch_kind kind = patches_kind(world, primitive);
     bool ok = true;
-    b->corners.count = 0;
+    corners->count = 0;
     switch (kind) {
     case PATCHES_BLACK:
     case PATCHES_BARE:
         return true;
     case PATCHES_PLANAR:
-        ok = add_planar(b, &shape->planar);
+        ok = add_planar(corners, &shape->planar);
         break;
     case PATCHES_BOX:
-        ok = add_box(b, &shape->box, NULL);
+        ok = add_box(corners, &shape->box, NULL);
         break;
     case PATCHES_BALL:
-        ok = add_box(b, &cube, shape);
+        ok = add_box(corners, &cube, shape);
         break;
     case PATCHES_MESH:
-        ok = add_mesh(b, shape->mesh);
+        ok = add_mesh(corners, shape->mesh);
         break;
     case PATCHES_SOLID:
-        if (!primitive_mesh_build(world, primitive, vec3_max_abs(vec3_sub(box->max, box->min)) / 100, pool, &b->corners,
+        if (!primitive_mesh_build(world, primitive, vec3_max_abs(vec3_sub(box->max, box->min)) / 100, pool, corners,
                                   error))
             return error->kind == ERROR_SCENE; /* it has no mesh, so it is bare */
         break;
     }
     if (kind != PATCHES_SOLID)
-        map_corners(b, primitive);
-    drop_degenerate(&b->corners);
-    return (ok && weld(b, primitive, kind)) || error_no_memory(error, "patches");
+        map_corners(world, primitive, corners);
+    return (ok && weld(out, primitive, corners, kind == PATCHES_BALL)) || error_no_memory(error, "patches");
 }
 
 /* --- division --- */
@@ -335,7 +289,7 @@ static bool complete_marked(const struct patches *patches, struct key_map *edges
 /* The vertex in the middle of a marked edge, on the surface. */
 static bool find_middle(struct patches *patches, uint32_t index, int k, uint32_t *middle,
                         struct world_scratch *scratch) {
-    const uint32_t primitive = patch_at(patches, index)->primitive;
+    const uint32_t primitive = patch_primitive(patches, index);
     struct vec3 c[3];
     struct hit hit;
     if (*middle != PATCH_NONE)
@@ -344,17 +298,15 @@ static bool find_middle(struct patches *patches, uint32_t index, int k, uint32_t
     struct vec3 a = c[k], b = c[(k + 1) % 3];
     struct patch_vertex own = {vec3_scale(vec3_add(a, b), 0.5), primitive};
     double length = vec3_length(vec3_sub(b, a));
-    if (patches->curved[primitive] && patches_hit(patches, index, own.point, scratch, &hit) &&
+    if (is_curved(patches->world, primitive) && patches_hit(patches, index, own.point, scratch, &hit) &&
         vec3_length(vec3_sub(hit.point, own.point)) < curved_part * length)
         own.point = hit.point;
     *middle = (uint32_t)patches->vertices.count;
     return list_add(&patches->vertices, &own, 1, sizeof own);
 }
 
-static bool add_patch(struct patches *patches, struct patch patch, uint32_t a, uint32_t b, uint32_t c) {
-    patch.vertex[0] = a;
-    patch.vertex[1] = b;
-    patch.vertex[2] = c;
+static bool add_patch(struct patches *patches, uint32_t a, uint32_t b, uint32_t c) {
+    const struct patch patch = {{a, b, c}};
     return list_add(&patches->all, &patch, 1, sizeof patch);
 }
 
@@ -377,12 +329,12 @@ static bool divide(struct patches *patches, struct key_map *edges, uint32_t inde
     uint32_t m = *middles[0], last = middles[1] ? *middles[1] : v;
     bool ok = true;
     if (middles[1])
-        ok = add_patch(patches, patch, m, v, last);
+        ok = add_patch(patches, m, v, last);
     if (middles[2])
-        ok = ok && add_patch(patches, patch, m, w, *middles[2]) && add_patch(patches, patch, m, *middles[2], u);
+        ok = ok && add_patch(patches, m, w, *middles[2]) && add_patch(patches, m, *middles[2], u);
     else
-        ok = ok && add_patch(patches, patch, m, w, u);
-    *patch_at(patches, index) = (struct patch){{m, last, w}, patch.primitive};
+        ok = ok && add_patch(patches, m, w, u);
+    *patch_at(patches, index) = (struct patch){{m, last, w}};
     return ok;
 }
 
@@ -402,12 +354,6 @@ bool patches_divide(struct patches *patches, struct key_map *edges, uint32_t lim
     return ok || error_no_memory(error, "patches");
 }
 
-/* At most so long are the edges of patches of a primitive in the beginning: small objects have some patches, too. */
-static double edge_limit(const struct patches *patches, uint32_t primitive) {
-    const struct box *box = &patches->world->boxes[primitive];
-    return math_min(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2);
-}
-
 static bool divide_long(struct patches *patches, uint32_t limit, struct error *error) {
     for (bool done = true; done;) {
         struct key_map edges = {0};
@@ -418,7 +364,9 @@ static bool divide_long(struct patches *patches, uint32_t limit, struct error *e
             double length;
             patch_corners(patches, i, c);
             int k = longest_edge(c, &length);
-            if (length > edge_limit(patches, patch->primitive))
+            const struct box *box = &patches->world->boxes[patch_primitive(patches, i)];
+            /* Small objects have some patches, too. */
+            if (length > math_min(patches->edge, vec3_length(vec3_sub(box->max, box->min)) / 2))
                 ok = patches_mark(&edges, patch->vertex[k], patch->vertex[(k + 1) % 3]);
         }
         done = edges.count > 0;
@@ -430,21 +378,14 @@ static bool divide_long(struct patches *patches, uint32_t limit, struct error *e
     return true;
 }
 
-bool patches_begin(struct patches *patches, const struct world *world) {
-    *patches = (struct patches){.world = world, .curved = mem_alloc_zero((size_t)world->primitive_count + 1, 1)};
-    for (uint32_t i = 0; patches->curved && i < world->primitive_count; i++)
-        patches->curved[i] = is_curved(patches_kind(world, i));
-    return patches->curved != NULL;
-}
-
 bool patches_build(struct patches *patches, const struct world *world, uint32_t limit, struct pool *pool,
                    struct error *error) {
-    struct patch_builder b = {.out = patches};
+    struct list corners = {0}; /* struct vec3, three for each triangle of one primitive */
     double area = 0;
-    bool ok =
-        (patches_begin(patches, world) && world_scratch_init(&b.scratch, world)) || error_no_memory(error, "patches");
+    bool ok = true;
+    *patches = (struct patches){.world = world};
     for (uint32_t i = 0; ok && i < world->primitive_count; i++) {
-        ok = add_primitive(&b, i, pool, error);
+        ok = add_primitive(patches, i, &corners, pool, error);
         if (ok && patches->all.count > limit)
             ok =
                 error_set(error, ERROR_SCENE,
@@ -455,13 +396,12 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
     for (uint32_t i = 0; ok && i < patches->all.count; i++) {
         struct vec3 c[3];
         patch_corners(patches, i, c);
-        area += vec3_length(patch_normal(c)) / 2;
+        area += patch_area(c);
     }
     /* A quarter of the limit, as right isosceles triangles with edges from .7 to 1 of the longest. */
     patches->edge = sqrt(6 * area / (0.25 * limit));
     ok = ok && divide_long(patches, limit / 2, error);
-    world_scratch_destroy(&b.scratch);
-    list_destroy(&b.corners);
+    list_destroy(&corners);
     if (!ok)
         patches_destroy(patches);
     return ok;
@@ -470,7 +410,6 @@ bool patches_build(struct patches *patches, const struct world *world, uint32_t 
 void patches_destroy(struct patches *patches) {
     list_destroy(&patches->vertices);
     list_destroy(&patches->all);
-    mem_free(patches->curved);
     mem_free(patches->first);
     mem_free(patches->of_vertex);
     box_tree_destroy(&patches->tree);
@@ -479,21 +418,32 @@ void patches_destroy(struct patches *patches) {
 
 /* --- searching --- */
 
+bool patches_group(const uint32_t *keys, size_t count, uint32_t groups, size_t **first, uint32_t **items) {
+    *first = mem_alloc_zero((size_t)groups + 2, sizeof **first);
+    *items = mem_alloc(count * sizeof **items + 1);
+    if (!*first || !*items)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (keys[i] != PATCH_NONE)
+            (*first)[keys[i] + 2]++;
+    for (uint32_t k = 0; k < groups; k++)
+        (*first)[k + 2] += (*first)[k + 1];
+    /* first[k + 1] moves from the beginning of k to its end. */
+    for (size_t i = 0; i < count; i++)
+        if (keys[i] != PATCH_NONE)
+            (*items)[(*first)[keys[i] + 1]++] = (uint32_t)i;
+    return true;
+}
+
 bool patches_index(struct patches *patches, struct error *error) {
-    uint32_t vertices = (uint32_t)patches->vertices.count, count = (uint32_t)patches->all.count;
+    const size_t corners = 3 * patches->all.count;
     mem_free(patches->first);
     mem_free(patches->of_vertex);
-    patches->first = mem_alloc_zero((size_t)vertices + 2, sizeof *patches->first);
-    patches->of_vertex = mem_alloc_zero(3 * (size_t)count + 1, sizeof *patches->of_vertex);
-    if (!patches->first || !patches->of_vertex)
+    if (!patches_group(patches->all.items, corners, (uint32_t)patches->vertices.count, &patches->first,
+                       &patches->of_vertex))
         return error_no_memory(error, "patches");
-    /* first[v + 1] moves from the beginning of v to its end. */
-    for (uint32_t i = 0; i < 3 * count; i++)
-        patches->first[patch_at(patches, i / 3)->vertex[i % 3] + 2]++;
-    for (uint32_t v = 0; v < vertices; v++)
-        patches->first[v + 2] += patches->first[v + 1];
-    for (uint32_t i = 0; i < 3 * count; i++)
-        patches->of_vertex[patches->first[patch_at(patches, i / 3)->vertex[i % 3] + 1]++] = i / 3;
+    for (size_t i = 0; i < corners; i++)
+        patches->of_vertex[i] /= 3;
     return true;
 }
 
@@ -506,7 +456,7 @@ bool patches_index_space(struct patches *patches, struct pool *pool, struct erro
         patch_corners(patches, i, c);
         (void)longest_edge(c, &length);
         boxes[i] = (struct box){vec3_min(c[0], vec3_min(c[1], c[2])), vec3_max(c[0], vec3_max(c[1], c[2]))};
-        double margin = patches->curved[patch_at(patches, i)->primitive] ? curved_part : 0x1p-20;
+        double margin = is_curved(patches->world, patch_primitive(patches, i)) ? curved_part : 0x1p-20;
         double far = math_max(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max));
         boxes[i] = box_grow(boxes[i], margin * length + 0x1p-40 * far);
     }
@@ -545,7 +495,7 @@ static bool find_within(const struct patches *patches, const struct hit *hit, do
     while (box_tree_meeting_next(&meeting, &item)) {
         struct vec3 c[3];
         double own[3];
-        if (patch_at(patches, item)->primitive != hit->primitive)
+        if (patch_primitive(patches, item) != hit->primitive)
             continue;
         patch_corners(patches, item, c);
         struct vec3 normal = patch_normal(c);
@@ -568,7 +518,8 @@ bool patches_find(const struct patches *patches, const struct hit *hit, uint32_t
     if (find_within(patches, hit, 0, patch, shares))
         return true;
     /* Where a curved surface is further away than boxes of patches go. */
-    for (double margin = patches->edge / 8; patches->curved[hit->primitive] && margin <= patches->edge; margin *= 2)
+    for (double margin = patches->edge / 8; is_curved(patches->world, hit->primitive) && margin <= patches->edge;
+         margin *= 2)
         if (find_within(patches, hit, margin, patch, shares))
             return true;
     return false;

@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { PROBES = 16384, PROBES_LIMIT = 256 }; /* rays for a digest: in all, and to a primitive */
-enum { BATCH = 16, PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
+enum { PASSES = 10000, RAYS_USUAL = 256, SMOOTH_STEPS = 2 };
 enum { FINEST = 16 }; /* edges of patches are not divided below this part of the longest */
 static const double first_contrast = 0.1, border_contrast = 0.3;
 
@@ -46,32 +46,26 @@ struct preparation {
     const struct radiosity_input *input;
     struct world_lights lights;
     struct receiver_input receivers;
-    uint8_t *buries, *emissive;
     struct arena arena;
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
-    double *until;
 };
 
-static void direct_batch(void *context, uint32_t batch, int worker) {
+static void find_direct_of(void *context, uint32_t side, int worker) {
     struct preparation *p = context;
-    uint32_t end = (batch + 1) * BATCH, count = side_count(p->out);
-    for (uint32_t i = batch * BATCH; i < end && i < count && !pool_cancelled(p->input->pool); i++)
-        if (p->out->sides[i].area < 0)
-            receive_direct(&p->receivers, i, &p->scratches[worker], &p->out->sides[i]);
+    if (p->out->sides[side].area < 0)
+        receive_direct(&p->receivers, side, &p->scratches[worker], &p->out->sides[side]);
 }
 
-static void ray_batch(void *context, uint32_t batch, int worker) {
+static void find_rays_of(void *context, uint32_t item, int worker) {
     struct preparation *p = context;
-    uint32_t end = (batch + 1) * BATCH;
-    for (uint32_t i = batch * BATCH; i < end && i < p->count && !pool_cancelled(p->input->pool); i++)
-        receive_rays(&p->receivers, p->sides[i], &p->scratches[worker], &p->out->sides[p->sides[i]],
-                     p->targets + (size_t)i * p->receivers.rays);
+    receive_rays(&p->receivers, p->sides[item], &p->scratches[worker], &p->out->sides[p->sides[item]],
+                 p->targets + (size_t)item * p->receivers.rays);
 }
 
 static bool run(struct preparation *p, uint32_t count, pool_function *function, struct error *error) {
-    bool whole = pool_run(p->input->pool, (count + BATCH - 1) / BATCH, function, p), failed = false;
+    bool whole = pool_run(p->input->pool, count, function, p), failed = false;
     for (int i = 0; i < pool_workers(p->input->pool); i++)
         failed = failed || p->scratches[i].failed;
     if (failed)
@@ -91,7 +85,7 @@ static bool find_direct(struct preparation *p, uint32_t old_vertices, struct err
         if (vertex[0] >= old_vertices || vertex[1] >= old_vertices || vertex[2] >= old_vertices)
             sides[2 * own].area = sides[2 * own + 1].area = -1;
     }
-    return run(p, side_count(out), direct_batch, error);
+    return run(p, side_count(out), find_direct_of, error);
 }
 
 /* --- adaptive division --- */
@@ -157,53 +151,9 @@ static bool refine(struct preparation *p, struct error *error) {
     return ok;
 }
 
-/* From what each ray meets to the receivers of each side. */
-static bool find_receivers(struct preparation *p, struct error *error) {
-    struct radiosity *out = p->out;
-    uint32_t sides = side_count(out), rays = p->receivers.rays;
-    size_t all = (size_t)p->count * rays;
-    out->first = mem_alloc_zero((size_t)sides + 2, sizeof *out->first);
-    if (!out->first)
-        return error_no_memory(error, "radiosity");
-    for (size_t i = 0; i < all; i++)
-        if (p->targets[i] != SIDE_NONE)
-            out->first[p->targets[i] + 2]++;
-    for (uint32_t i = 0; i < sides; i++)
-        out->first[i + 2] += out->first[i + 1];
-    out->receivers = mem_alloc(out->first[sides + 1] * sizeof *out->receivers);
-    if (!out->receivers)
-        return error_no_memory(error, "radiosity");
-    /* first[j + 1] moves from the beginning of j to its end. */
-    for (size_t i = 0; i < all; i++)
-        if (p->targets[i] != SIDE_NONE)
-            out->receivers[out->first[p->targets[i] + 1]++] = p->sides[i / rays];
-    out->rays += all;
-    return true;
-}
-
-/* What bright patches reflect is sampled like light of lights: the shares of both sides of each. */
-static bool find_bright_patches(struct preparation *p) {
-    const struct patches *patches = &p->out->patches;
-    double sum = 0;
-    p->until = mem_alloc(2 * patches->all.count * sizeof *p->until);
-    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
-        struct vec3 c[3];
-        patch_corners(patches, i / 2, c);
-        double area = vec3_length(patch_normal(c)) / 2;
-        sum += area * receive_brightness(p->out, i / 2, i % 2);
-        p->until[i] = sum;
-    }
-    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++)
-        p->until[i] /= sum;
-    p->receivers.until = p->until;
-    p->receivers.power = sum;
-    return p->until != NULL;
-}
-
+/* What rays of all sides meet, and from that the receivers of each side. */
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    for (uint32_t i = 0; i < side_count(out); i++)
-        out->sides[i].unshot = out->sides[i].light;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
     for (uint32_t i = 0; p->sides && i < side_count(out); i++)
         if (out->sides[i].area > 0)
@@ -213,12 +163,19 @@ static bool find_rays(struct preparation *p, struct error *error) {
             error, ERROR_SCENE,
             "--integrator radiosity needs a diffuse surface with an end and an area, and the scene has none");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    if (!p->sides || !p->targets || !find_bright_patches(p))
+    if (!p->sides || !p->targets)
         return error_no_memory(error, "radiosity");
     if (!patches_index_space(&out->patches, p->input->pool, error))
         return false;
     show_growth(out);
-    return run(p, p->count, ray_batch, error) && find_receivers(p, error);
+    if (!run(p, p->count, find_rays_of, error))
+        return false;
+    const size_t all = (size_t)p->count * p->receivers.rays;
+    if (!patches_group(p->targets, all, side_count(out), &out->first, &out->receivers))
+        return error_no_memory(error, "radiosity");
+    for (size_t i = 0; i < out->first[side_count(out)]; i++)
+        out->receivers[i] = p->sides[out->receivers[i] / p->receivers.rays];
+    return true;
 }
 
 /* --- preparation --- */
@@ -240,28 +197,30 @@ static bool begin_preparation(struct preparation *p, struct error *error) {
     const struct world *world = p->input->world;
     struct world_lights_options options = {p->input->background, LIGHT_CHOICE_TREE};
     int workers = pool_workers(p->input->pool);
-    p->buries = mem_alloc_zero((size_t)world->primitive_count + 1, 1);
-    p->emissive = mem_alloc_zero((size_t)world->material_count + 1, 1);
+    p->receivers = (struct receiver_input){.radiosity = p->out,
+                                           .lights = &p->lights,
+                                           .buries = mem_alloc_zero((size_t)world->primitive_count + 1, 1),
+                                           .emissive = mem_alloc_zero((size_t)world->material_count + 1, 1),
+                                           .bounds = box_empty(),
+                                           .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
+                                           .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
     p->scratches = mem_alloc_zero((size_t)workers, sizeof *p->scratches);
-    bool ok = p->buries && p->emissive && p->scratches;
+    bool ok = p->receivers.buries && p->receivers.emissive && p->scratches;
     for (int i = 0; ok && i < workers; i++)
         ok = world_scratch_init(&p->scratches[i], world);
     if (!ok)
         return error_no_memory(error, "radiosity");
-    receive_find_buries(world, p->buries);
+    receive_find_buries(world, p->receivers.buries);
     for (uint32_t i = 0; i < world->material_count; i++)
-        p->emissive[i] = receive_is_emissive(world, i);
-    p->receivers = (struct receiver_input){.radiosity = p->out,
-                                           .lights = &p->lights,
-                                           .buries = p->buries,
-                                           .emissive = p->emissive,
-                                           .bounds = box_empty(),
-                                           .seed = random_combine(p->input->seed, UINT64_C(0x7261646973)),
-                                           .rays = p->input->rays ? p->input->rays : RAYS_USUAL};
+        p->receivers.emissive[i] = receive_is_emissive(world, i);
     for (uint32_t i = 0; i < world->primitive_count; i++)
         p->receivers.bounds = box_join(p->receivers.bounds, world->boxes[i]);
-    return check_emitters(world, error) &&
-           world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error);
+    if (!check_emitters(world, error) ||
+        !world_lights_build(&p->lights, world, options, &p->arena, p->input->pool, error))
+        return false;
+    if (p->lights.area_light_count > 0 || p->lights.sampler.infinite_count > 0)
+        p->receivers.bounds = box_grow(p->receivers.bounds, INFINITY);
+    return true;
 }
 
 /* What the solution depends on. Numbers of lights and materials, placements and meshes are complete; other shapes,
@@ -270,9 +229,8 @@ static struct digest digest_of(const struct preparation *p) {
     const struct radiosity_input *input = p->input;
     const struct world *world = input->world;
     const double numbers[] = {input->background, input->limit, input->rays, (double)input->seed, input->error_share};
-    const uint32_t probes = world->primitive_count < PROBES / PROBES_LIMIT ? PROBES_LIMIT
-                            : world->primitive_count < PROBES / 2          ? PROBES / world->primitive_count
-                                                                           : 2;
+    const double fair = PROBES / (world->primitive_count + 1.0);
+    const uint32_t probes = (uint32_t)math_min(math_max(fair, 2), PROBES_LIMIT);
     struct box bounds = world_finite_bounds(world);
     struct digest digest = digest_bytes(GRAY_VERSION, sizeof GRAY_VERSION, (struct digest){1, 1});
     digest = digest_bytes(numbers, sizeof numbers, digest);
@@ -305,28 +263,22 @@ static struct digest digest_of(const struct preparation *p) {
     }
     /* Primitives: their placement, and what random rays meet. */
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->buries[i]};
+        const uint32_t flags[] = {patches_kind(world, i), primitive_prototype(world, i)->holes, p->receivers.buries[i]};
         const struct transform placement = world_placement(world, i, 0);
         const struct box *own = &world->boxes[i], box = box_meet(*own, box_is_empty(&bounds) ? *own : bounds);
         digest = digest_bytes(flags, sizeof flags, digest);
         digest = digest_bytes(&placement.forward, sizeof placement.forward, digest);
-        for (uint32_t k = 0; !box_is_empty(&box) && k < probes; k++) {
-            struct receiver_probe probe;
-            receive_probe(&p->receivers, i, &box, random_combine(p->receivers.seed, (uint64_t)i * PROBES + k),
-                          &p->scratches[0], &probe);
-            digest = digest_bytes(&probe, sizeof probe, digest);
-        }
+        for (uint32_t k = 0; !box_is_empty(&box) && k < probes; k++)
+            digest = receive_probe(&p->receivers, i, &box, random_combine(p->receivers.seed, (uint64_t)i * PROBES + k),
+                                   &p->scratches[0], digest);
     }
     return digest;
 }
 
 static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    bool ok = patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
-              find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
-    for (uint32_t i = 0; ok && i < p->count; i++)
-        out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
-    return ok;
+    return patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
+           find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
 }
 
 static void end_preparation(struct preparation *p) {
@@ -335,11 +287,10 @@ static void end_preparation(struct preparation *p) {
         world_scratch_destroy(&p->scratches[i]);
     arena_destroy(&p->arena);
     mem_free(p->scratches);
-    mem_free(p->buries);
-    mem_free(p->emissive);
+    mem_free(p->receivers.buries);
+    mem_free(p->receivers.emissive);
     mem_free(p->sides);
     mem_free(p->targets);
-    mem_free(p->until);
 }
 
 bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
@@ -353,19 +304,17 @@ bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input
 }
 
 void radiosity_warn(const struct world *world, world_warning *warn, void *context) {
-    uint32_t count = 0, first = 0;
+    uint32_t i = 0;
     char text[512];
-    for (uint32_t i = 0; i < world->primitive_count; i++) {
-        bool bare = patches_kind(world, i) == PATCHES_BARE;
-        first = bare && count == 0 ? i : first;
-        count += bare;
-    }
-    if (count == 0)
+    while (i < world->primitive_count && patches_kind(world, i) != PATCHES_BARE)
+        i++;
+    if (i == world->primitive_count)
         return;
-    (void)snprintf(text, sizeof text,
-                   "'%.100s'%s open or without end, so radiosity has no patches there: %s the lights alone",
-                   primitive_node(world, first)->name, count > 1 ? " and others are" : " is",
-                   count > 1 ? "they show" : "it shows");
+    (void)snprintf(
+        text, sizeof text,
+        "'%.100s' is open or without end, so radiosity has no patches there: it shows the lights alone, like "
+        "all such objects",
+        primitive_node(world, i)->name);
     warn(context, text);
 }
 
@@ -420,28 +369,25 @@ bool radiosity_shoot(struct radiosity *radiosity, double error_share, struct poo
     return true;
 }
 
-/* One step: each side takes the mean over the patches of its vertex, weighted as products of hat functions, which keeps
- * the power. from, to: 3 numbers for each side. */
-static void smooth(const struct radiosity *radiosity, uint32_t back, const struct colour *from, struct colour *to) {
+/* The mean over the patches of the vertex of a side, weighted as products of hat functions, which keeps the power. */
+static struct colour smooth(const struct radiosity *radiosity, uint32_t own, const struct colour *from) {
     const struct patches *patches = &radiosity->patches;
-    for (uint32_t v = 0; v < patches->vertices.count; v++) {
-        const uint32_t own = 2 * v + back;
-        struct colour sum = {0, 0, 0};
-        double weights = 0;
-        for (uint32_t i = patches->first[v]; i < patches->first[v + 1] && radiosity->sides[own].area > 0; i++) {
-            const uint32_t *vertex = patch_at(patches, patches->of_vertex[i])->vertex;
-            struct vec3 c[3];
-            patch_corners(patches, patches->of_vertex[i], c);
-            double area = vec3_length(patch_normal(c));
-            for (int k = 0; k < 3; k++) {
-                const uint32_t side = 2 * vertex[k] + back;
-                double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
-                sum = colour_add_scaled(sum, from[side], weight);
-                weights += weight;
-            }
+    struct colour sum = {0, 0, 0};
+    double weights = 0;
+    if (!(radiosity->sides[own].area > 0))
+        return from[own];
+    for (size_t i = patches->first[own / 2]; i < patches->first[own / 2 + 1]; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, patches->of_vertex[i], c);
+        double area = patch_area(c);
+        for (int k = 0; k < 3; k++) {
+            const uint32_t side = 2 * patch_at(patches, patches->of_vertex[i])->vertex[k] + own % 2;
+            double weight = radiosity->sides[side].area > 0 ? area * (side == own ? 2 : 1) : 0;
+            sum = colour_add_scaled(sum, from[side], weight);
+            weights += weight;
         }
-        to[own] = weights > 0 ? colour_scale(sum, 1 / weights) : from[own];
     }
+    return colour_scale(sum, 1 / weights);
 }
 
 bool radiosity_finish(struct radiosity *radiosity, double error_share, struct pool *pool, struct error *error) {
@@ -450,15 +396,18 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
     bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
     for (uint32_t i = 0; ok && i < count; i++)
-        direct[i] = colour_sub(radiosity->sides[i].light, radiosity->sides[i].unshot);
+        direct[i] = radiosity->sides[i].light;
     if (ok && !radiosity_shoot(radiosity, error_share, pool))
         ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
     for (uint32_t i = 0; ok && i < count; i++)
         indirect[i] = colour_sub(radiosity->sides[i].light, direct[i]);
-    for (uint32_t step = 0; ok && step < 2 * SMOOTH_STEPS; step++)
-        smooth(radiosity, step % 2, step / 2 % 2 ? smoothed : indirect, step / 2 % 2 ? indirect : smoothed);
+    for (int step = 0; ok && step < SMOOTH_STEPS; step++) {
+        for (uint32_t i = 0; i < count; i++)
+            smoothed[i] = smooth(radiosity, i, indirect);
+        memcpy(indirect, smoothed, count * sizeof *indirect);
+    }
     for (uint32_t i = 0; ok && i < count; i++)
-        radiosity->sides[i].light = colour_add(direct[i], (SMOOTH_STEPS % 2 ? smoothed : indirect)[i]);
+        radiosity->sides[i].light = colour_add(direct[i], indirect[i]);
     drop_factors(radiosity);
     mem_free(direct);
     mem_free(indirect);
@@ -490,8 +439,7 @@ static bool is_valid(const struct radiosity *radiosity) {
     for (uint32_t i = 0; valid && i < patches->vertices.count; i++)
         valid = vec3_finite(patch_vertex_at(patches, i)->point) && patch_vertex_at(patches, i)->primitive < primitives;
     for (uint32_t i = 0; valid && i < 3 * patches->all.count; i++)
-        valid = patch_at(patches, i / 3)->vertex[i % 3] < patches->vertices.count &&
-                patch_at(patches, i / 3)->primitive < primitives;
+        valid = patch_at(patches, i / 3)->vertex[i % 3] < patches->vertices.count;
     for (uint32_t i = 0; valid && i < side_count(radiosity); i++) {
         const struct side_light *side = &radiosity->sides[i];
         valid = side->area >= 0 && isfinite(colour_max_abs(side->light)) && isfinite(colour_max_abs(side->reflectance));
@@ -511,15 +459,14 @@ bool radiosity_read(struct radiosity *out, const struct radiosity_input *input, 
                                     head.vertices * (sizeof(struct patch_vertex) + 2 * sizeof(struct side_light));
     at += sizeof head;
     if (fits) {
-        if (!patches_begin(patches, input->world) ||
-            !list_add(&patches->vertices, at, head.vertices, sizeof(struct patch_vertex)) ||
+        *patches = (struct patches){.world = input->world, .edge = head.edge};
+        if (!list_add(&patches->vertices, at, head.vertices, sizeof(struct patch_vertex)) ||
             !list_add(&patches->all, at + head.vertices * sizeof(struct patch_vertex), head.patches,
                       sizeof(struct patch)) ||
             !(out->sides = mem_alloc(2 * head.vertices * sizeof *out->sides)))
             return error_no_memory(error, "radiosity");
         memcpy(out->sides, at + head.vertices * sizeof(struct patch_vertex) + head.patches * sizeof(struct patch),
                2 * head.vertices * sizeof *out->sides);
-        patches->edge = head.edge;
         out->left = head.left;
     }
     return fits && is_valid(out) ? patches_index_space(patches, input->pool, error)
@@ -547,18 +494,19 @@ static bool find_solution(struct preparation *p, struct error *error) {
 bool radiosity_update(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
     struct radiosity next = {.watch = input->watch, .store = radiosity->store};
     struct preparation p = {.out = &next, .input = input};
-    bool ok = begin_preparation(&p, error);
-    if (ok)
+    bool ok = begin_preparation(&p, error), same = false;
+    if (ok) {
         next.digest = digest_of(&p);
-    bool same = ok && digest_equal(next.digest, radiosity->digest);
-    ok = ok && (same || find_solution(&p, error));
+        same = digest_equal(next.digest, radiosity->digest);
+        ok = same || find_solution(&p, error);
+    }
     end_preparation(&p);
-    if (!ok || same)
-        radiosity_destroy(&next);
     if (same)
         radiosity->patches.world = input->world;
-    if (!ok || same)
+    if (!ok || same) {
+        radiosity_destroy(&next);
         return ok;
+    }
     radiosity_destroy(radiosity);
     *radiosity = next;
     radiosity->watch = (struct radiosity_watch){0};
@@ -570,8 +518,7 @@ bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, 
     const struct patches *patches = &radiosity->patches;
     struct vec3 *points = mem_alloc(patches->vertices.count * sizeof *points);
     uint8_t(*colours)[3] = mem_alloc(patches->vertices.count * sizeof *colours);
-    uint32_t(*triangles)[3] = mem_alloc(patches->all.count * sizeof *triangles);
-    bool ok = points && colours && triangles;
+    bool ok = points && colours;
     for (uint32_t i = 0; ok && i < patches->vertices.count; i++) {
         const struct side_light *side = &radiosity->sides[2 * i];
         side += !(side->area > 0);
@@ -580,14 +527,11 @@ bool radiosity_bake(const struct radiosity *radiosity, const struct tone *tone, 
         for (int k = 0; k < 3; k++)
             colours[i][k] = png_write_byte(tone_apply(tone, colour_get(light, k)));
     }
-    for (uint32_t i = 0; ok && i < patches->all.count; i++)
-        memcpy(triangles[i], patch_at(patches, i)->vertex, sizeof triangles[i]);
-    const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, (const uint32_t(*)[3])triangles,
+    const struct coloured_mesh mesh = {points, (const uint8_t(*)[3])colours, patches->all.items,
                                        patches->vertices.count, patches->all.count};
     ok = ok && coloured_mesh_write(&mesh, format, out);
     mem_free(points);
     mem_free(colours);
-    mem_free(triangles);
     return ok;
 }
 

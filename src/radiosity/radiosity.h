@@ -44,10 +44,9 @@ struct radiosity_watch {
 /* Zero value: empty. Owner: the caller, radiosity_destroy. */
 struct radiosity {
     struct patches patches;
-    struct side_light *sides; /* two for each vertex */
-    size_t *first;            /* by side, one more at the end: its receivers; dropped when it is solved */
-    uint32_t *receivers;      /* the sides whose rays meet it, as often as they do */
-    uint64_t rays;
+    struct side_light *sides;            /* two for each vertex */
+    size_t *first;                       /* by side, one more at the end: its receivers; dropped when it is solved */
+    uint32_t *receivers;                 /* the sides whose rays meet it, as often as they do */
     double left;                         /* share of light that is not shot */
     struct digest digest;                /* of all that the solution depends on; zero: there is none */
     bool ready;                          /* it is that of the next picture, which resets this */

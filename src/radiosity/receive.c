@@ -6,7 +6,6 @@
 #include "material/classic.h"
 #include "material/material_eval.h"
 #include "math/elementary.h"
-#include "math/frame.h"
 #include "world/joint.h"
 #include "world/world_describe.h"
 
@@ -59,16 +58,6 @@ static struct sample2 stratified(const struct receiver *receiver, uint32_t posit
     return sample_cell(key, cell % SIDE, cell / SIDE, SIDE);
 }
 
-static double stratified_number(const struct receiver *receiver, uint32_t position, uint64_t dimension) {
-    uint64_t key = random_combine(receiver->key, dimension);
-    uint32_t cell = sample_permute(position, RECEIVE_POSITIONS, key);
-    return (cell + random_unit(random_combine(key, RECEIVE_POSITIONS + cell))) / RECEIVE_POSITIONS;
-}
-
-static double patch_area(const struct vec3 c[3]) {
-    return vec3_length(patch_normal(c)) / 2;
-}
-
 static struct receiver receiver_make(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch) {
     const struct patches *patches = &input->radiosity->patches;
     struct receiver out = {.input = input,
@@ -78,7 +67,7 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
                            .key = random_combine(input->seed, side)};
     struct box box = box_empty();
     uint64_t own = patch_vertex_at(patches, out.vertex)->primitive;
-    for (uint32_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
+    for (size_t i = patches->first[out.vertex]; i < patches->first[out.vertex + 1]; i++) {
         struct vec3 c[3];
         patch_corners(patches, patches->of_vertex[i], c);
         out.area += patch_area(c) / 3;
@@ -95,11 +84,11 @@ static struct receiver receiver_make(const struct receiver_input *input, uint32_
 /* A position on a patch of the vertex, and the patch. */
 static struct vec3 position_of(const struct receiver *receiver, uint32_t position, uint32_t *patch) {
     const struct patches *patches = &receiver->input->radiosity->patches;
-    const uint32_t end = patches->first[receiver->vertex + 1];
-    double until = 3 * receiver->area * stratified_number(receiver, position, 0);
+    const size_t end = patches->first[receiver->vertex + 1];
+    double until = 3 * receiver->area * stratified(receiver, position, 0).x;
     struct sample2 xi = stratified(receiver, position, 1);
     struct vec3 c[3];
-    uint32_t i = patches->first[receiver->vertex];
+    size_t i = patches->first[receiver->vertex];
     for (;; i++) {
         patch_corners(patches, patches->of_vertex[i], c);
         double area = patch_area(c);
@@ -164,7 +153,7 @@ static struct colour light_of_sample(const struct receiver *receiver, const stru
     struct world_light_sample sample;
     double pmf, t;
     struct light_part part =
-        light_sampler_sample(&lights->sampler, at.point, at.normal, stratified_number(receiver, position, 2), &pmf);
+        light_sampler_sample(&lights->sampler, at.point, at.normal, stratified(receiver, position, 2).x, &pmf);
     if (part.light == LIGHT_NONE || !world_lights_sample(lights, &at, part, stratified(receiver, position, 3), &sample))
         return colour_all(0);
     double cosine = vec3_dot(sample.direction, hit->view);
@@ -292,135 +281,31 @@ static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
     return false;
 }
 
-/* --- light that bright patches reflect --- */
-
-/* The light of samples of lights that a side of a vertex reflects. */
-static struct colour reflected_of(const struct side_light *side) {
-    return side->area > 0 ? colour_mul(side->reflectance, side->unshot) : colour_all(0);
-}
-
-double receive_brightness(const struct radiosity *radiosity, uint32_t patch, bool back) {
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum +=
-            colour_max_abs(reflected_of(&radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back]));
-    return sum / 3;
-}
-
-/* The same at a point of a patch. */
-static struct colour reflected_at(const struct radiosity *radiosity, uint32_t patch, const double shares[3],
-                                  bool back) {
-    struct colour light = {0, 0, 0};
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const struct side_light *side = &radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back];
-        light = colour_add_scaled(light, reflected_of(side), shares[k]);
-        sum += side->area > 0 ? shares[k] : 0;
-    }
-    return sum > 0 ? colour_scale(light, 1 / sum) : light;
-}
-
-/* Of positions on patches, by solid angle. */
-static double density_of(const struct receiver_input *input, uint32_t patch, bool back, double distance,
-                         double cosine) {
-    return receive_brightness(input->radiosity, patch, back) / input->power * distance * distance / cosine;
-}
-
-/* The intensity that arrives from a position on a patch, which is chosen by brightness and area. */
-static struct colour light_of_patch(const struct receiver *receiver, const struct hit *hit, uint32_t position) {
-    const struct receiver_input *input = receiver->input;
-    const struct patches *patches = &input->radiosity->patches;
-    uint32_t chosen =
-        (uint32_t)sample_entry(input->until, 2 * patches->all.count, stratified_number(receiver, position, 5));
-    const uint32_t patch = chosen / 2;
-    const bool back = chosen & 1;
-    const struct sample2 xi = stratified(receiver, position, 6);
-    const double root = sqrt(xi.x), shares[3] = {1 - root, root * (1 - xi.y), root * xi.y};
-    struct vec3 c[3], point = {0, 0, 0};
-    struct hit there;
-    patch_corners(patches, patch, c);
-    for (int k = 0; k < 3; k++)
-        point = vec3_add_scaled(point, c[k], shares[k]);
-    if (!patches_hit(patches, patch, point, receiver->scratch, &there))
-        return colour_all(0);
-    struct vec3 normal = back ? vec3_negate(there.normal_geometric) : there.normal_geometric;
-    const struct light_receiver from = light_receiver_of(hit);
-    struct vec3 to = vec3_sub(there.point, hit->point), direction = vec3_normalize(to);
-    double distance = vec3_length(to), cosine = vec3_dot(direction, hit->view),
-           cosine_there = -vec3_dot(direction, normal);
-    if (!(distance > 0) || !(cosine > 0) || !(cosine_there > 0))
-        return colour_all(0);
-    struct ray ray = {.origin = from.from,
-                      .direction = vec3_sub(vec3_add_scaled(there.point, normal, there.offset), from.from),
-                      .t_max = 1};
-    struct hit_skip skip = hit_skip_from(hit, hit->front ? 1 : -1, ray.direction);
-    ray.skip_primitive = skip.primitive;
-    ray.skip_part = skip.part;
-    double seen = world_lights_visible(input->lights, &ray, receiver->scratch);
-    double pdf = density_of(input, patch, back, distance, cosine_there);
-    double weight = power_weight(pdf, intensity_of(cosine) * rays_per_sample(input));
-    return colour_scale(reflected_at(input->radiosity, patch, shares, back),
-                        seen * intensity_of(cosine) * weight / pdf);
-}
-
-/* The side of a vertex of a hit, by the shares of those that reflect light; the ray meets what its patch reflects. */
-static uint32_t find_target(struct receiver_ray *r, const struct hit *hit, double choice) {
-    const struct radiosity *radiosity = r->receiver->input->radiosity;
+/* The side of a vertex of a hit, by the shares of those that reflect light. */
+static uint32_t find_target(const struct radiosity *radiosity, const struct hit *hit, double choice) {
     uint32_t patch;
     double shares[3], sum = 0;
-    uint32_t side = SIDE_NONE;
     if (!patches_find(&radiosity->patches, hit, &patch, shares))
         return SIDE_NONE;
     const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
-    double cosine = fabs(vec3_dot(r->direction, hit->normal_geometric));
-    struct colour reflected = reflected_at(radiosity, patch, shares, !hit->front);
-    if (!colour_is_black(reflected))
-        meet(r, reflected,
-             density_of(r->receiver->input, patch, !hit->front, vec3_length(vec3_sub(hit->point, r->from.point)),
-                        cosine));
-    for (int k = 0; k < 3; k++)
-        sum += radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
-    choice *= sum;
     for (int k = 0; k < 3; k++) {
-        uint32_t own = 2 * vertex[k] + !hit->front;
-        if (!(radiosity->sides[own].area > 0))
-            continue;
-        side = own;
-        if (choice < shares[k])
-            break;
-        choice -= shares[k];
+        shares[k] = radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
+        sum += shares[k];
     }
-    return side;
+    choice *= sum;
+    int k = 0;
+    while (k < 2 && choice >= shares[k])
+        choice -= shares[k++];
+    return shares[k] > 0 ? 2 * vertex[k] + !hit->front : SIDE_NONE;
 }
 
-/* A cosine-distributed direction. */
-static struct vec3 direction_of(struct vec3 normal, struct sample2 xi) {
-    struct sample2 disc = sample_disc(xi);
-    struct vec3 a, b;
-    frame_tangents(normal, &a, &b);
-    double height = sqrt(math_max(0, 1 - disc.x * disc.x - disc.y * disc.y));
-    return vec3_add_scaled(vec3_add_scaled(vec3_scale(normal, height), a, disc.x), b, disc.y);
-}
-
-/* All of the scene is behind the patches of the vertex, as outside of a room, and no light has a place there: no ray
- * can meet anything. */
-static bool sees_nothing(const struct receiver *receiver) {
-    const struct receiver_input *input = receiver->input;
-    const struct patches *patches = &input->radiosity->patches;
-    const struct box *bounds = &input->bounds;
-    if (input->lights->area_light_count > 0 || input->lights->sampler.infinite_count > 0 || !vec3_finite(bounds->min) ||
-        !vec3_finite(bounds->max) || patches->curved[patch_vertex_at(patches, receiver->vertex)->primitive])
-        return false;
+/* All of the scene is behind the surface, as outside of a room: no ray can meet anything. */
+static bool sees_nothing(const struct box *bounds, const struct hit *from) {
     double far = math_max(vec3_max_abs(bounds->min), vec3_max_abs(bounds->max));
-    for (uint32_t i = patches->first[receiver->vertex]; i < patches->first[receiver->vertex + 1]; i++) {
-        struct vec3 c[3];
-        patch_corners(patches, patches->of_vertex[i], c);
-        const struct vec3 normal = vec3_scale(vec3_normalize(patch_normal(c)), receiver->back ? -1 : 1);
-        for (unsigned k = 0; k < 8; k++)
-            if (vec3_dot(normal, vec3_sub(box_corner(bounds, k), c[0])) > 0x1p-44 * far)
-                return false;
-    }
-    return true;
+    bool nothing = isfinite(far);
+    for (unsigned k = 0; nothing && k < 8; k++)
+        nothing = vec3_dot(from->view, vec3_sub(box_corner(bounds, k), from->point)) <= 0x1p-44 * far;
+    return nothing;
 }
 
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
@@ -432,41 +317,37 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
     struct colour sum = {0, 0, 0};
     for (uint32_t i = 0; i < input->rays; i++)
         targets[i] = SIDE_NONE;
-    if (sees_nothing(&receiver))
-        return;
     for (uint32_t i = 0; i < RECEIVE_POSITIONS; i++) {
         struct hit from, hit;
         struct bsdf bsdf;
         bool buried;
-        if (!hit_of(&receiver, i, &from, &buried))
+        if (!hit_of(&receiver, i, &from, &buried) || sees_nothing(&input->bounds, &from))
             continue;
         if (primitive_prototype(world, from.primitive)->holes) {
             material_eval(&world->surfaces, &from, NULL, &context, &bsdf);
             if (bsdf.opacity < 0.5)
                 continue;
         }
-        if (input->power > 0)
-            sum = colour_add_scaled(sum, light_of_patch(&receiver, &from, i), each);
         for (uint32_t k = 0; k < each; k++) {
             uint32_t cell = sample_permute(i * each + k, input->rays, key);
             uint64_t own = random_combine(key, input->rays + cell);
             struct receiver_ray r = {.receiver = &receiver, .from = light_receiver_of(&from)};
-            r.direction = direction_of(from.view, sample_cell(key, cell % n, cell / n, n));
+            r.direction = sample_cosine(from.view, sample_cell(key, cell % n, cell / n, n));
             r.pdf = intensity_of(vec3_dot(r.direction, from.view)) * rays_per_sample(input);
             const struct ray start = {.origin = r.from.from};
             r.ray = hit_ray(&from, &start, r.direction, NULL);
             if (follow_ray(&r, own, &hit))
-                targets[i * each + k] = find_target(&r, &hit, random_unit(own));
+                targets[i * each + k] = find_target(input->radiosity, &hit, random_unit(own));
             sum = colour_add(sum, r.light);
         }
     }
-    out->light = colour_add_scaled(out->light, sum, out->weight);
+    out->light = out->unshot = colour_add_scaled(out->light, sum, out->weight);
 }
 
 /* --- digests --- */
 
-void receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
-                   struct world_scratch *scratch, struct receiver_probe *out) {
+struct digest receive_probe(const struct receiver_input *input, uint32_t primitive, const struct box *box, uint64_t key,
+                            struct world_scratch *scratch, struct digest digest) {
     const struct world *world = input->lights->world;
     const struct vec3 size = vec3_sub(box->max, box->min);
     struct world_light_sample sample;
@@ -479,22 +360,18 @@ void receive_probe(const struct receiver_input *input, uint32_t primitive, const
     const struct vec3 through = vec3_add(box->min, vec3_make(x[0] * size.x, x[1] * size.y, x[2] * size.z));
     struct ray ray = {.direction = vec3_make(x[3] - 0.5, x[4] - 0.5, x[5] - 0.5), .t_max = INFINITY};
     ray.origin = vec3_add_scaled(through, ray.direction, -x[6] * vec3_max_abs(size));
-    *out = (struct receiver_probe){0};
     if (!world_nearest_of(world, primitive, &ray, scratch, &crossing))
-        return;
+        return digest;
     world_describe(world, &ray, primitive, &crossing, &hit);
     material_eval(&world->surfaces, &hit, NULL, &context, &bsdf);
-    out->t = crossing.t;
-    out->normal = hit.normal;
-    out->diffuse = bsdf_diffuse(&bsdf);
-    out->emission = bsdf.emission;
-    out->opacity = bsdf.opacity;
+    const struct colour colours[] = {bsdf_diffuse(&bsdf), bsdf.emission};
+    const double numbers[] = {crossing.t, bsdf.opacity, hit.normal.x, hit.normal.y, hit.normal.z};
+    digest = digest_bytes(numbers, sizeof numbers, digest_bytes(colours, sizeof colours, digest));
     const struct light_receiver at = light_receiver_of(&hit);
     struct light_part part = light_sampler_sample(&input->lights->sampler, at.point, at.normal, x[7], &pmf);
     if (part.light == LIGHT_NONE ||
         !world_lights_sample(input->lights, &at, part, (struct sample2){x[8], x[9]}, &sample))
-        return;
-    out->radiance = sample.radiance;
-    out->direction = sample.direction;
-    out->pdf = pmf * sample.pdf;
+        return digest;
+    digest = digest_bytes(&sample.radiance, sizeof sample.radiance, digest);
+    return digest_bytes(&sample.direction, sizeof sample.direction, digest);
 }

@@ -473,6 +473,13 @@ static void put_in_bounds(uint32_t i, const struct box *bounds, double out[3]) {
     }
 }
 
+static void add_results(struct comparison *comparison, const double results[EXPR_OUTPUTS]) {
+    for (int k = 0; k < comparison->program->output_count; k++) {
+        comparison->sum[k] += isfinite(results[k]) ? results[k] : 0;
+        comparison->largest[k] = results[k] > comparison->largest[k] ? results[k] : comparison->largest[k];
+    }
+}
+
 static void compare_point(lua_State *L, int function, uint32_t i, struct comparison *comparison) {
     double inputs[EXPR_INPUT_COUNT], recorded[EXPR_OUTPUTS], called[3];
     int top = lua_gettop(L), count = 0, outputs = comparison->program->output_count;
@@ -496,9 +503,8 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
         called[k] = lua_tonumber(L, -1);
         lua_pop(L, 1);
         same = same && same_number(called[k], recorded[k]);
-        comparison->sum[k] += isfinite(recorded[k]) ? recorded[k] : 0;
-        comparison->largest[k] = recorded[k] > comparison->largest[k] ? recorded[k] : comparison->largest[k];
     }
+    add_results(comparison, recorded);
     lua_settop(L, top);
     if (same && count <= outputs)
         return;
@@ -625,16 +631,27 @@ static bool reads_coordinates(const struct expr_program *program) {
 }
 
 /* Where no hit is known, the mean and the largest value at the points of the comparison represent the function. */
-static struct texture texture_of(const struct work *work) {
-    const struct comparison *comparison = &work->comparison;
-    int last = work->program->output_count - 1;
+static struct texture texture_of(const struct expr_program *program, const char *source,
+                                 const struct comparison *comparison) {
+    int last = program->output_count - 1;
     struct colour sum = colour_make(comparison->sum[0], comparison->sum[last / 2], comparison->sum[last]);
     struct colour largest =
         colour_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
-    struct texture out = texture_function(work->program, reads_coordinates(work->program),
-                                          colour_scale(sum, 1.0 / RECORD_POINTS), largest);
-    out.source = work->source;
+    struct texture out =
+        texture_function(program, reads_coordinates(program), colour_scale(sum, 1.0 / RECORD_POINTS), largest);
+    out.source = source;
     return out;
+}
+
+struct texture record_texture_of(const struct expr_program *program) {
+    struct comparison comparison = {.program = program, .largest = {1, 1, 1}};
+    for (uint32_t i = 0; i < RECORD_POINTS; i++) {
+        double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+        test_point(i, RECORD_POINTS_OF_SPACE, inputs);
+        expr_evaluate(program, inputs, outputs);
+        add_results(&comparison, outputs);
+    }
+    return texture_of(program, program->source, &comparison);
 }
 
 /* Calls `run` with the function at an absolute index and `data`. Leaves an error on top. */
@@ -680,7 +697,9 @@ void record_function(struct sandbox *sandbox, int index, const char *name, enum 
     struct work work = {.arena = arena, .domain = domain};
     run_protected(sandbox, record_protected, index, &work, name);
     record_remember(sandbox, index, work.program, domain);
-    *out = (struct recording){.program = work.program, .source = work.source, .texture = texture_of(&work)};
+    *out = (struct recording){.program = work.program,
+                              .source = work.source,
+                              .texture = texture_of(work.program, work.source, &work.comparison)};
 }
 
 /* --- tone curves --- */

@@ -33,6 +33,8 @@ const char *record_activity(lua_State *L);
 /* Records the Lua function at an absolute index. Raises every error, with the name of the argument in front. */
 void record_function(struct sandbox *sandbox, int index, const char *name, enum record_domain domain,
                      struct arena *arena, struct recording *out);
+/* The texture of a program that was not recorded here. */
+struct texture record_texture_of(const struct expr_program *program);
 /* The values of a tone curve, a function at an absolute index that is called and not recorded. They live as long as the
  * call. Raises every error, likewise. */
 const struct tone_table *record_tone_curve(struct sandbox *sandbox, int index, const char *name);

@@ -69,57 +69,38 @@ static bool shade_stored(const struct headlight *headlight, const struct hit *hi
     return true;
 }
 
-/* Without what is in between: the part of the half space above the surface, weighted by the cosine, that a triangle
- * covers. It is cut at the plane of the surface (J. Lambert, "Photometria", 1760, section 118). */
-static double unhidden_factor(struct vec3 point, struct vec3 normal, const struct vec3 corners[3]) {
-    struct vec3 cut[4];
-    int count = 0;
-    double sum = 0, rounding = 1e-9 * vec3_length(vec3_sub(corners[0], point));
-    for (int i = 0; i < 3; i++) {
-        struct vec3 a = vec3_sub(corners[i], point), b = vec3_sub(corners[(i + 1) % 3], point);
-        double above = vec3_dot(a, normal) - rounding, next = vec3_dot(b, normal) - rounding;
-        if (above > 0)
-            cut[count++] = a;
-        if ((above > 0) != (next > 0))
-            cut[count++] = vec3_add_scaled(a, vec3_sub(b, a), above / (above - next));
-    }
-    for (int i = 0; i < count; i++) {
-        struct vec3 a = vec3_normalize(cut[i]), b = vec3_normalize(cut[(i + 1) % count]), side = vec3_cross(a, b);
-        double length = vec3_length(side);
-        if (length > 0)
-            sum += el_atan2(length, vec3_dot(a, b)) * vec3_dot(side, normal) / length;
-    }
-    return fabs(sum) / (2 * PI);
-}
-
 static bool is_of_patch(const struct headlight *headlight, const struct hit *hit) {
     const struct patches *patches = &headlight->stored->patches;
     uint32_t patch;
     double shares[3];
-    return hit->primitive == patch_at(patches, headlight->patch)->primitive &&
-           patches_find(patches, hit, &patch, shares) && patch == headlight->patch;
+    return hit->primitive == patch_primitive(patches, headlight->patch) && patches_find(patches, hit, &patch, shares) &&
+           patch == headlight->patch;
 }
 
-/* The form factor from the surface to the patch: the middles of four equal parts of it are visible or not. */
+/* The form factor from the surface to the patch: four equal parts of it are visible or not, and are seen as discs are
+ * (J. Wallace and others as in radiosity.h). */
 static double form_factor(const struct headlight *headlight, struct world_scratch *scratch, const struct ray *from,
                           const struct hit *hit, struct vec3 normal) {
     enum { PARTS = 4 };
     const struct patches *patches = &headlight->stored->patches;
-    const struct world *world = headlight->job->world;
     struct vec3 c[3];
-    int visible = 0;
+    double factor = 0;
     patch_corners(patches, headlight->patch, c);
+    const double area = patch_area(c) / PARTS;
     for (int i = 0; i < PARTS; i++) {
         const double share[3] = {i == 0 || i == 3 ? 4 : 1, i == 1 || i == 3 ? 4 : 1, i == 2 || i == 3 ? 4 : 1};
-        struct vec3 to = vec3_all(0);
+        struct vec3 to = vec3_negate(hit->point);
         for (int k = 0; k < 3; k++)
             to = vec3_add_scaled(to, c[k], share[k] / (share[0] + share[1] + share[2]));
-        struct ray ray = hit_ray(hit, from, vec3_sub(to, hit->point), from->media);
+        struct ray ray = hit_ray(hit, from, to, from->media);
         struct hit occluder;
-        bool met = world_nearest_surface(world, &ray, scratch, &occluder) && occluder.t < 1 - 1e-6;
-        visible += !met || is_of_patch(headlight, &occluder);
+        bool met = world_nearest_surface(headlight->job->world, &ray, scratch, &occluder) && occluder.t < 1 - 1e-6;
+        double squared = vec3_length_squared(to);
+        double cosines = vec3_dot(to, normal) * fabs(vec3_dot(to, vec3_normalize(patch_normal(c)))) / squared;
+        if (!met || is_of_patch(headlight, &occluder))
+            factor += math_max(0, cosines) * area / (PI * squared + area);
     }
-    return visible > 0 ? unhidden_factor(hit->point, normal, c) * visible / PARTS : 0;
+    return factor;
 }
 
 /* The patch itself is white. */

@@ -102,7 +102,9 @@ const char *sandbox_frame_file(const lua_Debug *frame) {
 void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
     lua_Debug frame, entry;
     if (!find_frame(sandbox->lua, &frame, &entry)) {
-        snprintf(out, size, "%s: ", sandbox->files.path);
+        int length = snprintf(out, size, "%s: ", sandbox->files.path);
+        if (sandbox->locate && (size_t)length < size)
+            sandbox->locate(sandbox, out + length, size - (size_t)length);
         return;
     }
     int length = snprintf(out, size, "%s:%d: ", sandbox_frame_file(&frame), frame.currentline);

@@ -72,6 +72,9 @@ struct sandbox {
     struct recorder
         *recorder; /* of functions; the module `record` sets it, and while it is silent nothing is printed */
     bool (*is_silent)(const struct recorder *recorder);
+    /* Of a scene that is no script: writes the place of what is read, "nodes[3]: ", and takes it out of `raised` if it
+     * is there. NULL: there is none. */
+    void (*locate)(const struct sandbox *sandbox, char *out, size_t size);
 };
 
 struct sandbox *sandbox_of(lua_State *L);

@@ -13,6 +13,7 @@
 #include "script/gr_frames_internal.h"
 #include "script/gr_model_internal.h"
 #include "script/gr_words_internal.h"
+#include "script/scene_write_internal.h"
 #include "script/table_internal.h"
 #include "settings/foreign_words.h"
 
@@ -192,6 +193,8 @@ static int dispatch(lua_State *L) {
         c->sandbox.running.subject = node->name;
         first = 2;
     }
+    if (c->noted)
+        scene_write_begin(c);
     (void)arguments_read(c, function, first, args); /* there are no ghosts */
     if (lacks_material(function, args))
         context_note_line(c);
@@ -199,6 +202,8 @@ static int dispatch(lua_State *L) {
     struct error error = {0};
     if (!function->run(c, args, &result, &error))
         sandbox_raise_error(&c->sandbox, &error);
+    if (c->noted)
+        scene_write_call(c, function, args, &result);
     return answer(L, function, &result);
 }
 

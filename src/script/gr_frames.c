@@ -225,7 +225,7 @@ static void free_frames(lua_State *L, struct scene_snapshot *snapshot) {
     if (grown < GROWTH_MIN || grown < snapshot->arena.total / 2)
         return;
     bool edited = script_of(context)->changes.count > 0 || scene->added || scene->own;
-    if (!scene->escaped && !edited && !context->lenient && !holds_handles(L))
+    if (!scene->escaped && !edited && !context->lenient && !context->noted && !holds_handles(L))
         scene_rewind(scene, snapshot);
     context->sandbox.running.subject = NULL; /* it may be the name of a node that is freed */
     context->line_source = NULL;

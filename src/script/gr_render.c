@@ -9,6 +9,7 @@
 #include "scene/node_bounds.h"
 #include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
+#include "script/scene_write_internal.h"
 #include "script/script_internal.h"
 #include "script/studio_internal.h"
 #include "settings/setting.h"
@@ -616,6 +617,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .settings = script_of(context)->host->settings,
         .frame = script_of(context)->animation.frame,
     };
+    request.time = request.frame.number > 0 ? frame_time(&request.frame) : script_of(context)->time;
     /* Settings of the program, then those of the call. */
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct scene_light lights[STUDIO_LIGHTS];
@@ -673,8 +675,9 @@ static bool gr_render(struct script_context *context, const struct script_value 
     request.settings.transparent = is_transparent(&args[RENDER_BACKGROUND]);
     limits_pause(&context->sandbox.limits);
     bool turns = context->sandbox.options->frames.turntable > 0;
-    bool done = turns ? render_turntable(context, &request, error)
-                      : script_of(context)->host->render(script_of(context)->host->context, &request, error);
+    bool done = context->noted ? scene_write_picture(context, &request, error)
+                : turns        ? render_turntable(context, &request, error)
+                               : script_of(context)->host->render(script_of(context)->host->context, &request, error);
     limits_resume(&context->sandbox.limits);
     changes_remove(&changed);
     script_of(context)->pictures += done;

@@ -2,8 +2,11 @@
  * row in this file. */
 #include "script/gr_textures_internal.h"
 
+#include "expr/expr_text.h"
 #include "image/image_function.h"
+#include "record/record.h"
 #include "record/vector.h"
+#include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
 #include "script/table_internal.h"
 
@@ -128,37 +131,25 @@ static bool fn(struct script_context *context, const struct script_value *args, 
     return give(context, own, result, error);
 }
 
-static const struct script_function rows[] = {
-    GR("fn", fn_parameters, RESULT_TEXTURE, fn,
-       "A Lua function as a texture. Every argument that accepts a texture also accepts a function.", "f points?"),
-    GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
-       "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
-    GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,
-       "A wood pattern between 0 and 1, for inputs of gr.material.", "f density interp?"),
-    GR("mix_texture", mix_parameters, RESULT_TEXTURE, mix, "A mix of two textures or colours.", "a b ratio?"),
-    GR("multiply_texture", multiply_parameters, RESULT_TEXTURE, multiply, "The product of two textures or colours.",
-       "a b"),
-};
-
-const struct function_rows texture_functions = {rows, COUNT(rows)};
-
 /* --- pictures as functions --- */
 
 /* The picture of a texture as a function, with the lookup of gr.texture. Its numbers are those of the file, unless the
  * texture has an explicit encoding. */
-static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image) {
-    struct error error = {0};
+static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image,
+                                                  struct error *error) {
     struct transfer_function transfer = {TRANSFER_UNSTATED, 0};
     struct image_function *out = arena_alloc(&context->scene.arena, sizeof *out);
-    if (!out)
-        sandbox_raise_no_memory(&context->sandbox);
+    if (!out) {
+        (void)error_no_memory(error, "a picture");
+        return NULL;
+    }
     if (image->gamma > 0)
         transfer = (struct transfer_function){TRANSFER_POWER, image->gamma};
     else if (image->encoding == ENCODING_SRGB)
         transfer = (struct transfer_function){TRANSFER_SRGB, 0};
-    struct image *decoded = image_decode(image->image, transfer, &error);
-    if (!decoded || !image_make_ranges(decoded, &error))
-        sandbox_raise_error(&context->sandbox, &error);
+    struct image *decoded = image_decode(image->image, transfer, error);
+    if (!decoded || !image_make_ranges(decoded, error))
+        return NULL;
     *out = (struct image_function){.image = decoded,
                                    .sampling = {image->filter, image->wrap, image->apart ? image->wrap_v : image->wrap},
                                    .scale = {1, 1},
@@ -177,19 +168,81 @@ static struct image_function *make_image_function(struct script_context *context
     return out;
 }
 
+/* Of a texture that is only an image. NULL: an error. */
+static const struct image_function *image_function_of(struct script_context *context, struct script_texture *texture,
+                                                      struct error *error) {
+    if (!texture->function) {
+        texture->function = make_image_function(context, texture_as_image(texture->texture), error);
+        context->scene.escaped = true; /* the texture may be older */
+    }
+    return texture->function;
+}
+
+enum { PROGRAM_CODE, PROGRAM_IMAGE };
+#define PROGRAM_PICTURE(name)                                                                                          \
+    { name, KIND_IMAGE, OPTIONAL | RARE, ANY, NULL, "none", "A picture that texel reads." }
+static const struct script_parameter program_parameters[] = {
+    [PROGRAM_CODE] = {"code", KIND_TEXT, 0, ANY, NULL, NULL,
+                      "Its operations, such as 'v0 = p.x; v1 = sin v0; result v1'."},
+    [PROGRAM_IMAGE] = PROGRAM_PICTURE("image1"),
+    PROGRAM_PICTURE("image2"),
+    PROGRAM_PICTURE("image3"),
+    PROGRAM_PICTURE("image4"),
+};
+
+static bool program(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct expr_program *out = arena_alloc(arena, sizeof *out);
+    struct expr_images images = {.count = EXPR_IMAGES};
+    for (int k = 0; k < EXPR_IMAGES; k++) {
+        const struct script_value *value = &args[PROGRAM_IMAGE + k];
+        const struct texture_image *file = value->text ? gr_image(context, value, error) : NULL;
+        if (value->texture)
+            images.items[k] = image_function_of(context, (struct script_texture *)(uintptr_t)value->texture, error);
+        else if (file)
+            images.items[k] = make_image_function(context, file, error);
+        if (value->given && !images.items[k])
+            return false;
+    }
+    if (!out)
+        return error_no_memory(error, "a function");
+    if (!expr_read_text(args[PROGRAM_CODE].text, &images, arena, out, error))
+        return false;
+    out->source = "gr.program";
+    return give(context, record_texture_of(out), result, error);
+}
+
+static const struct script_function rows[] = {
+    GR("fn", fn_parameters, RESULT_TEXTURE, fn,
+       "A Lua function as a texture. Every argument that accepts a texture also accepts a function.", "f points?"),
+    GR("program", program_parameters, RESULT_TEXTURE, program,
+       "A function as the text of its operations, as gray writes it into scenes of JSON.", "code"),
+    GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
+       "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
+    GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,
+       "A wood pattern between 0 and 1, for inputs of gr.material.", "f density interp?"),
+    GR("mix_texture", mix_parameters, RESULT_TEXTURE, mix, "A mix of two textures or colours.", "a b ratio?"),
+    GR("multiply_texture", multiply_parameters, RESULT_TEXTURE, multiply, "The product of two textures or colours.",
+       "a b"),
+};
+
+const struct function_rows texture_functions = {rows, COUNT(rows)};
+
+/* --- img:at --- */
+
 static const struct image_function *image_function_at(lua_State *L, int index) {
     struct script_context *context = context_of(L);
     const struct handle *handle = handle_at(L, index);
     struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
-    const struct texture_image *image = texture && !texture->is_bump ? texture_as_image(texture->texture) : NULL;
+    struct error error = {0};
     context->sandbox.lua = L;
-    if (!image)
+    if (!texture || texture->is_bump || !texture_as_image(texture->texture))
         luaL_error(L, "img:at(u, v) needs a picture, a result of gr.texture, not %s", value_words(L, index));
-    if (!texture->function) {
-        texture->function = make_image_function(context, image);
-        context->scene.escaped = true; /* the texture may be older */
-    }
-    return texture->function;
+    const struct image_function *function = image_function_of(context, texture, &error);
+    if (!function)
+        sandbox_raise_error(&context->sandbox, &error);
+    return function;
 }
 
 /* img:at(u, v): the colour, multiplied by alpha, and alpha. */

@@ -20,6 +20,8 @@
 #include "script/gr_model_internal.h"
 #include "script/gr_textures_internal.h"
 #include "script/model_scene_internal.h"
+#include "script/scene_json_internal.h"
+#include "script/scene_write_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -106,6 +108,7 @@ static int describe_error(lua_State *L) {
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
     bool has_position;
     message = innermost(sandbox, message, &has_position);
+    has_position |= message && script->is_json && strncmp(message, where, strcspn(where, ":") + 1) == 0;
     if (!message) {
         error_no_memory(&sandbox->fatal, "the script");
         return 1;
@@ -124,7 +127,7 @@ static int describe_error(lua_State *L) {
         lua_concat(L, 2);
     }
     const char *below = lua_tostring(L, -1);
-    script->traceback = below[0] ? indent(script->out, below) : NULL;
+    script->traceback = below[0] && !script->is_json ? indent(script->out, below) : NULL;
     lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
 }
@@ -159,8 +162,12 @@ static int run_scene(lua_State *L) {
             return lua_error(L);
         lua_call(L, 0, 0);
     }
+    if (script->host->write_scene)
+        scene_write_open(L);
     if (script->context.scene.is_model)
         model_scene_run(L);
+    else if (script->is_json)
+        scene_json_run(L);
     else
         run_file(L, script->context.sandbox.files.path);
     models_report_unused(script);
@@ -190,7 +197,7 @@ static bool choose_order(struct script *script, struct error *error) {
     struct scene *scene = &script->context.scene;
     const char *path = sandbox->files.path;
     struct order_finding finding;
-    if (script->context.scene.is_model) {
+    if (script->context.scene.is_model || script->is_json) {
         script->only_named_pictures = true;
         return true;
     }
@@ -251,6 +258,7 @@ struct digest render_request_digest(const struct render_request *request) {
     memcpy(&shown, request, sizeof shown);
     shown.file = shown.where = NULL;
     shown.frame = (struct frame){0};
+    shown.time = 0;
     shown.lights = NULL;
     shown.settings.tone.table = NULL;
     digest = digest_bytes(&shown, sizeof shown, digest);
@@ -359,6 +367,7 @@ bool script_run(const char *path, const struct script_options *options, const st
     *sandbox = sandbox_of_script(path, options, host);
     scene_init(&script.context.scene, host->assets);
     script.context.scene.is_model = model_is_named(path);
+    script.is_json = scene_json_is_named(path);
     struct path_policy path_policy = {0};
     /* The message if the message handler failed. */
     error_set(&script.failure, ERROR_SCENE, "%s: an error while an error was reported", path);

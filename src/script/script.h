@@ -39,6 +39,7 @@ struct render_request {
     bool keep;                 /* a picture that exists under this name is not replaced */
     bool changed;              /* gr.change_... has changed the scene for this picture */
     struct frame frame;        /* of an animation; else its number is 0 */
+    double time;               /* seconds since the first frame */
     const char *where;         /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 
@@ -68,6 +69,10 @@ struct script_host {
     bool (*render)(void *context, const struct render_request *request, struct error *error);
     /* The same for models; may be NULL. */
     bool (*export_model)(void *context, const struct export_request *request, struct error *error);
+    /* Takes the scene of a picture as text, in the place of `render`. NULL: it is rendered. */
+    bool (*write_scene)(void *context, const struct render_request *request, const char *text, size_t size,
+                        struct error *error);
+    const char *text_file; /* where that is written; NULL: to no file */
     /* One complete line without newline, e.g. "scene.lua:3: warning: gr.sphere: ..." */
     void (*message)(void *context, enum script_message kind, const char *text);
     bool (*cancelled)(void *context); /* polled by a count hook; may be NULL */

@@ -15,6 +15,9 @@ struct script {
     struct error failure;                       /* the message of a script error, made by the message handler */
     bool only_named_pictures, several_pictures; /* struct order_finding */
     bool studio_noticed;
+    bool is_json; /* the scene is no script */
+    struct scene_reader *reader; /* of a scene in JSON, while it is read */
+    double time; /* of the picture, in seconds since the first frame; of frames it is that of the frame */
     struct node *fitted; /* what a camera without a place shows; NULL: the picture's node */
     uint32_t pictures; /* that gr.render has made */
     uint32_t unnamed;  /* pictures without a file name so far */

@@ -60,7 +60,7 @@ bool message_is_valid(const struct message *message) {
     case MESSAGE_WINDOW:
         return message->size <= sizeof message->body.bytes;
     case MESSAGE_MODEL:
-        return message->size == sizeof message->body.model && message->body.model.role <= MODEL_SOLUTION &&
+        return message->size == sizeof message->body.model && message->body.model.role <= MODEL_SCENE &&
                ends_with_zero(message->body.model.file, sizeof message->body.model.file);
     case MESSAGE_MODEL_WRITE:
     case MESSAGE_MODEL_END:

@@ -75,13 +75,15 @@ struct picture_request {
     char file[4096];                  /* as the script wrote it */
 };
 
-/* Who names the file of a model: a script; -o; --bake. A solution of radiosity is written in the same way. */
-enum model_role { MODEL_OF_SCRIPT, MODEL_OF_USER, MODEL_BAKED, MODEL_SOLUTION };
+/* Who names the file of a model: a script; -o; --bake. A solution of radiosity, and a scene as text, whose name is that
+ * of -o, are written in the same way. */
+enum model_role { MODEL_OF_SCRIPT, MODEL_OF_USER, MODEL_BAKED, MODEL_SOLUTION, MODEL_SCENE };
 /* A file of a model. */
 struct model_request {
     uint64_t size;         /* bytes; 0: a question before the work begins: can this file be written? */
     uint32_t role;         /* an enum model_role */
     uint32_t beside;       /* not 0: the file of its materials, .mtl in place of .obj */
+    uint32_t number;       /* of a scene: of its picture or frame, from 1 */
     struct digest depends; /* of a solution: all that it depends on */
     char file[4096];       /* as the script wrote it */
 };

@@ -21,6 +21,7 @@ enum options_action {
     ACTION_HELP,
     ACTION_VERSION,
     ACTION_ANNOTATIONS,
+    ACTION_SCHEMA,
     /* The words after these are no scripts but a topic, a page, a folder, a command line. */
     ACTION_MANUAL,
     ACTION_ROFF,
@@ -77,6 +78,7 @@ struct options {
     const char *node;                /* --node: the part of the scene that is the model, or NULL */
     int picture;                     /* --picture: the number of the picture whose scene is the model, or 0 */
     bool check_print;                /* --check-print */
+    bool to_json, to_lua;            /* --to-json, --to-lua, or -o with such an ending: scenes are written as text */
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */

@@ -103,6 +103,34 @@ static bool check_model(const struct options *options, struct error *error) {
            error_set(error, ERROR_USAGE, "a model shows one frame: --frames N-N chooses it");
 }
 
+static bool ends(const char *name, const char *with) {
+    size_t length = name ? strlen(name) : 0, end = strlen(with);
+    return length > end && strcasecmp(name + length - end, with) == 0;
+}
+
+/* --to-json, --to-lua, or -o with their endings. */
+static bool check_scene_text(struct options *options, struct error *error) {
+    options->to_json |= ends(options->output, ".json");
+    options->to_lua |= ends(options->output, ".lua");
+    const char *option = options->to_json ? "--to-json" : "--to-lua";
+    if (!options->to_json && !options->to_lua)
+        return true;
+    if (options->to_json && options->to_lua)
+        return error_set(error, ERROR_USAGE, "--to-json and --to-lua write different files; give one of them");
+    if (options->output && strcmp(options->output, "-") != 0 &&
+        !ends(options->output, options->to_json ? ".json" : ".lua"))
+        return error_set(error, ERROR_USAGE, "%s -o %.400s: the name must end in %s", option, options->output,
+                         options->to_json ? ".json" : ".lua");
+    if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
+        options->checkpoint || options->resume || options->watch || options->model || options->check_print ||
+        options->script.lenient || options->script.frames.turntable > 0)
+        return error_set(error, ERROR_USAGE,
+                         "%s renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint, "
+                         "--resume, --watch, --lenient, --turntable or a model",
+                         option);
+    return true;
+}
+
 static const char tev_port[] = "14158";
 
 static bool take_word(const char **text, char *out, size_t size) {
@@ -277,8 +305,8 @@ static void choose_kept(struct options *options) {
 
 bool options_check(struct options *options, struct error *error) {
     bool ok = check_together(options, error) && check_questions(options, error) && check_model(options, error) &&
-              check_bake(options, error) && check_parts(options, error) && check_time(options, error) &&
-              check_name(options, error) && check_animation(options, error);
+              check_scene_text(options, error) && check_bake(options, error) && check_parts(options, error) &&
+              check_time(options, error) && check_name(options, error) && check_animation(options, error);
     if (ok)
         choose_kept(options);
     return ok;

@@ -102,6 +102,13 @@ void text_print_message(FILE *stream, enum text_kind kind, const char *text) {
     print_cleaned(stream, rest, continued);
 }
 
+int text_print_error(const struct error *error) {
+    char line[sizeof error->text + 16];
+    (void)snprintf(line, sizeof line, "gray: %s", error->text);
+    text_print_message(stderr, TEXT_ERROR, line);
+    return (int)error->kind;
+}
+
 /* The beginning of a JSON string: the bytes for the next *taken bytes of a text; returns how many. */
 static size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
     const unsigned char *at = (const unsigned char *)text;

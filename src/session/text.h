@@ -3,6 +3,7 @@
 #ifndef GRAY_SESSION_TEXT_H
 #define GRAY_SESSION_TEXT_H
 
+#include "base/error.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
@@ -20,6 +21,8 @@ void text_print_scene_line(FILE *stream, const char *text);
  * may have a traceback, line ends remain if the next line is indented by two blanks. */
 enum text_kind { TEXT_ERROR, TEXT_WARNING, TEXT_NOTICE };
 void text_print_message(FILE *stream, enum text_kind kind, const char *text);
+/* The message of an error of gray; returns its kind, an exit status. */
+int text_print_error(const struct error *error);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD, the characters above escapes. */
 void text_print_json(FILE *stream, const char *text);
 

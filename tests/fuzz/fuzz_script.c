@@ -1,6 +1,7 @@
 /* Any bytes as a scene: through the grammar of gr calls (script_grammar.h) they become a script, which runs in this
  * process with small limits; its pictures are flattened and rendered with 8 x 8 pixels. The result is a film, or one
- * line. GRAY_FUZZ_PRINT in the environment shows the text. Bytes that begin with "--" are a script as they are. */
+ * line. GRAY_FUZZ_PRINT in the environment shows the text. Bytes that begin with "--" are a script as they are, and with
+ * "{" a scene in JSON. */
 #define _GNU_SOURCE
 #include "base/mem.h"
 #include "film/aov.h"
@@ -183,7 +184,7 @@ static bool render_small(void *context, const struct render_request *request, st
     return ok;
 }
 
-static void run(struct stage *stage) {
+static void run(struct stage *stage, const char *name) {
     char path[128];
     const struct script_options options = {
         .transform_order = SCRIPT_ORDER_NEW, .memory_limit = 64 << 20, .time_limit = 1, .output_limit = 1 << 20};
@@ -196,7 +197,7 @@ static void run(struct stage *stage) {
     struct arena arena = {0};
     const char *traceback = NULL;
     struct error error = {0};
-    (void)snprintf(path, sizeof path, "%s/scene.lua", fuzz_folder());
+    (void)snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
     wish_to_stop = 0;
     set_clock(150);
     bool ok = script_run(path, &options, &host, &arena, &traceback, &error);
@@ -219,18 +220,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     script_grammar(data, size, text);
     const char *script = text;
     size_t length = strlen(text);
-    if (size > 2 && data[0] == '-' && data[1] == '-') {
+    bool is_json = size > 2 && data[0] == '{';
+    if (is_json || (size > 2 && data[0] == '-' && data[1] == '-')) {
         script = (const char *)data;
         length = size;
     }
     if (getenv("GRAY_FUZZ_PRINT"))
         (void)fprintf(stderr, "%.*s\n", (int)length, script);
-    fuzz_write("scene.lua", script, length);
+    const char *name = is_json ? "scene.json" : "scene.lua";
+    fuzz_write(name, script, length);
     stage.pool = pool_create(1, warning);
     if (!stage.pool)
         return 0;
     pool_watch(stage.pool, &wish_to_stop);
-    run(&stage);
+    run(&stage, name);
     pool_destroy(stage.pool);
     assets_destroy(&stage.assets);
     return 0;

@@ -56,7 +56,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         text = "true";
         break;
     case KIND_TEXT:
-        text = "'thing'";
+        text = strcmp(p->name, "code") == 0 ? "'v0 = p.x; result v0'" : "'thing'";
         break;
     case KIND_FILE:
         text = strcmp(p->name, "font") == 0 ? "'letters.ttf'" : "'flag.obj'";

@@ -429,6 +429,10 @@ TEST(check_print_reports_volume_overhang_and_contact) {
 /* A sphere of this radius as x.KIND. */
 static const char *sphere_as(const char *kind, int radius) {
     static char text[256];
+    if (strcmp(kind, "json") == 0) {
+        (void)snprintf(text, sizeof text, "gr.render{node = gr.sphere{radius = %d}}\n", radius);
+        return text;
+    }
     (void)snprintf(text, sizeof text, "gr.sphere{radius = %d}:export('x.%s', {tolerance = 0.1})\n", radius, kind);
     return text;
 }
@@ -450,14 +454,14 @@ static bool may_change_files(const struct ptrace_syscall_info *info) {
     }
 }
 
-/* Runs scene.lua and kills the supervisor before the call `at` of those that may change files. The number of these
- * calls, or -1: it was killed. */
-static int run_until(int at) {
+/* Runs scene.lua, which writes itself to x.json if `json` is set, and kills the supervisor before the call `at` of those
+ * that may change files. The number of these calls, or -1: it was killed. */
+static int run_until(bool json, int at) {
     int status = 0, calls = 0;
     pid_t child = fork();
     if (child == 0) {
         if (chdir(test_folder()) == 0 && ptrace(PTRACE_TRACEME, 0, NULL, NULL) == 0)
-            (void)execl(test_program(), "gray", "-q", "scene.lua", (char *)NULL);
+            (void)execl(test_program(), "gray", "-q", "scene.lua", json ? "-o" : NULL, "x.json", (char *)NULL);
         _exit(99);
     }
     CHECK(waitpid(child, &status, 0) == child && WIFSTOPPED(status));
@@ -495,26 +499,29 @@ static void check_files(const char *const *names, int count, int at) {
 
 /* step: of how many calls one is tried. */
 static void kill_writer(const char *kind, int step) {
-    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}};
+    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}, {"x.json"}};
     int which = strcmp(kind, "obj") == 0 ? 1 : strcmp(kind, "ply") == 0 ? 2 : strcmp(kind, "3mf") == 0 ? 3 : 0;
     int count = which == 1 ? 2 : 1;
-    expect(sphere_as(kind, 2), "scene.lua", 0, NULL);
+    bool json = strcmp(kind, "json") == 0;
+    const char *arguments = json ? "scene.lua -o x.json" : "scene.lua";
+    which = json ? 4 : which;
+    expect(sphere_as(kind, 2), arguments, 0, NULL);
     CHECK_EQ_INT(test_run_shell("for f in x.*; do mv $f new-$f; done", ""), 0);
-    expect(sphere_as(kind, 1), "scene.lua", 0, NULL);
+    expect(sphere_as(kind, 1), arguments, 0, NULL);
     CHECK_EQ_INT(test_run_shell("for f in x.*; do cp $f old-$f; done", ""), 0);
     test_write_text(test_path("scene.lua"), sphere_as(kind, 2));
-    int calls = run_until(-1);
+    int calls = run_until(json, -1);
     CHECK(calls > 10);
     for (int at = calls - 1; at >= 0 && at > calls - 101; at -= step) {
         CHECK_EQ_INT(test_run_shell("for f in old-*; do cp $f ${f#old-}; done", ""), 0);
-        (void)run_until(at);
+        (void)run_until(json, at);
         check_files(files[which], count, at);
     }
 }
 
 TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
-    static const char *const kinds[] = {"stl", "obj", "ply", "3mf"};
-    for (int i = 0; i < 4; i++) {
+    static const char *const kinds[] = {"stl", "obj", "ply", "3mf", "json"};
+    for (int i = 0; i < 5; i++) {
         kill_writer(kinds[i], times > 1 ? 1 : 9);
         CHECK_EQ_INT(test_run_shell("rm -f x.* old-* new-*", ""), 0);
     }

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "film/aov.h"
 #include "film/tile_file.h"
+#include "formats/json_text.h"
 #include "formats/model.h"
 #include "image/exr.h"
 #include "render/render.h"
@@ -877,7 +878,7 @@ TEST(numbers_of_mesh_files_have_the_limit_of_scripts) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char text[TEXT_SIZE];
         struct error error;
-        if (strstr(cases[i].name, ".gltf") && strcmp(gltf_library(), "none") == 0)
+        if (strstr(cases[i].name, ".gltf") && strcmp(json_text_library(), "none") == 0)
             continue;
         test_write_text(test_path(cases[i].name), cases[i].text);
         (void)snprintf(text, sizeof text, "%sroot:add_child(gr.mesh{file = '%s'}) show{}\n", preparation,

@@ -58,6 +58,13 @@ static double form_factor(const struct radiosity *radiosity, uint32_t from, uint
     return sum / area_of(radiosity, from);
 }
 
+static size_t sides_with_area(const struct radiosity *radiosity) {
+    size_t count = 0;
+    for (size_t i = 0; i < 2 * radiosity->patches.vertices.count; i++)
+        count += radiosity->sides[i].area > 0;
+    return count;
+}
+
 /* Of two planar shapes that face each other; at least 10^6 rays for both. */
 static double factor_of_pair(struct planar a, struct planar b, double *back) {
     struct stage s;
@@ -67,7 +74,7 @@ static double factor_of_pair(struct planar a, struct planar b, double *back) {
     (void)add_planar(&s, a, matt(&s, 0.5));
     (void)add_planar(&s, b, matt(&s, 0.5));
     if (prepare(&s, &radiosity, 4000, 64)) {
-        CHECK(radiosity.rays >= 1000000);
+        CHECK(64 * 64 * sides_with_area(&radiosity) >= 1000000);
         factor = form_factor(&radiosity, 0, 1);
         *back = form_factor(&radiosity, 1, 0) * area_of(&radiosity, 1) / area_of(&radiosity, 0);
     }
@@ -566,7 +573,7 @@ static void compare_with_paths(struct stage *s, const struct radiosity *radiosit
                                     fabs(normal.y) > 0.5 ? to_x : to_y, 50};
         CHECK(stage_render(s, 1, 1));
         struct hit hit = {.point = point, .normal_geometric = normal, .front = true};
-        hit.primitive = patch_at(&radiosity->patches, index)->primitive;
+        hit.primitive = patch_primitive(&radiosity->patches, index);
         struct colour light;
         CHECK(radiosity_light(radiosity, &hit, &light));
         double paths = stage_pixel(s, 0, 0).g / side->reflectance.g, own = light.g;

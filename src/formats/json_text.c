@@ -1,0 +1,79 @@
+/* jansson allocates from base/mem.h, and its memory is bounded before it starts. It refuses NaN, infinities, numbers
+ * that do not fit, zero bytes, text that is not UTF-8, and more than 2048 values in each other. */
+#include "formats/json_text.h"
+
+#ifndef HAVE_JANSSON
+
+const char *json_text_library(void) {
+    return "none";
+}
+
+#else
+
+#include "base/hash.h"
+#include "base/mem.h"
+
+/* jansson needs about 40 bytes for a number and 300 for an object. */
+enum { OBJECT_LIMIT = 1 << 20, VALUE_LIMIT = 1 << 24 };
+
+const char *json_text_library(void) {
+    return "jansson " JANSSON_VERSION;
+}
+
+static bool check_size(const char *path, const char *text, size_t size, struct error *error) {
+    size_t objects = 0, values = 0;
+    bool string = false;
+    for (size_t i = 0; i < size; i++) {
+        if (string && text[i] == '\\')
+            i++;
+        else if (text[i] == '"')
+            string = !string;
+        else if (!string) {
+            objects += text[i] == '{' || text[i] == '[';
+            values += text[i] == ',';
+        }
+    }
+    return (objects <= OBJECT_LIMIT && values <= VALUE_LIMIT) ||
+           error_set(error, ERROR_SCENE, "%s: its JSON: more than %d objects or %d values", path, OBJECT_LIMIT,
+                     VALUE_LIMIT);
+}
+
+/* jansson reports lack of memory as a syntax error, and its allocator has no context for an error. Hence this
+ * variable; it is valid from the start of a parse to its end. */
+static _Thread_local bool memory_failed;
+
+static void *allocate(size_t size) {
+    void *block = mem_alloc(size);
+    memory_failed |= block == NULL;
+    return block;
+}
+
+json_t *json_text_parse(const char *path, const char *text, size_t size, bool strict, struct error *error) {
+    if (!check_size(path, text, size, error))
+        return NULL;
+    /* The hash seed depends on all bytes of the file, so that a file cannot contain names that collide, and the library
+     * needs no random numbers. */
+    json_set_alloc_funcs(allocate, mem_free);
+    json_object_seed((size_t)hash_bytes(text, size, 1) | 1);
+    json_error_t fault;
+    memory_failed = false;
+    json_t *root = json_loadb(text, size, strict ? JSON_REJECT_DUPLICATES : 0, &fault);
+    if (memory_failed) { /* characters may be missing then even if the text seems complete */
+        json_decref(root);
+        (void)error_no_memory(error, path);
+        return NULL;
+    }
+    if (root && json_is_object(root))
+        return root;
+    for (char *c = fault.text; !root && *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    if (root)
+        (void)error_set(error, ERROR_SCENE, "%s: its JSON: an object must be at the top", path);
+    else
+        (void)error_set(error, ERROR_SCENE, "%s:%d: broken JSON: %s", path, fault.line, fault.text);
+    json_decref(root);
+    return NULL;
+}
+
+#endif

@@ -1,0 +1,521 @@
+/* Reads a scene in JSON. Each object with a type is a call of that function of gr with the other members as fields, so
+ * names, ranges, defaults and errors are those of the table of functions, and nothing here knows a shape. Values are
+ * made from the innermost outwards; what `define` names is made at its first use. `position` leads from the value that
+ * is read to the top of the file, for messages. */
+#include "script/scene_json_internal.h"
+
+#include "base/file.h"
+#include "base/suggestion.h"
+#include "formats/json_text.h"
+#include "script/dispatch_internal.h"
+#include "script/script_internal.h"
+#include "script/table_internal.h"
+
+#include <lauxlib.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+bool scene_json_is_named(const char *path) {
+    size_t length = strlen(path);
+    return length > 5 && strcasecmp(path + length - 5, ".json") == 0;
+}
+
+#ifndef HAVE_JANSSON
+
+void scene_json_run(lua_State *L) {
+    struct sandbox *sandbox = sandbox_enter(L);
+    sandbox_raise(sandbox, "this build cannot read JSON (it was made without jansson)");
+}
+
+#else
+
+/* VERSION: of the files. DEPTH: of objects in each other, through `ref`, too. */
+enum { VERSION = 1, DEPTH = 1000 };
+
+/* A member by its key, or an entry by its index if the key is NULL. */
+struct position {
+    const struct position *outer;
+    const char *key;
+    size_t index;
+};
+
+/* made: stack index of the table of what `define` has made; true while it is being made. calls: those of the tables of
+ * the rows that a file may name. */
+struct scene_reader {
+    lua_State *L;
+    struct script *script;
+    json_t *defined;
+    const struct position *position;
+    int depth, made, calls[2];
+};
+
+/* --- messages --- */
+
+/* Of a deep one, the outer part. */
+static void print_position(const struct position *position, char *out, size_t size) {
+    if (!position)
+        return;
+    print_position(position->outer, out, size);
+    size_t used = strlen(out);
+    if (used + 4 > size)
+        return;
+    if (position->key)
+        (void)snprintf(out + used, size - used, "%s%.80s", used > 0 ? "." : "", position->key);
+    else
+        (void)snprintf(out + used, size - used, "[%zu]", position->index);
+}
+
+static bool has_parameter(const struct script_function *function, const char *name, size_t length) {
+    for (int k = 0; k < function->parameter_count; k++)
+        if (strlen(function->parameters[k].name) == length && memcmp(function->parameters[k].name, name, length) == 0)
+            return true;
+    return false;
+}
+
+/* The argument that the error is about ends the position: "gr.material: kd[2] must ..." is about kd[1], as JSON counts
+ * from 0. */
+static void print_argument(const struct script_context *context, char *error, char *out, size_t size) {
+    static const char unknown[] = "unknown field '";
+    const struct script_function *function = context->function;
+    char *text = strstr(error, ": "), *end;
+    if (!text || !function || !context->sandbox.running.name)
+        return;
+    text += 2;
+    if (strncmp(text, unknown, sizeof unknown - 1) == 0) {
+        text += sizeof unknown - 1;
+        (void)snprintf(out, size, ".%.*s", (int)strcspn(text, "'"), text);
+        return;
+    }
+    size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_");
+    if (length == 0 || !has_parameter(function, text, length))
+        return;
+    size_t used = (size_t)snprintf(out, size, ".%.*s", (int)length, text);
+    for (char *at = text + length; at[0] == '[' && used < size; at = end + 1) {
+        unsigned long index = strtoul(at + 1, &end, 10);
+        if (*end != ']' || index == 0)
+            return;
+        char digits[24];
+        int count = snprintf(digits, sizeof digits, "%lu", index - 1);
+        memmove(at + 1 + count, end, strlen(end) + 1);
+        memcpy(at + 1, digits, (size_t)count);
+        end = at + 1 + count;
+        used += (size_t)snprintf(out + used, size - used, "[%s]", digits);
+    }
+}
+
+/* After "x.json: ": "nodes[3].material.kd: ". */
+static void locate(const struct sandbox *sandbox, char *out, size_t size) {
+    struct script_context *context = context_of(sandbox->lua);
+    char position[400] = "", argument[256] = "";
+    print_position(script_of(context)->reader->position, position, sizeof position);
+    print_argument(context, context->sandbox.raised, argument, sizeof argument);
+    if (position[0] || argument[0])
+        (void)snprintf(out, size, "%s%s: ", position, argument + (position[0] == '\0' && argument[0] == '.'));
+}
+
+_Noreturn static void fail_unknown(struct scene_reader *r, const char *what, const char *name,
+                                   const struct suggestion *suggestion) {
+    struct sandbox *sandbox = sandbox_enter(r->L);
+    if (suggestion->best)
+        sandbox_raise(sandbox, "%s '%.100s' does not exist; did you mean '%s'?", what, name, suggestion->best);
+    sandbox_raise(sandbox, "%s '%.100s' does not exist; near it are %s, %s and %s", what, name, suggestion->near[0],
+                  suggestion->near[1], suggestion->near[2]);
+}
+
+/* --- values --- */
+
+static void push_value(struct scene_reader *r, const json_t *json);
+
+static void push_member(struct scene_reader *r, const char *key, const json_t *json) {
+    const struct position position = {r->position, key, 0};
+    r->position = &position;
+    push_value(r, json);
+    r->position = position.outer;
+}
+
+static void push_entry(struct scene_reader *r, size_t index, const json_t *json) {
+    const struct position position = {r->position, NULL, index};
+    r->position = &position;
+    push_value(r, json);
+    r->position = position.outer;
+}
+
+static void push_list(struct scene_reader *r, const json_t *list) {
+    size_t count = json_array_size(list);
+    lua_createtable(r->L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        push_entry(r, i, json_array_get(list, i));
+        lua_rawseti(r->L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* A table of the members, without those of that list, which ends with NULL. */
+static void push_fields(struct scene_reader *r, const json_t *object, const char *const *without) {
+    lua_createtable(r->L, 0, (int)json_object_size(object));
+    for (void *at = json_object_iter((json_t *)(uintptr_t)object); at;
+         at = json_object_iter_next((json_t *)(uintptr_t)object, at)) {
+        const char *key = json_object_iter_key(at);
+        const char *const *other = without;
+        while (*other && strcmp(*other, key) != 0)
+            other++;
+        if (*other)
+            continue;
+        push_member(r, key, json_object_iter_value(at));
+        lua_setfield(r->L, -2, key);
+    }
+}
+
+/* Whether a function makes what a scene consists of. */
+static bool makes_object(const struct script_function *function) {
+    switch (function->result) {
+    case RESULT_NODE:
+    case RESULT_MATERIAL:
+    case RESULT_LIGHT:
+    case RESULT_TEXTURE:
+    case RESULT_FOG:
+    case RESULT_MEDIUM:
+    case RESULT_SKY:
+        return true;
+    case RESULT_NOTHING:
+    case RESULT_SELF:
+    case RESULT_BOUNDS:
+    case RESULT_FACES:
+    case RESULT_GLYPHS:
+    case RESULT_FRAMES:
+        return false;
+    }
+    return false;
+}
+
+static bool is_object_or_method(const struct script_function *function, enum function_owner owner) {
+    return function->owner == owner && (owner == OWNER_GR ? makes_object(function) : function->result == RESULT_SELF);
+}
+
+static const struct script_function *find_function(struct scene_reader *r, enum function_owner owner,
+                                                   const char *name) {
+    lua_getfield(r->L, r->calls[owner], name);
+    const struct script_function *function = lua_touserdata(r->L, -1);
+    lua_pop(r->L, 1);
+    if (function)
+        return function;
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, name);
+    for (int k = 0; k < function_count(); k++)
+        if (is_object_or_method(function_at(k), owner))
+            suggest_offer(&suggestion, function_at(k)->name);
+    fail_unknown(r, owner == OWNER_GR ? "the type" : "the method", name, &suggestion);
+}
+
+static bool is_call(const json_t *value) {
+    return json_is_object(value) &&
+           (json_is_string(json_object_get(value, "type")) || json_is_string(json_object_get(value, "ref")));
+}
+
+/* Calls a method of the node on top: a list has its arguments, a table its fields, and else it is the argument. */
+static void call_method(struct scene_reader *r, const char *name, const json_t *value) {
+    static const char *const none[] = {NULL};
+    lua_State *L = r->L;
+    const struct position position = {r->position, name, 0};
+    int count = 1;
+    r->position = &position;
+    const struct script_function *function = find_function(r, OWNER_NODE, name);
+    luaL_checkstack(L, 20, NULL);
+    dispatch_push(L, function);
+    lua_pushvalue(L, -2);
+    if (json_is_array(value)) {
+        enum { ARGUMENTS = 8 };
+        count = (int)json_array_size(value);
+        if (count > ARGUMENTS)
+            sandbox_raise(sandbox_enter(L), "a method has at most %d arguments", ARGUMENTS);
+        for (int i = 0; i < count; i++)
+            push_entry(r, (size_t)i, json_array_get(value, (size_t)i));
+    } else if (json_is_object(value) && !is_call(value)) {
+        push_fields(r, value, none);
+    } else {
+        push_value(r, value);
+    }
+    lua_call(L, count + 1, 0);
+    r->position = position.outer;
+}
+
+static void add_children(struct scene_reader *r, const json_t *children) {
+    lua_State *L = r->L;
+    const struct position position = {r->position, "children", 0};
+    r->position = &position;
+    if (!json_is_array(children))
+        sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
+    for (size_t i = 0; i < json_array_size(children); i++) {
+        dispatch_push(L, find_function(r, OWNER_NODE, "add_child"));
+        lua_pushvalue(L, -2);
+        push_entry(r, i, json_array_get(children, i));
+        lua_call(L, 2, 0);
+    }
+    r->position = position.outer;
+}
+
+static void transform(struct scene_reader *r, const json_t *calls) {
+    const struct position position = {r->position, "transform", 0};
+    r->position = &position;
+    if (!json_is_array(calls))
+        sandbox_raise(sandbox_enter(r->L), "it must be a list such as [{\"translate\": [1, 0, 0]}]");
+    for (size_t i = 0; i < json_array_size(calls); i++) {
+        const struct position inner = {&position, NULL, i};
+        json_t *call = json_array_get(calls, i);
+        void *at = json_is_object(call) ? json_object_iter(call) : NULL;
+        r->position = &inner;
+        if (!at || json_object_size(call) != 1)
+            sandbox_raise(sandbox_enter(r->L), "it must be an object with one method, as {\"translate\": [1, 0, 0]}");
+        call_method(r, json_object_iter_key(at), json_object_iter_value(at));
+    }
+    r->position = position.outer;
+}
+
+/* The object that a function of gr makes. */
+static void push_object(struct scene_reader *r, const json_t *object) {
+    static const char *const own[] = {"type", "transform", "children", NULL};
+    static const char *const of_group[] = {"type", "transform", NULL}, *const type_only[] = {"type", NULL};
+    lua_State *L = r->L;
+    const struct script_function *function =
+        find_function(r, OWNER_GR, json_string_value(json_object_get(object, "type")));
+    bool is_node = function->result == RESULT_NODE, is_group = has_parameter(function, "children", 8);
+    const json_t *children = json_object_get(object, "children"), *calls = json_object_get(object, "transform");
+    dispatch_push(L, function);
+    push_fields(r, object, !is_node ? type_only : is_group ? of_group : own);
+    lua_call(L, 1, 1);
+    if (is_node && !is_group && children)
+        add_children(r, children);
+    if (is_node && calls)
+        transform(r, calls);
+}
+
+static void push_reference(struct scene_reader *r, const char *name) {
+    lua_State *L = r->L;
+    const json_t *json = json_object_get(r->defined, name);
+    lua_getfield(L, r->made, name);
+    if (lua_isuserdata(L, -1))
+        return;
+    if (!lua_isnil(L, -1))
+        sandbox_raise(sandbox_enter(L), "'%.100s' would be a part of itself", name);
+    if (!json) {
+        struct suggestion suggestion;
+        const char *key;
+        json_t *value;
+        suggest_begin(&suggestion, name);
+        json_object_foreach(r->defined, key, value) suggest_offer(&suggestion, key);
+        if (suggestion.best)
+            fail_unknown(r, "the name", name, &suggestion);
+        sandbox_raise(sandbox_enter(L), "the name '%.100s' is not in define", name);
+    }
+    lua_pushboolean(L, 1);
+    lua_setfield(L, r->made, name);
+    lua_pop(L, 1);
+    /* Its position is in `define`. */
+    const struct position *position = r->position, define = {NULL, "define", 0}, own = {&define, name, 0};
+    r->position = &own;
+    if (!is_call(json))
+        sandbox_raise(sandbox_enter(L), "it must be an object with a type, such as {\"type\": \"sphere\"}");
+    push_value(r, json);
+    r->position = position;
+    lua_pushvalue(L, -1);
+    lua_setfield(L, r->made, name);
+}
+
+static void push_value(struct scene_reader *r, const json_t *json) {
+    static const char *const none[] = {NULL};
+    lua_State *L = r->L;
+    if (++r->depth > DEPTH)
+        sandbox_raise(sandbox_enter(L), "more than %d values are in each other", DEPTH);
+    luaL_checkstack(L, 20, NULL);
+    switch (json_typeof(json)) {
+    case JSON_OBJECT:
+        if (json_is_string(json_object_get(json, "ref"))) {
+            if (json_object_size(json) > 1)
+                sandbox_raise(sandbox_enter(L), "an object with ref has no other fields");
+            push_reference(r, json_string_value(json_object_get(json, "ref")));
+        } else if (is_call(json)) {
+            push_object(r, json);
+        } else {
+            push_fields(r, json, none);
+        }
+        break;
+    case JSON_ARRAY:
+        push_list(r, json);
+        break;
+    case JSON_STRING:
+        lua_pushlstring(L, json_string_value(json), json_string_length(json));
+        break;
+    case JSON_INTEGER:
+        lua_pushinteger(L, json_integer_value(json));
+        break;
+    case JSON_REAL:
+        lua_pushnumber(L, json_real_value(json));
+        break;
+    case JSON_TRUE:
+    case JSON_FALSE:
+        lua_pushboolean(L, json_is_true(json));
+        break;
+    case JSON_NULL:
+        sandbox_raise(sandbox_enter(L), "null is no value; leave the field out");
+    }
+    r->depth--;
+}
+
+/* --- the file --- */
+
+static const char *const top_names[] = {"gray", "define", "nodes", "picture", "transform_order", "defaults", "time"};
+
+static void check_top(struct scene_reader *r, const json_t *root) {
+    struct sandbox *sandbox = sandbox_enter(r->L);
+    const json_t *version = json_object_get(root, "gray"), *define = json_object_get(root, "define");
+    const char *key;
+    json_t *value;
+    if (!json_is_integer(version))
+        sandbox_raise(sandbox, "it is no scene of gray: \"gray\": %d is missing at the top", VERSION);
+    if (json_integer_value(version) != VERSION)
+        sandbox_raise(sandbox, "it is of version %lld; this gray reads version %d",
+                      (long long)json_integer_value(version), VERSION);
+    json_object_foreach((json_t *)(uintptr_t)root, key, value) {
+        struct suggestion suggestion;
+        bool known = false;
+        suggest_begin(&suggestion, key);
+        for (size_t i = 0; i < sizeof top_names / sizeof *top_names; i++) {
+            known |= strcmp(top_names[i], key) == 0;
+            suggest_offer(&suggestion, top_names[i]);
+        }
+        if (!known)
+            fail_unknown(r, "the field", key, &suggestion);
+    }
+    if (define && !json_is_object(define))
+        sandbox_raise(sandbox, "define: it must be an object, {\"NAME\": {\"type\": ...}}");
+    if (!json_is_array(json_object_get(root, "nodes")) || json_array_size(json_object_get(root, "nodes")) == 0)
+        sandbox_raise(sandbox, "nodes is missing, a list of nodes");
+    value = json_object_get(root, "picture");
+    if (value && !json_is_object(value))
+        sandbox_raise(sandbox, "picture: it must be an object with the fields of gr.render");
+    if (json_object_get(value, "node"))
+        sandbox_raise(sandbox, "picture: unknown field 'node'; the list nodes has them");
+}
+
+/* What the fields of gr.render do not say. */
+static void set_state(struct scene_reader *r, const json_t *root) {
+    struct sandbox *sandbox = sandbox_enter(r->L);
+    const json_t *order = json_object_get(root, "transform_order"), *defaults = json_object_get(root, "defaults"),
+                 *time = json_object_get(root, "time");
+    const char *word = json_string_value(defaults);
+    if (defaults && (!word || (strcmp(word, "classic") != 0 && strcmp(word, "light") != 0)))
+        sandbox_raise(sandbox, "defaults must be \"light\" or \"classic\"");
+    r->script->only_named_pictures = !word || strcmp(word, "light") == 0;
+    if (time && (!json_is_number(time) || !(json_number_value(time) >= 0)))
+        sandbox_raise(sandbox, "time must be a number of seconds >= 0");
+    r->script->time = json_number_value(time);
+    if (!order)
+        return;
+    dispatch_push(r->L, function_find(OWNER_GR, "transform_order"));
+    push_member(r, "transform_order", order);
+    lua_call(r->L, 1, 0);
+}
+
+/* The node of the picture: several are the children of one. */
+static void push_root(struct scene_reader *r, const json_t *nodes) {
+    const struct position position = {NULL, "nodes", 0};
+    r->position = &position;
+    bool several = json_array_size(nodes) > 1;
+    if (several) {
+        dispatch_push(r->L, function_find(OWNER_GR, "node"));
+        lua_pushliteral(r->L, "scene");
+        lua_call(r->L, 1, 1);
+        for (size_t i = 0; i < json_array_size(nodes); i++) {
+            dispatch_push(r->L, find_function(r, OWNER_NODE, "add_child"));
+            lua_pushvalue(r->L, -2);
+            push_entry(r, i, json_array_get(nodes, i));
+            lua_call(r->L, 2, 0);
+        }
+    } else {
+        push_entry(r, 0, json_array_get(nodes, 0));
+    }
+    r->position = NULL;
+}
+
+static void render(struct scene_reader *r, const json_t *root) {
+    static const char *const own[] = {"type", NULL};
+    lua_State *L = r->L;
+    const json_t *picture = json_object_get(root, "picture");
+    const char *type = json_string_value(json_object_get(picture, "type"));
+    const struct script_function *function = function_find(OWNER_GR, type ? type : "render");
+    push_root(r, json_object_get(root, "nodes"));
+    const struct position position = {NULL, "picture", 0};
+    r->position = &position;
+    if (!function || !function_renders(function))
+        sandbox_raise(sandbox_enter(L), "the type must be \"render\", \"render_skybox\" or \"light_field\"");
+    if (picture)
+        push_fields(r, picture, own);
+    else
+        lua_newtable(L);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "node");
+    dispatch_push(L, function);
+    lua_insert(L, -2);
+    lua_call(L, 1, 0);
+    r->position = NULL;
+}
+
+/* The text of the file ends its life with the Lua state, whatever happens. */
+static int release(lua_State *L) {
+    json_t **root = lua_touserdata(L, 1);
+    json_decref(*root);
+    *root = NULL;
+    return 0;
+}
+
+static json_t *read_file(lua_State *L, const char *path) {
+    struct sandbox *sandbox = sandbox_enter(L);
+    struct error error = {0};
+    struct file_bytes bytes;
+    json_t **root = lua_newuserdatauv(L, sizeof *root, 0);
+    *root = NULL;
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, release);
+    lua_setfield(L, -2, "__gc");
+    lua_setmetatable(L, -2);
+    if (file_map(path, FILE_LIMIT, &bytes, &error)) {
+        const char *text = (const char *)bytes.data;
+        size_t mark = bytes.size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+        *root = json_text_parse(path, text + mark, bytes.size - mark, true, &error);
+        file_unmap(&bytes);
+    }
+    if (*root)
+        return *root;
+    if (error.kind == ERROR_SCENE)
+        (void)error_elsewhere(&error);
+    sandbox_raise_error(sandbox, &error);
+}
+
+void scene_json_run(lua_State *L) {
+    struct script *script = script_of(context_of(L));
+    struct scene_reader reader = {.L = L, .script = script};
+    json_t *root = read_file(L, script->context.sandbox.files.path);
+    lua_newtable(L);
+    reader.made = lua_gettop(L);
+    for (int owner = 0; owner < 2; owner++) {
+        lua_newtable(L);
+        reader.calls[owner] = lua_gettop(L);
+        for (int k = 0; k < function_count(); k++) {
+            if (!is_object_or_method(function_at(k), (enum function_owner)owner))
+                continue;
+            lua_pushlightuserdata(L, (void *)(uintptr_t)function_at(k));
+            lua_setfield(L, -2, function_at(k)->name);
+        }
+    }
+    reader.defined = json_object_get(root, "define");
+    script->reader = &reader;
+    script->context.sandbox.locate = locate;
+    check_top(&reader, root);
+    set_state(&reader, root);
+    render(&reader, root);
+    script->context.sandbox.locate = NULL;
+    script->reader = NULL;
+}
+
+#endif

@@ -1,0 +1,291 @@
+-- A scene as text. While a script runs, each call of gr that makes an object leaves a record of its checked arguments, and
+-- each method of a node joins the record of the node. A picture is written from the records that it reaches, so no shape,
+-- material or light is described a second time. In JSON the keys are sorted and the numbers are the shortest that are read
+-- as the same; what is used twice has a name in `define`.
+local type, next, rawget, rawlen, setmetatable, getmetatable = type, next, rawget, rawlen, setmetatable, getmetatable
+local sort, concat = table.sort, table.concat
+local format, gmatch, gsub, match, rep, sub, find = string.format, string.gmatch, string.gsub, string.match, string.rep, string.sub, string.find
+local math_type, floor, tostring, tonumber, raise = math.type, math.floor, tostring, tonumber, raise
+local WIDTH, NESTED = 120, 150
+
+local OBJECT = {} -- the metatable of records
+local records = {} -- by the address of what they made
+local given -- the arguments of the call that runs, by name
+
+-- A copy of an argument: the script may change its tables later. Only what gr reads of a table is kept.
+local function copy(value)
+    local kind = type(value)
+    if kind == 'userdata' then
+        local record = records[address(value)]
+        if not record then
+            record = model_light(value)
+            if not record then raise('an object that no function of gr has made cannot be written') end
+            record = setmetatable({kind = 'model_light', fields = {model = records[record.model], index = record.index}}, OBJECT)
+            records[address(value)] = record
+        end
+        return record
+    elseif kind ~= 'table' then
+        return value
+    end
+    local out, count = {}, rawlen(value)
+    for k = 1, count do out[k] = copy(rawget(value, k)) end
+    if count == 0 then
+        for key, entry in next, value do
+            if type(key) == 'string' then out[key] = copy(entry) end
+        end
+    end
+    return out
+end
+
+-- The record as it is now, for a function that copies its argument.
+local function snapshot(record)
+    if record.copied == record.changes and record.copy then return record.copy end
+    local fields, calls, children = {}, {}, {}
+    for key, value in next, record.fields do fields[key] = value end
+    for k, call in ipairs(record.calls) do calls[k] = call end
+    for k, child in ipairs(record.children) do children[k] = child end
+    record.copied = record.changes
+    record.copy = setmetatable({kind = record.kind, fields = fields, calls = calls, children = children, changes = 0}, OBJECT)
+    return record.copy
+end
+
+local TRANSFORMS = {translate = true, scale = true, rotate = true, rotate_axis = true, rotate_quat = true, pose = true, reset = true}
+local SETTERS = {velocity = true, moves_to = true, spin = true, set_material = true, set_texture = true, set_bump = true}
+
+local function drop(calls, names)
+    local kept = 0
+    for k = 1, #calls do
+        local call = calls[k]
+        calls[k] = nil
+        if not names[call.name] then
+            kept = kept + 1
+            calls[kept] = call
+        end
+    end
+end
+
+local function add_call(record, name, order, forms)
+    local calls = record.calls
+    record.changes = record.changes + 1
+    if name == 'reset' or name == 'pose' then drop(calls, TRANSFORMS) end
+    if SETTERS[name] then drop(calls, {[name] = true}) end
+    if name == 'add_child' and not record.displaced then
+        record.children[#record.children + 1] = given.node
+    elseif name ~= 'reset' then
+        record.displaced = record.displaced or name == 'displace'
+        calls[#calls + 1] = {name = name, fields = given, forms = forms, order = TRANSFORMS[name] and order}
+    end
+end
+
+-- --- texts ---
+
+local function number_text(x)
+    if math_type(x) == 'integer' then return format('%d', x) end
+    if x == floor(x) and x > -1e15 and x < 1e15 then
+        return x == 0 and 1 / x < 0 and '-0.0' or format('%.0f', x)
+    end
+    for digits = 15, 16 do
+        local text = format('%.' .. digits .. 'g', x)
+        if tonumber(text) == x then return text end
+    end
+    return format('%.17g', x)
+end
+
+-- The positional form of a method whose arguments these are, or nil.
+local function in_form(call)
+    for _, form in ipairs(call.forms) do
+        local list, ends, count = {}, false, 0
+        for name, optional in gmatch(form, '([%w_]+)([?]?)') do
+            local value = call.fields[name]
+            if value == nil and optional == '' then ends, count = true, -1000 end
+            if value == nil then ends = true end
+            if value ~= nil and ends then count = -1000 end
+            if value ~= nil then list[#list + 1], count = value, count + 1 end
+        end
+        local total = 0
+        for _ in next, call.fields do total = total + 1 end
+        if count == total and count > 0 then
+            local only = count == 1 and (call.fields.vector or call.fields.quaternion)
+            return only or list
+        end
+    end
+end
+
+local function sorted_keys(t)
+    local keys = {}
+    for key in next, t do keys[#keys + 1] = key end
+    sort(keys)
+    return keys
+end
+
+local function is_list(value)
+    return #value > 0 or next(value) == nil
+end
+
+-- What a record is in the file: a table of JSON.
+local function members(record)
+    local out = {type = record.kind}
+    for key, value in next, record.fields do out[key] = value end
+    if record.children and #record.children > 0 then
+        local all = {}
+        for k, child in ipairs(record.fields.children or {}) do all[k] = child end
+        for _, child in ipairs(record.children) do all[#all + 1] = child end
+        out.children = all
+    end
+    if record.calls and #record.calls > 0 then
+        local calls = {}
+        for k, call in ipairs(record.calls) do calls[k] = {[call.name] = in_form(call) or call.fields} end
+        out.transform = calls
+    end
+    return out
+end
+
+-- Counts how often each record is used, and lists them so that those inside come first.
+local function survey(roots)
+    local uses, depths, list, orders = {}, {}, {}, {}
+    local function visit(value)
+        if type(value) ~= 'table' then return 0 end
+        local deepest, record = 0, getmetatable(value) == OBJECT and value
+        if record then
+            uses[record] = (uses[record] or 0) + 1
+            if uses[record] > 1 then return depths[record] or 0 end
+            for _, call in ipairs(record.calls or {}) do
+                if call.order then orders[call.order] = true end
+            end
+            value = members(record)
+        end
+        for _, entry in next, value do
+            local depth = visit(entry)
+            deepest = deepest < depth and depth or deepest
+        end
+        if not record then return deepest + 1 end
+        if deepest > NESTED then uses[record], deepest = uses[record] + 1, 0 end -- it gets a name
+        depths[record] = deepest + 1
+        list[#list + 1] = record
+        return deepest + 1
+    end
+    for _, root in ipairs(roots) do visit(root) end
+    return uses, list, orders
+end
+
+-- Names of the records that are used more than once.
+local function name_records(uses, list, pattern)
+    local names, taken = {}, {}
+    for _, record in ipairs(list) do
+        if uses[record] > 1 then
+            local own = type(record.fields.name) == 'string' and gsub(record.fields.name, pattern, '_') or record.kind
+            if own == '' or find(own, '^%d') then own = '_' .. own end
+            local name, number = own, 1
+            while taken[name] do
+                number = number + 1
+                name = own .. '_' .. number
+            end
+            taken[name], names[record] = true, name
+        end
+    end
+    return names
+end
+
+-- One line if it is short, else a line for each part, and for numbers as many as fit.
+local function join(parts, open, close, indent)
+    local width, lines = #open + #close, false
+    for _, part in ipairs(parts) do
+        width, lines = width + #part + 2, lines or find(part, '\n', 1, true)
+    end
+    if not lines and width + #indent <= WIDTH then return open .. concat(parts, ', ') .. close end
+    local out, line, inner = {}, '', indent .. ' '
+    for k, part in ipairs(parts) do
+        local text = k < #parts and part .. ',' or part
+        local short = #part < 30 and not find(part, '[\n{]')
+        if line ~= '' and (not short or #line + #text + #inner >= WIDTH) then
+            out[#out + 1] = line
+            line = ''
+        end
+        line = line == '' and text or line .. ' ' .. text
+        if not short then
+            out[#out + 1] = line
+            line = ''
+        end
+    end
+    if line ~= '' then out[#out + 1] = line end
+    return open .. '\n' .. inner .. concat(out, '\n' .. inner) .. '\n' .. indent .. close
+end
+
+local function json_of(names)
+    local text_of
+    local function object(t, indent)
+        local parts = {}
+        for k, key in ipairs(sorted_keys(t)) do parts[k] = quote(key) .. ': ' .. text_of(t[key], indent .. ' ') end
+        return join(parts, '{', '}', indent)
+    end
+    function text_of(value, indent, defines)
+        local kind = type(value)
+        if kind == 'number' then return number_text(value) end
+        if kind == 'boolean' then return tostring(value) end
+        if kind == 'string' then return quote(value) or raise('a text is not UTF-8, so JSON cannot have it: ' .. value) end
+        if getmetatable(value) == OBJECT then
+            if names[value] and not defines then return '{"ref": ' .. quote(names[value]) .. '}' end
+            return object(members(value), indent)
+        end
+        if not is_list(value) then return object(value, indent) end
+        local parts = {}
+        for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. ' ') end
+        return join(parts, '[', ']', indent)
+    end
+    return text_of
+end
+
+local function write_json(root, picture, state)
+    local uses, list, orders = survey{root, picture}
+    local names = name_records(uses, list, '[%c"\\]')
+    local text_of = json_of(names)
+    local define, by_name = {}, {}
+    for record, name in next, names do by_name[name] = record end
+    for k, name in ipairs(sorted_keys(by_name)) do define[k] = '  ' .. quote(name) .. ': ' .. text_of(by_name[name], '  ', true) end
+    local order = next(orders)
+    if order and next(orders, order) then raise('gr.transform_order changes within the scene, which cannot be written') end
+    local out = {}
+    if state.classic then out[#out + 1] = '"defaults": "classic"' end
+    if #define > 0 then out[#out + 1] = '"define": {\n' .. concat(define, ',\n') .. '\n }' end
+    out[#out + 1] = '"gray": 1'
+    out[#out + 1] = '"nodes": [\n  ' .. text_of(root, '  ') .. '\n ]'
+    out[#out + 1] = '"picture": ' .. text_of(picture, ' ')
+    if state.time > 0 then out[#out + 1] = '"time": ' .. number_text(state.time) end
+    if order and order ~= 'new' then out[#out + 1] = '"transform_order": ' .. quote(order) end
+    return '{' .. concat(out, ',\n ') .. '\n}\n'
+end
+
+-- --- what gray calls ---
+
+return {
+    begin = function() given = {} end,
+    note = function(name, value) given[name] = copy(value) end,
+    program = function(name, code, images)
+        local fields = {code = code}
+        for k, image in ipairs(images) do
+            for texture, record in next, records do
+                if record.kind == 'texture' and image_function(texture) == image then fields['image' .. k] = record end
+            end
+        end
+        given[name] = setmetatable({kind = 'program', fields = fields}, OBJECT)
+    end,
+    nodes = function(name, list)
+        local out = {}
+        for k, node in ipairs(list) do out[k] = records[node] end
+        given[name] = out
+    end,
+    made = function(made, kind)
+        if kind == 'geometry' and given.primitive then given.primitive = snapshot(given.primitive) end
+        records[made] = setmetatable({kind = kind, fields = given, calls = {}, children = {}, changes = 0}, OBJECT)
+    end,
+    called = function(self, name, order, forms)
+        if records[self] then add_call(records[self], name, order, forms) end
+    end,
+    picture = function(kind, self, state)
+        local picture, root = given, given.node or records[self]
+        picture.node = nil
+        if kind ~= 'render' then picture.type = kind end
+        if state.shutter then picture.shutter = state.shutter end
+        return write_json(root, picture, state)
+    end,
+}
