@@ -2,9 +2,6 @@
  * nothing in it runs before isa.c has detected them. */
 #if defined(__AVX2__)
 #define KERNEL(name) triangle_##name##_avx2
-#if defined(__FMA__)
-#define GRAY_KERNEL_FMA
-#endif
 #include "accel/triangle_kernel_internal.h"
 #else
 #include "accel/triangle_kernels_internal.h"

@@ -1,9 +1,6 @@
 /* The same as with AVX2, eight wide, with twice as many registers. */
 #if defined(__AVX512VL__)
 #define KERNEL(name) triangle_##name##_avx512
-#if defined(__FMA__)
-#define GRAY_KERNEL_FMA
-#endif
 #include "accel/triangle_kernel_internal.h"
 #else
 #include "accel/triangle_kernels_internal.h"

@@ -39,9 +39,9 @@
  * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit is kept, with bounds of its
  * t, until the search is over; hits that are not certain, or whose order is not, are decided at once. */
 
-#include "accel/simd_internal.h"
 #include "accel/triangle_kernels_internal.h"
 #include "accel/triangle_nodes_internal.h"
+#include "accel/triangle_vectors_internal.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -51,7 +51,7 @@
 
 /* W for each unit of |o| and of t0 M. */
 #define POSITION_ERROR (20 * 0x1p-24f)
-#if defined(GRAY_KERNEL_FMA)
+#if defined(LANES_FUSED)
 #define MOVING_ERROR POSITION_ERROR
 #else
 #define MOVING_ERROR (26 * 0x1p-24f)
@@ -84,7 +84,7 @@ static inline __attribute__((always_inline)) void prefetch_block(const struct tr
 }
 
 /* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: the index is which of the direction's
- * components are larger than those before (wide4_larger), and above that their signs. */
+ * components are larger than those before (double4_larger), and above that their signs. */
 #define LANE(i) 2 * (i), 2 * (i) + 1
 #define AXES(z, negative)                                                                                              \
     { LANE(((z) + 1 + (negative)) % 3), LANE(((z) + 2 - (negative)) % 3), LANE(z), LANE(z) }
@@ -98,8 +98,8 @@ static const _Alignas(32) uint32_t axes_of[32][8] = {AXES_4(0), AXES_4(1), AXES_
 /* triangle_ray in vectors. */
 struct sheared_ray {
     const uint32_t *axes;
-    wide4 origin; /* x, y, z, z */
-    wide4 shear;  /* of x, of y, and twice the factor that makes t of z */
+    double4 origin; /* x, y, z, z */
+    double4 shear;  /* of x, of y, and twice the factor that makes t of z */
 };
 
 /* triangle_ray_set with one division for all three. Reads the values after the vectors of the ray with them. */
@@ -107,12 +107,12 @@ static inline void sheared_set(struct sheared_ray *out, const struct ray *ray) {
     const double *numbers = (const double *)(const void *)ray;
     _Static_assert(offsetof(struct ray, direction) == 3 * sizeof(double) && sizeof(struct ray) > 7 * sizeof(double),
                    "vectors of a ray are read four numbers at a time");
-    wide4 direction = wide4_load(numbers + 3);
-    const uint32_t *axes = axes_of[wide4_larger(wide4_size(direction)) | (wide4_negative(direction) & 7) << 2];
+    double4 direction = double4_load_any(numbers + 3);
+    const uint32_t *axes = axes_of[double4_larger(double4_size(direction)) | (double4_negative(direction) & 7) << 2];
     out->axes = axes;
-    out->origin = wide4_permuted(wide4_load(numbers), axes);
-    direction = wide4_permuted(direction, axes);
-    out->shear = wide4_div(wide4_with_last_two(direction, 1), wide4_third(direction));
+    out->origin = double4_permuted(double4_load_any(numbers), axes);
+    direction = double4_permuted(direction, axes);
+    out->shear = double4_div(double4_shuffle(direction, double4_all(1), 0, 1, 6, 7), double4_third(direction));
 }
 
 struct search {
@@ -122,15 +122,15 @@ struct search {
     enum triangle_search kind;
     /* In local space, single numbers: spreading one over a vector costs no more than loading the vector. */
     _Alignas(16) float origin[4], direction[4];
-    simd4 reciprocal; /* 1 / direction */
-    simd4 middle;     /* origin / direction: the ray crosses a plane at plane * reciprocal - middle */
-    float widen[4];   /* for rays from far away: the additional growth of boxes, in local t */
-    float longest;    /* the largest size of the direction's components, M */
-    uint32_t octant;  /* bit k: the direction is negative along axis k */
-    float error;      /* 15 e + 8 D */
-    float limit;      /* local t beyond which hits do not matter */
-    float certain;    /* local t below which the ray's own interval surely has not ended */
-    float blur;       /* absolute error of a hit's local t, beyond its last places */
+    float4 reciprocal; /* 1 / direction */
+    float4 middle;     /* origin / direction: the ray crosses a plane at plane * reciprocal - middle */
+    float widen[4];    /* for rays from far away: the additional growth of boxes, in local t */
+    float longest;     /* the largest size of the direction's components, M */
+    uint32_t octant;   /* bit k: the direction is negative along axis k */
+    float error;       /* 15 e + 8 D */
+    float limit;       /* local t beyond which hits do not matter */
+    float certain;     /* local t below which the ray's own interval surely has not ended */
+    float blur;        /* absolute error of a hit's local t, beyond its last places */
     bool found, sheared_ready;
     bool moved, far_away;        /* if moved: the ray was moved to the frame, maybe from FAR_AWAY */
     double t_to_local, t_offset; /* if moved: local t = t * t_to_local - t_offset; else they are the same */
@@ -160,33 +160,33 @@ static const struct sides sides_of[8] = {SIDES(0, 0, 0), SIDES(1, 0, 0), SIDES(0
 #undef SIDES
 #undef ROW
 
-static inline simd8 sides_load(const struct wide_node *node, size_t row) {
-    return simd8_load((const float *)(const void *)((const char *)node + row));
+static inline float8 sides_load(const struct wide_node *node, size_t row) {
+    return float8_load((const float *)(const void *)((const char *)node + row));
 }
 
 /* The edge functions of triangle_cross, rounded, and the distance to the corners along the ray's axis; lane 3 is not
  * used. */
 struct edges {
-    wide4 e, p, q, along;
+    double4 e, p, q, along;
 };
 
-static inline __attribute__((always_inline)) wide4 seen_from(const struct sheared_ray *ray, const double corner[3]) {
-    return wide4_sub(wide4_permuted(wide4_load_three(corner), ray->axes), ray->origin);
+static inline __attribute__((always_inline)) double4 seen_from(const struct sheared_ray *ray, const double corner[3]) {
+    return double4_sub(double4_permuted(double4_load_three(corner), ray->axes), ray->origin);
 }
 
-static inline __attribute__((always_inline)) wide4 sheared(const struct sheared_ray *ray, wide4 corner) {
-    return wide4_sub(corner, wide4_mul(ray->shear, wide4_third(corner)));
+static inline __attribute__((always_inline)) double4 sheared(const struct sheared_ray *ray, double4 corner) {
+    return double4_sub(corner, double4_mul(ray->shear, double4_third(corner)));
 }
 
 static inline __attribute__((always_inline)) struct edges edges_of(const struct sheared_ray *ray, const double a[3],
                                                                    const double b[3], const double c[3]) {
-    wide4 from_a = seen_from(ray, a), from_b = seen_from(ray, b), from_c = seen_from(ray, c);
-    wide4 plane_a = sheared(ray, from_a), plane_b = sheared(ray, from_b), plane_c = sheared(ray, from_c);
-    wide4 px = wide4_firsts(plane_a, plane_b, plane_c), py = wide4_seconds(plane_a, plane_b, plane_c);
-    struct edges edges = {.p = wide4_mul(wide4_cab(px), wide4_bca(py)),
-                          .q = wide4_mul(wide4_cab(py), wide4_bca(px)),
-                          .along = wide4_thirds(from_a, from_b, from_c)};
-    edges.e = wide4_sub(edges.p, edges.q);
+    double4 from_a = seen_from(ray, a), from_b = seen_from(ray, b), from_c = seen_from(ray, c);
+    double4 plane_a = sheared(ray, from_a), plane_b = sheared(ray, from_b), plane_c = sheared(ray, from_c);
+    double4 px = double4_firsts(plane_a, plane_b, plane_c), py = double4_seconds(plane_a, plane_b, plane_c);
+    struct edges edges = {.p = double4_mul(double4_cab(px), double4_bca(py)),
+                          .q = double4_mul(double4_cab(py), double4_bca(px)),
+                          .along = double4_thirds(from_a, from_b, from_c)};
+    edges.e = double4_sub(edges.p, edges.q);
     return edges;
 }
 
@@ -196,9 +196,9 @@ static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *h
                        offsetof(struct triangle_hit, v) == 2 * sizeof(double) &&
                        sizeof(struct triangle_hit) >= 4 * sizeof(double),
                    "t, u and v are written with what is behind them");
-    wide4 found = wide4_weighted(edges->e, wide4_mul(edges->e, edges->along));
-    wide4_store_three(&hit->t, wide4_mul(found, wide4_with_first_of(wide4_all(1), wide4_third(ray->shear))));
-    unsigned enter = ~wide4_negative(edges->e) & 1;
+    double4 found = double4_weighted(edges->e, double4_mul(edges->e, edges->along));
+    double4_store_any(&hit->t, double4_mul(found, double4_shuffle(double4_all(1), ray->shear, 6, 1, 2, 3)));
+    unsigned enter = ~double4_negative(edges->e) & 1;
     hit->enter = enter;
 }
 
@@ -206,13 +206,13 @@ static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *h
 static inline __attribute__((always_inline)) bool cross(const struct search *s, const double a[3], const double b[3],
                                                         const double c[3], struct triangle_hit *hit) {
     struct edges edges = edges_of(&s->sheared, a, b, c);
-    wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(edges.p), wide4_size(edges.q)));
-    if (__builtin_expect((wide4_below(doubt, wide4_size(edges.e)) & 7) != 7, 0)) {
+    double4 doubt = double4_mul(double4_all(0x1p-49), double4_add(double4_size(edges.p), double4_size(edges.q)));
+    if (__builtin_expect((double4_bits(double4_less(doubt, double4_size(edges.e))) & 7) != 7, 0)) {
         struct triangle_ray exactly;
         triangle_ray_set(&exactly, s->ray); /* search_begin has checked the ray */
         return triangle_cross(&exactly, a, b, c, hit);
     }
-    unsigned negative = wide4_negative(edges.e) & 7;
+    unsigned negative = double4_negative(edges.e) & 7;
     if (negative != 0 && negative != 7)
         return false;
     hit_set(hit, &s->sheared, &edges);
@@ -336,10 +336,10 @@ static inline __attribute__((always_inline)) void keep(struct search *s, const s
 
 /* Several of them, or one more. */
 static __attribute__((noinline)) void keep_lanes(struct search *s, const struct triangle_block *block, unsigned lanes,
-                                                 simd8 from, simd8 to) {
+                                                 float8 from, float8 to) {
     _Alignas(32) float froms[WIDTH], tos[WIDTH];
-    simd8_store(froms, from);
-    simd8_store(tos, to);
+    float8_store(froms, from);
+    float8_store(tos, to);
     do {
         unsigned lane = (unsigned)__builtin_ctz(lanes);
         lanes &= lanes - 1;
@@ -357,82 +357,78 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
 /* The lanes of a block with triangles that the search skips. */
 static inline unsigned left_out(const struct search *s, const struct triangle_block *b) {
     unsigned lanes = 0;
-#if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
-    __m256i number = _mm256_sub_epi32(_mm256_load_si256((const __m256i *)(const void *)b->ids),
-                                      _mm256_set1_epi32((int)s->run.first));
-    __m256i last = _mm256_set1_epi32((int)(s->run.count - 1)),
-            inside = _mm256_cmpeq_epi32(_mm256_min_epu32(number, last), number);
-    lanes = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(inside));
-#else
-    for (unsigned i = 0; i < WIDTH; i++)
-        lanes |= (unsigned)(b->ids[i] - s->run.first < s->run.count) << i;
-#endif
+    typedef uint32_t __attribute__((vector_size(16), may_alias)) numbers;
+    for (unsigned i = 0; i < WIDTH; i += 4) {
+        numbers after = *(const numbers *)(const void *)(b->ids + i) - s->run.first;
+        lanes |= float4_bits((float4_mask)(after < s->run.count)) << i;
+    }
     return lanes;
 }
 
 static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const float from_t,
                                                             const enum triangle_search kind, const bool leaves_out) {
     const struct triangle_block *b = s->index->blocks + number;
-    simd8 ox = simd8_all(s->origin[0]), oy = simd8_all(s->origin[1]), oz = simd8_all(s->origin[2]);
+    float8 ox = float8_all(s->origin[0]), oy = float8_all(s->origin[1]), oz = float8_all(s->origin[2]);
     if (kind == TRIANGLE_NEAREST)
         fetch_vertex_numbers(b);
-    simd8 dx = simd8_all(s->direction[0]), dy = simd8_all(s->direction[1]), dz = simd8_all(s->direction[2]);
-    const simd8 moved = simd8_all(from_t);
+    float8 dx = float8_all(s->direction[0]), dy = float8_all(s->direction[1]), dz = float8_all(s->direction[2]);
+    const float8 moved = float8_all(from_t);
     float error = s->error;
     if (kind == TRIANGLE_NEAREST) {
         error += MOVING_ERROR * from_t * s->longest;
-        ox = simd8_multiply_add(moved, dx, ox);
-        oy = simd8_multiply_add(moved, dy, oy);
-        oz = simd8_multiply_add(moved, dz, oz);
+        ox = float8_multiply_add(moved, dx, ox);
+        oy = float8_multiply_add(moved, dy, oy);
+        oz = float8_multiply_add(moved, dz, oz);
     }
-    simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
-    simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
-    simd8 px = simd8_multiply_sub(dy, e2z, simd8_mul(dz, e2y));
-    simd8 py = simd8_multiply_sub(dz, e2x, simd8_mul(dx, e2z));
-    simd8 pz = simd8_multiply_sub(dx, e2y, simd8_mul(dy, e2x));
-    simd8 det = simd8_multiply_add(e1x, px, simd8_multiply_add(e1y, py, simd8_mul(e1z, pz)));
-    simd8 sx = simd8_sub(ox, simd8_load(b->corner[0]));
-    simd8 sy = simd8_sub(oy, simd8_load(b->corner[1]));
-    simd8 sz = simd8_sub(oz, simd8_load(b->corner[2]));
-    simd8 qx = simd8_multiply_sub(sy, e1z, simd8_mul(sz, e1y));
-    simd8 qy = simd8_multiply_sub(sz, e1x, simd8_mul(sx, e1z));
-    simd8 qz = simd8_multiply_sub(sx, e1y, simd8_mul(sy, e1x));
-    simd8 u = simd8_multiply_add(sx, px, simd8_multiply_add(sy, py, simd8_mul(sz, pz)));
-    simd8 v = simd8_multiply_add(dx, qx, simd8_multiply_add(dy, qy, simd8_mul(dz, qz)));
-    simd8 t = simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz)));
-    simd8 sign = simd8_sign(det);
-    det = simd8_flip(det, sign);
-    u = simd8_flip(u, sign);
-    v = simd8_flip(v, sign);
-    t = simd8_flip(t, sign);
-    simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
-    simd8 extent = simd8_max(simd8_max(lx, ly), lz);
-    extent = simd8_max(extent, simd8_all(MIN_EXTENT)); /* no slack at all would make points certain hits */
-    simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
-    simd8 w = simd8_multiply_add(extent, simd8_all(180 * 0x1p-24f), simd8_all(error));
-    simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
-    e = simd8_mul(simd8_mul(e, extent), simd8_all(s->longest));
-    simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
-    simd8 min = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
-    simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, min)), yz);
-    slack = simd8_multiply_add(simd8_multiply_add(ay, each, min), zx, slack);
-    slack = simd8_multiply_add(simd8_multiply_add(az, each, min), xy, slack);
-    simd8 smaller = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
-    simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
-    simd8 f = simd8_add(t, slack);
-    simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit - from_t), slack), t);
+    float8 e1x = float8_load(b->edge1[0]), e1y = float8_load(b->edge1[1]), e1z = float8_load(b->edge1[2]);
+    float8 e2x = float8_load(b->edge2[0]), e2y = float8_load(b->edge2[1]), e2z = float8_load(b->edge2[2]);
+    float8 px = float8_multiply_sub(dy, e2z, float8_mul(dz, e2y));
+    float8 py = float8_multiply_sub(dz, e2x, float8_mul(dx, e2z));
+    float8 pz = float8_multiply_sub(dx, e2y, float8_mul(dy, e2x));
+    float8 det = float8_multiply_add(e1x, px, float8_multiply_add(e1y, py, float8_mul(e1z, pz)));
+    float8 sx = float8_sub(ox, float8_load(b->corner[0]));
+    float8 sy = float8_sub(oy, float8_load(b->corner[1]));
+    float8 sz = float8_sub(oz, float8_load(b->corner[2]));
+    float8 qx = float8_multiply_sub(sy, e1z, float8_mul(sz, e1y));
+    float8 qy = float8_multiply_sub(sz, e1x, float8_mul(sx, e1z));
+    float8 qz = float8_multiply_sub(sx, e1y, float8_mul(sy, e1x));
+    float8 u = float8_multiply_add(sx, px, float8_multiply_add(sy, py, float8_mul(sz, pz)));
+    float8 v = float8_multiply_add(dx, qx, float8_multiply_add(dy, qy, float8_mul(dz, qz)));
+    float8 t = float8_multiply_add(e2x, qx, float8_multiply_add(e2y, qy, float8_mul(e2z, qz)));
+    float8 sign = float8_sign(det);
+    det = float8_flip(det, sign);
+    u = float8_flip(u, sign);
+    v = float8_flip(v, sign);
+    t = float8_flip(t, sign);
+    float8 lx = float8_max_size(e1x, e2x), ly = float8_max_size(e1y, e2y), lz = float8_max_size(e1z, e2z);
+    float8 extent = float8_max(float8_max(lx, ly), lz);
+    extent = float8_max(extent, float8_all(MIN_EXTENT)); /* no slack at all would make points certain hits */
+    float8 ax = float8_size(sx), ay = float8_size(sy), az = float8_size(sz);
+    float8 w = float8_multiply_add(extent, float8_all(180 * 0x1p-24f), float8_all(error));
+    float8 e = float8_multiply_add(float8_max(float8_max(ax, ay), az), float8_all(146 * 0x1p-24f), w);
+    e = float8_mul(float8_mul(e, extent), float8_all(s->longest));
+    float8 yz = float8_mul(ly, lz), zx = float8_mul(lz, lx), xy = float8_mul(lx, ly);
+    float8 min = float8_all(error / 2), each = float8_all(36 * 0x1p-24f);
+    float8 slack =
+        float8_mul(float8_multiply_add(lx, float8_all(54 * 0x1p-24f), float8_multiply_add(ax, each, min)), yz);
+    slack = float8_multiply_add(float8_multiply_add(ay, each, min), zx, slack);
+    slack = float8_multiply_add(float8_multiply_add(az, each, min), xy, slack);
+    float8 smaller = float8_min(u, v), rest = float8_sub(det, float8_add(u, v));
+    float8 a = float8_add(smaller, e), c = float8_multiply_add(e, float8_all(3), rest);
+    float8 f = float8_add(t, slack);
+    float8 g = float8_sub(float8_multiply_add(det, float8_all(s->limit - from_t), slack), t);
     const unsigned all = (1 << WIDTH) - 1;
-    unsigned missed = simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g))), doubtful = all;
+    unsigned missed = float8_negative(float8_min(float8_min(a, c), float8_min(f, g))), doubtful = all;
     if (leaves_out)
         missed |= left_out(s, b);
     if (__builtin_expect(missed == all, 1))
         return false;
     if (kind != TRIANGLE_ALL) {
-        a = simd8_sub(smaller, e);
-        c = simd8_sub(rest, simd8_mul(e, simd8_all(3)));
-        f = simd8_sub(t, slack);
-        g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain - from_t), slack), t);
-        doubtful = missed | simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+        a = float8_sub(smaller, e);
+        c = float8_sub(rest, float8_mul(e, float8_all(3)));
+        f = float8_sub(t, slack);
+        g = float8_sub(float8_multiply_sub(det, float8_all(s->certain - from_t), slack), t);
+        doubtful = missed | float8_negative(float8_min(float8_min(a, c), float8_min(f, g)));
         if (doubtful != all && kind == TRIANGLE_ANY) {
             if (leaves_out)
                 s->occluder = b->ids[__builtin_ctz(doubtful ^ all)];
@@ -440,12 +436,12 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
         }
         if (doubtful != all) { /* |T - t det| <= slack */
             unsigned certain = doubtful ^ all;
-            simd8 r = simd8_div(simd8_all(1), det);
-            simd8 from = simd8_mul(simd8_multiply_add(f, r, moved), simd8_all(1 - 0x1p-20f));
-            simd8 to = simd8_mul(simd8_multiply_add(simd8_add(t, slack), r, moved), simd8_all(1 + 0x1p-20f));
+            float8 r = float8_div(float8_all(1), det);
+            float8 from = float8_mul(float8_multiply_add(f, r, moved), float8_all(1 - 0x1p-20f));
+            float8 to = float8_mul(float8_multiply_add(float8_add(t, slack), r, moved), float8_all(1 + 0x1p-20f));
             if (__builtin_expect(!(certain & (certain - 1)) && !s->pending, 1)) {
                 unsigned lane = (unsigned)__builtin_ctz(certain);
-                keep(s, b, lane, simd8_pick(from, lane), simd8_pick(to, lane));
+                keep(s, b, lane, float8_pick(from, lane), float8_pick(to, lane));
             } else {
                 keep_lanes(s, b, certain, from, to);
             }
@@ -466,36 +462,37 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
     if (kind == TRIANGLE_NEAREST)
         stack.enter[0] = 0;
     const struct wide_node *nodes = s->index->nodes;
-    const simd8 rx = simd8_lane(s->reciprocal, 0), ry = simd8_lane(s->reciprocal, 1), rz = simd8_lane(s->reciprocal, 2);
-    const simd8 mx = simd8_lane(s->middle, 0), my = simd8_lane(s->middle, 1), mz = simd8_lane(s->middle, 2);
+    const float8 rx = float8_all(s->reciprocal[0]), ry = float8_all(s->reciprocal[1]),
+                 rz = float8_all(s->reciprocal[2]);
+    const float8 mx = float8_all(s->middle[0]), my = float8_all(s->middle[1]), mz = float8_all(s->middle[2]);
     uint64_t visited = 0, tried = 0;
-    simd8 limit = simd8_all(s->limit);
+    float8 limit = float8_all(s->limit);
     const uint32_t octant = s->octant;
     const struct sides sides = sides_of[octant];
     for (;;) {
         if (!(reference & REF_LEAF)) {
             const struct wide_node *n = nodes + reference;
             visited++;
-            simd8 ax = simd8_multiply_sub(sides_load(n, sides.near_x), rx, mx);
-            simd8 ay = simd8_multiply_sub(sides_load(n, sides.near_y), ry, my);
-            simd8 az = simd8_multiply_sub(sides_load(n, sides.near_z), rz, mz);
-            simd8 bx = simd8_multiply_sub(sides_load(n, sides.far_x), rx, mx);
-            simd8 by = simd8_multiply_sub(sides_load(n, sides.far_y), ry, my);
-            simd8 bz = simd8_multiply_sub(sides_load(n, sides.far_z), rz, mz);
+            float8 ax = float8_multiply_sub(sides_load(n, sides.near_x), rx, mx);
+            float8 ay = float8_multiply_sub(sides_load(n, sides.near_y), ry, my);
+            float8 az = float8_multiply_sub(sides_load(n, sides.near_z), rz, mz);
+            float8 bx = float8_multiply_sub(sides_load(n, sides.far_x), rx, mx);
+            float8 by = float8_multiply_sub(sides_load(n, sides.far_y), ry, my);
+            float8 bz = float8_multiply_sub(sides_load(n, sides.far_z), rz, mz);
             if (far_away) {
-                simd8 wx = simd8_all(s->widen[0]), wy = simd8_all(s->widen[1]), wz = simd8_all(s->widen[2]);
-                ax = simd8_sub(ax, wx);
-                ay = simd8_sub(ay, wy);
-                az = simd8_sub(az, wz);
-                bx = simd8_add(bx, wx);
-                by = simd8_add(by, wy);
-                bz = simd8_add(bz, wz);
+                float8 wx = float8_all(s->widen[0]), wy = float8_all(s->widen[1]), wz = float8_all(s->widen[2]);
+                ax = float8_sub(ax, wx);
+                ay = float8_sub(ay, wy);
+                az = float8_sub(az, wz);
+                bx = float8_add(bx, wx);
+                by = float8_add(by, wy);
+                bz = float8_add(bz, wz);
             }
             /* Comparing bits is enough although it reverses the order of negative numbers, because the limit is not
              * negative. For a box that begins behind the ray's start `enter` is negative. If the box also ends there,
              * `leave` is negative, too, and `enter` is not nearer to 0, so as bits it is not less. */
-            simd8 enter = simd8_latest_bits(ax, ay, az);
-            simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, limit));
+            float8 enter = float8_latest_bits(ax, ay, az);
+            float8 leave = float8_min_bits(float8_min_bits(bx, by), float8_min_bits(bz, limit));
             if (kind == TRIANGLE_NEAREST
                     ? node_take_nearest(n, octant, (struct node_span){enter, leave}, &stack, &top, &reference)
                     : node_take_any(n, enter, leave, &stack, &top, &reference)) {
@@ -511,13 +508,13 @@ static inline __attribute__((always_inline)) bool descend(struct search *s, uint
                 break;
             }
             if (kind == TRIANGLE_NEAREST)
-                limit = simd8_all(s->limit);
+                limit = float8_all(s->limit);
         }
         do {
             if (!top)
                 goto done;
             top--;
-        } while (kind == TRIANGLE_NEAREST && stack.enter[top] > simd8_first(limit));
+        } while (kind == TRIANGLE_NEAREST && stack.enter[top] > float8_low(limit)[0]);
         reference = stack.reference[top];
     }
 done:
@@ -535,24 +532,25 @@ static inline __attribute__((always_inline)) bool traverse_voxels(struct search 
     if (index->big && descend(s, index->big, kind, true, many, leaves_out))
         return true;
     /* The first voxel. */
-    simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
-          position = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
+    float4 origin = float4_load_any(s->origin), reciprocal = s->reciprocal, cell = float4_load_any(index->cell),
+           position = float4_mul(float4_add(origin, float4_load_any(index->half_single)),
+                                 float4_load_any(index->inverse_cell));
     int32_t at[4];
-    simd4 start = simd4_max(simd4_all(0), simd4_min(position, simd4_load(index->last_cell)));
-    simd4_store_int(at, start);
-    start = simd4_whole(start);
+    float4 start = float4_max(float4_all(0), float4_min(position, float4_load_any(index->last_cell)));
+    float4_store_int(at, start);
+    start = float4_whole(start);
     /* The parameter of the next voxel along each axis, and between two of them. */
-    simd4 across = simd4_mul(cell, reciprocal);
-    simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), position), across);
-    simd4 step_t = simd4_size(across);
-    next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
+    float4 across = float4_mul(cell, reciprocal);
+    float4 next_t = float4_mul(float4_sub(float4_add(start, float4_one_unless_negative(reciprocal)), position), across);
+    float4 step_t = float4_size(across);
+    next_t = float4_add(next_t, (float4){0, 0, 0, INFINITY});
     /* Voxel after voxel, until something is met or the ray leaves. */
-    const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
+    const int32_t *offset = index->offset[float4_negative(reciprocal) & 7];
     const uint32_t *voxel = index->voxels + 1 + index->stride[0] + index->stride[1] + (uint32_t)at[0] +
                             (uint32_t)at[1] * index->stride[0] + (uint32_t)at[2] * index->stride[1];
     for (;;) {
         uint32_t reference = *voxel;
-        simd4 leave = simd4_min_of_three(next_t);
+        float4 leave = float4_min_of_three(next_t);
         if (reference != REF_EMPTY) {
             if (reference == REF_OUTSIDE)
                 return false;
@@ -560,10 +558,10 @@ static inline __attribute__((always_inline)) bool traverse_voxels(struct search 
             if (descend(s, reference, kind, true, many, leaves_out))
                 return true;
         }
-        if (s->limit <= simd4_first(leave))
+        if (s->limit <= leave[0])
             return false;
         unsigned lanes;
-        next_t = simd4_add_where_reached(next_t, leave, step_t, &lanes);
+        next_t = float4_add_where_reached(next_t, leave, step_t, &lanes);
         voxel += offset[lanes & 7];
     }
 }
@@ -595,12 +593,12 @@ static inline double power_of_two(uint64_t exponent_bits) {
 }
 
 /* The ray is at `origin`; its local t ends at about `last`. */
-static inline void search_start(struct search *s, simd4 origin, simd4 direction, simd4 reciprocal, float last) {
-    simd4_store(s->origin, origin);
-    simd4_store(s->direction, direction);
+static inline void search_start(struct search *s, float4 origin, float4 direction, float4 reciprocal, float last) {
+    float4_store_any(s->origin, origin);
+    float4_store_any(s->direction, direction);
     s->reciprocal = reciprocal;
-    s->middle = simd4_mul(origin, reciprocal);
-    s->octant = simd4_negative(direction) & 7;
+    s->middle = float4_mul(origin, reciprocal);
+    s->octant = float4_negative(direction) & 7;
     s->limit = last * (1 + 0x1p-20f) + s->blur;
     s->certain = last * (1 - 0x1p-20f) - s->blur;
     s->found = s->sheared_ready = false;
@@ -612,16 +610,18 @@ enum ray_start { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
 
 /* In double precision, for rays that start far away or have odd directions. Rays that are not finite, or so far away
  * that the tolerance would exceed the mesh, use brute force. */
-static __attribute__((noinline)) enum ray_start search_begin_far(struct search *s, wide4 o, wide4 d) {
+static __attribute__((noinline)) enum ray_start search_begin_far(struct search *s, double4 o, double4 d) {
     const struct triangle_index *index = s->index;
     /* A zero becomes so small that any distance along it is negligible. */
-    wide4 d_size = wide4_size(d), r = wide4_div(wide4_all(1), wide4_signed(wide4_max(d_size, wide4_all(0x1p-980)), d));
-    wide4 half = wide4_load(index->half), o_size = wide4_with_last(wide4_size(o), 1);
-    wide4 a = wide4_mul(wide4_sub(wide4_sub(wide4_all(0), half), o), r), b = wide4_mul(wide4_sub(half, o), r);
-    double enter = wide4_largest(wide4_with_last(wide4_min(a, b), s->ray->t_min));
-    double leave = wide4_smallest(wide4_with_last(wide4_max(a, b), s->ray->t_max));
-    double largest = wide4_largest(d_size), far = wide4_largest(o_size);
-    if (!wide4_all_below(o_size, wide4_all(0x1p30)) || !wide4_all_below(d_size, wide4_all(0x1p900)) ||
+    double4 d_size = double4_size(d),
+            r = double4_div(double4_all(1), double4_flip(double4_max(d_size, double4_all(0x1p-980)), double4_sign(d)));
+    double4 half = double4_load_any(index->half), o_size = double4_shuffle(double4_size(o), double4_all(1), 0, 1, 2, 7);
+    double4 a = double4_mul(double4_sub(double4_sub(double4_all(0), half), o), r),
+            b = double4_mul(double4_sub(half, o), r);
+    double enter = double4_largest(double4_shuffle(double4_min(a, b), double4_all(s->ray->t_min), 0, 1, 2, 7));
+    double leave = double4_smallest(double4_shuffle(double4_max(a, b), double4_all(s->ray->t_max), 0, 1, 2, 7));
+    double largest = double4_largest(d_size), far = double4_largest(o_size);
+    if (!double4_all_less(o_size, double4_all(0x1p30)) || !double4_all_less(d_size, double4_all(0x1p900)) ||
         !(largest > 0x1p-900))
         return RAY_UNUSABLE;
     if (!(enter <= leave))
@@ -631,21 +631,21 @@ static __attribute__((noinline)) enum ray_start search_begin_far(struct search *
     memcpy(&exponent, &largest, sizeof exponent);
     exponent >>= 52;
     double to_local = power_of_two(exponent + 1), shrink = power_of_two(2045 - exponent);
-    r = wide4_mul(r, wide4_all(to_local));
-    r = wide4_signed(wide4_min(wide4_size(r), wide4_all(0x1p60)), r);
-    simd4 r4 = wide4_to_single(r);
+    r = double4_mul(r, double4_all(to_local));
+    r = double4_flip(double4_min(double4_size(r), double4_all(0x1p60)), double4_sign(r));
+    float4 r4 = double4_to_single(r);
     s->moved = true;
     s->t_to_local = to_local;
     s->t_offset = enter * to_local;
     s->blur = 0x1p-20f;
-    search_start(s, wide4_to_single(wide4_add(o, wide4_mul(d, wide4_all(enter)))),
-                 wide4_to_single(wide4_mul(d, wide4_all(shrink))), r4, (float)((leave - enter) * to_local));
+    search_start(s, double4_to_single(double4_add(o, double4_mul(d, double4_all(enter)))),
+                 double4_to_single(double4_mul(d, double4_all(shrink))), r4, (float)((leave - enter) * to_local));
     double certain = (s->ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
     s->certain = certain < 16 ? (float)certain : 16;
     s->longest = 1;
     s->error = POSITION_ERROR + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
-    simd4_store(s->widen, simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45))));
+    float4_store_any(s->widen, float4_mul(float4_size(r4), float4_all((float)(far * 0x1p-45))));
     return RAY_INSIDE;
 }
 
@@ -654,29 +654,29 @@ static __attribute__((noinline)) enum ray_start search_begin_far(struct search *
 static inline __attribute__((always_inline)) enum ray_start search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;
-    wide4 scale = wide4_all(index->scale);
-    wide4 o = wide4_mul(wide4_sub(wide4_load_singly(&ray->origin.x), wide4_load(index->centre)), scale);
-    wide4 d = wide4_mul(wide4_load_singly(&ray->direction.x), scale);
-    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d);
-    simd8 sizes = simd8_size(simd8_of(o4, d4)), largest = simd8_largest_of_threes(sizes);
-    s->longest = simd4_first(simd8_high(largest));
+    double4 scale = double4_all(index->scale);
+    double4 o = double4_mul(double4_sub(double4_load_singly(&ray->origin.x), double4_load_any(index->centre)), scale);
+    double4 d = double4_mul(double4_load_singly(&ray->direction.x), scale);
+    float4 o4 = double4_to_single(o), d4 = double4_to_single(d);
+    float8 sizes = float8_size(float8_of(o4, d4));
+    s->longest = float4_largest_of_three(float8_high(sizes));
     uint64_t from_bits;
     memcpy(&from_bits, &ray->t_min, sizeof from_bits);
-    bool usual = simd8_all_within(sizes, index->usual_from, index->usual_to) && s->longest > 0x1p-30f &&
+    bool usual = float8_all_within(sizes, index->usual_from, index->usual_to) && s->longest > 0x1p-30f &&
                  from_bits == 0 && ray->t_max > 0;
     if (__builtin_expect(!usual, 0))
         return search_begin_far(s, o, d);
-    simd4 r4 = simd4_div(simd4_all(1), d4), half = simd4_load(index->half_single);
+    float4 r4 = float4_div(float4_all(1), d4), half = float4_load_any(index->half_single);
     float last = (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60);
-    if (simd4_any_of_three_below(half, simd8_low(sizes))) { /* from outside many rays miss the frame */
-        simd4 middle = simd4_mul(o4, r4), extent = simd4_mul(half, simd4_size(r4));
-        float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), extent));
-        float leave = simd4_smallest_of_three(simd4_sub(extent, middle));
+    if (float4_bits(float4_less(half, float8_low(sizes))) & 7) { /* from outside many rays miss the frame */
+        float4 middle = float4_mul(o4, r4), extent = float4_mul(half, float4_size(r4));
+        float enter = float4_largest_of_three(float4_sub(float4_sub(float4_all(0), middle), extent));
+        float leave = float4_smallest_of_three(float4_sub(extent, middle));
         if (!(enter <= leave && leave >= 0 && enter <= last))
             return RAY_MISSES;
     }
     s->blur = 0;
-    s->error = POSITION_ERROR * simd8_first(largest) + 0x1p-40f;
+    s->error = POSITION_ERROR * float4_largest_of_three(float8_low(sizes)) + 0x1p-40f;
     s->moved = false;
     search_start(s, o4, d4, r4, last);
     return RAY_INSIDE;

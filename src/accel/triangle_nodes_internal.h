@@ -7,8 +7,8 @@
 #ifndef GRAY_ACCEL_TRIANGLE_NODES_INTERNAL_H
 #define GRAY_ACCEL_TRIANGLE_NODES_INTERNAL_H
 
-#include "accel/simd_internal.h"
 #include "accel/triangle_layout_internal.h"
+#include "accel/triangle_vectors_internal.h"
 
 enum { STACK_ROOM = STACK_ENTRIES + WIDTH }; /* pushing writes whole vectors */
 
@@ -22,24 +22,12 @@ struct node_stack {
 
 /* Where a ray enters and leaves the boxes of the children. */
 struct node_span {
-    simd8 enter, leave;
+    float8 enter, leave;
 };
 
-#if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
+#if defined(LANES_AVX2)
 
-static inline __m256i node_children(const struct wide_node *node) {
-    return _mm256_load_si256((const __m256i *)(const void *)node->child);
-}
-
-#if defined(__AVX512VL__)
-static inline void node_push_lanes(struct node_stack *stack, size_t top, __m256i children, unsigned lanes) {
-    _mm256_storeu_si256((__m256i *)(void *)(stack->reference + top),
-                        _mm256_maskz_compress_epi32((__mmask8)lanes, children));
-}
-static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 enter, unsigned lanes) {
-    _mm256_storeu_ps(stack->enter + top, _mm256_maskz_compress_ps((__mmask8)lanes, enter));
-}
-#else
+#if !defined(LANES_AVX512)
 /* For every set of lanes, a list of their numbers, one byte each. */
 #define LANE(set, i) ((set) >> (i)&1 ? UINT64_C(i) << 8 * __builtin_popcount((set) & ((1 << (i)) - 1)) : 0)
 #define LANES(set)                                                                                                     \
@@ -54,37 +42,49 @@ static const uint64_t node_lanes[256] = {LANES_64(0), LANES_64(64), LANES_64(128
 #undef LANES_4
 #undef LANES_16
 #undef LANES_64
-
-static inline __m256i node_compressing(unsigned lanes) {
-    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(node_lanes + lanes)));
-}
-static inline void node_push_lanes(struct node_stack *stack, size_t top, __m256i children, unsigned lanes) {
-    _mm256_storeu_si256((__m256i *)(void *)(stack->reference + top),
-                        _mm256_permutevar8x32_epi32(children, node_compressing(lanes)));
-}
-static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 enter, unsigned lanes) {
-    _mm256_storeu_ps(stack->enter + top, _mm256_permutevar8x32_ps(enter, node_compressing(lanes)));
-}
 #endif
+
+/* Lanes in another order; clang has no expression for an order that is known only at run time. */
+static inline float8 float8_permuted(float8 a, float8_integers order) {
+    return _mm256_permutevar8x32_ps(a, (__m256i)order);
+}
+/* Some lanes, moved to the first ones: without an instruction for it, a loop over the lanes takes 20 instructions more
+ * for each node. */
+static inline float8 float8_compressed(float8 a, unsigned lanes) {
+#if defined(LANES_AVX512)
+    return _mm256_maskz_compress_ps((__mmask8)lanes, a);
+#else
+    return float8_permuted(
+        a, (float8_integers)_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(node_lanes + lanes))));
+#endif
+}
+/* References are moved as floats: only their bits count. */
+static inline float8 node_children(const struct wide_node *node) {
+    return float8_load((const float *)(const void *)node->child);
+}
+static inline void node_push(struct node_stack *stack, size_t top, float8 children, unsigned lanes) {
+    float8_store_any((float *)(void *)(stack->reference + top), float8_compressed(children, lanes));
+}
 
 /* False: no child is hit. Else *reference is the first child along the ray and the others are on the stack, the next
  * one on top. */
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, struct node_span span,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
-    simd8 enter = span.enter, leave = span.leave;
-    __m256i order =
-        _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[octant]), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
-    __m256i children = _mm256_permutevar8x32_epi32(node_children(node), order);
+    float8 enter = span.enter, leave = span.leave;
+    const float8_integers shift = {0, 3, 6, 9, 12, 15, 18, 21},
+                          all = (int32_t)node->order[octant] - (float8_integers){0};
+    float8_integers order = all >> shift;
+    float8 children = float8_permuted(node_children(node), order);
     _Alignas(32) uint32_t child[WIDTH];
-    _mm256_store_si256((__m256i *)(void *)child, children);
-    enter = _mm256_permutevar8x32_ps(enter, order);
-    leave = _mm256_permutevar8x32_ps(leave, order);
-    unsigned lanes = simd8_at_max_bits(enter, leave);
+    float8_store((float *)(void *)child, children);
+    enter = float8_permuted(enter, order);
+    leave = float8_permuted(leave, order);
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     /* Including the first one, which is stored above the top. */
-    node_push_enter(stack, *top, enter, lanes);
-    node_push_lanes(stack, *top, children, lanes);
+    float8_store_any(stack->enter + *top, float8_compressed(enter, lanes));
+    node_push(stack, *top, children, lanes);
     *top += (unsigned)__builtin_popcount(lanes) - 1;
     *reference = child[31 - __builtin_clz(lanes)];
     return true;
@@ -92,14 +92,14 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
 
 /* The same in any order and without where the ray enters. Boxes are larger than their contents by more than all
  * rounding errors, so a box that the ray leaves where it enters has no hit. */
-static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
+static inline bool node_take_any(const struct wide_node *node, float8 enter, float8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
-    unsigned lanes = simd8_below_bits(enter, leave);
+    unsigned lanes = float8_less_bits(enter, leave);
     if (!lanes)
         return false;
     *reference = node->child[__builtin_ctz(lanes)];
     lanes &= lanes - 1;
-    node_push_lanes(stack, *top, node_children(node), lanes);
+    node_push(stack, *top, node_children(node), lanes);
     *top += (unsigned)__builtin_popcount(lanes);
     return true;
 }
@@ -108,12 +108,12 @@ static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd
 
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, struct node_span span,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
-    simd8 enter = span.enter, leave = span.leave;
-    unsigned lanes = simd8_at_max_bits(enter, leave);
+    float8 enter = span.enter, leave = span.leave;
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     _Alignas(32) float t[WIDTH];
-    simd8_store(t, enter);
+    float8_store(t, enter);
     if (!(lanes & (lanes - 1))) {
         stack->enter[*top] = t[__builtin_ctz(lanes)];
         *reference = node->child[__builtin_ctz(lanes)];
@@ -130,9 +130,9 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     return true;
 }
 
-static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
+static inline bool node_take_any(const struct wide_node *node, float8 enter, float8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
-    unsigned lanes = simd8_at_max_bits(enter, leave);
+    unsigned lanes = float8_less_equal_bits(enter, leave);
     if (!lanes)
         return false;
     *reference = node->child[__builtin_ctz(lanes)];

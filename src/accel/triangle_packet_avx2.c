@@ -1,9 +1,6 @@
 /* Packets for processors with AVX2 and FMA, eight rays to a vector. */
 #if defined(__AVX2__)
 #define PACKET(name) triangle_packet_##name##_avx2
-#if defined(__FMA__)
-#define GRAY_KERNEL_FMA
-#endif
 #include "accel/triangle_packet_kernel_internal.h"
 #else
 #include "accel/triangle_packet.h"

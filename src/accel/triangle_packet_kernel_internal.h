@@ -29,13 +29,15 @@
  * bounds overlap, and for all uncertain hits, doubles decide at once. The remaining candidates are decided at the end,
  * eight rays at a time. */
 
-#include "accel/simd_rays_internal.h"
 #include "accel/triangle_layout_internal.h"
 #include "accel/triangle_packet.h"
+#include "math/lanes.h"
 
 #include <string.h>
 
-enum { GROUPS = PACKET_RAYS / LANES };
+enum { GROUPS = PACKET_RAYS / FLOAT_LANES };
+/* All lanes of a group of rays. */
+#define ALL_LANES ((UINT64_C(1) << FLOAT_LANES) - 1)
 
 /* Local units. */
 #define FARTHEST 64.0
@@ -215,70 +217,80 @@ struct parts {
     unsigned used; /* one bit a triangle */
 };
 
-static inline simd8 cross_part(simd8 ay, simd8 az, simd8 by, simd8 bz) {
-    return simd8_multiply_sub(ay, bz, simd8_mul(az, by));
+static inline unsigned float8_not_negative(float8 a) {
+    return float8_negative(a) ^ 255u;
+}
+
+static inline unsigned float_lanes_not_negative(float_lanes a) {
+    return float_lanes_negative(a) ^ (unsigned)ALL_LANES;
+}
+
+static inline float8 cross_part(float8 ay, float8 az, float8 by, float8 bz) {
+    return float8_multiply_sub(ay, bz, float8_mul(az, by));
 }
 
 static inline __attribute__((always_inline)) void split_block(const struct packet *p, uint32_t number,
                                                               struct parts *out) {
     const struct triangle_block *b = p->index->blocks + number;
-    simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
-    simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
-    simd8 sx = simd8_sub(simd8_all(p->origin[0]), simd8_load(b->corner[0]));
-    simd8 sy = simd8_sub(simd8_all(p->origin[1]), simd8_load(b->corner[1]));
-    simd8 sz = simd8_sub(simd8_all(p->origin[2]), simd8_load(b->corner[2]));
-    simd8_store(out->n[0], cross_part(e2y, e2z, e1y, e1z));
-    simd8_store(out->n[1], cross_part(e2z, e2x, e1z, e1x));
-    simd8_store(out->n[2], cross_part(e2x, e2y, e1x, e1y));
-    simd8_store(out->a[0], cross_part(e2y, e2z, sy, sz));
-    simd8_store(out->a[1], cross_part(e2z, e2x, sz, sx));
-    simd8_store(out->a[2], cross_part(e2x, e2y, sx, sy));
-    simd8 qx = cross_part(sy, sz, e1y, e1z), qy = cross_part(sz, sx, e1z, e1x), qz = cross_part(sx, sy, e1x, e1y);
-    simd8_store(out->q[0], qx);
-    simd8_store(out->q[1], qy);
-    simd8_store(out->q[2], qz);
-    simd8_store(out->t, simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz))));
-    simd8 extent = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
-    extent = simd8_max(extent, simd8_max(simd8_size(e2y), simd8_size(e2z)));
-    extent = simd8_max(extent, simd8_all(0x1p-40f)); /* zero slack would make degenerate triangles certain hits */
-    simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
-    simd8 e = simd8_multiply_add(simd8_add(extent, distance), simd8_all(64 * 0x1p-24f), simd8_all(p->error));
-    e = simd8_mul(e, extent);
-    simd8_store(out->e, e);
-    simd8_store(out->slack, simd8_mul(simd8_mul(e, extent), simd8_all(6)));
+    float8 e1x = float8_load(b->edge1[0]), e1y = float8_load(b->edge1[1]), e1z = float8_load(b->edge1[2]);
+    float8 e2x = float8_load(b->edge2[0]), e2y = float8_load(b->edge2[1]), e2z = float8_load(b->edge2[2]);
+    float8 sx = float8_sub(float8_all(p->origin[0]), float8_load(b->corner[0]));
+    float8 sy = float8_sub(float8_all(p->origin[1]), float8_load(b->corner[1]));
+    float8 sz = float8_sub(float8_all(p->origin[2]), float8_load(b->corner[2]));
+    float8_store(out->n[0], cross_part(e2y, e2z, e1y, e1z));
+    float8_store(out->n[1], cross_part(e2z, e2x, e1z, e1x));
+    float8_store(out->n[2], cross_part(e2x, e2y, e1x, e1y));
+    float8_store(out->a[0], cross_part(e2y, e2z, sy, sz));
+    float8_store(out->a[1], cross_part(e2z, e2x, sz, sx));
+    float8_store(out->a[2], cross_part(e2x, e2y, sx, sy));
+    float8 qx = cross_part(sy, sz, e1y, e1z), qy = cross_part(sz, sx, e1z, e1x), qz = cross_part(sx, sy, e1x, e1y);
+    float8_store(out->q[0], qx);
+    float8_store(out->q[1], qy);
+    float8_store(out->q[2], qz);
+    float8_store(out->t, float8_multiply_add(e2x, qx, float8_multiply_add(e2y, qy, float8_mul(e2z, qz))));
+    float8 extent =
+        float8_max(float8_max(float8_size(e1x), float8_size(e1y)), float8_max(float8_size(e1z), float8_size(e2x)));
+    extent = float8_max(extent, float8_max(float8_size(e2y), float8_size(e2z)));
+    extent = float8_max(extent, float8_all(0x1p-40f)); /* zero slack would make degenerate triangles certain hits */
+    float8 distance = float8_max(float8_size(sx), float8_max(float8_size(sy), float8_size(sz)));
+    float8 e = float8_multiply_add(float8_add(extent, distance), float8_all(64 * 0x1p-24f), float8_all(p->error));
+    e = float8_mul(e, extent);
+    float8_store(out->e, e);
+    float8_store(out->slack, float8_mul(float8_mul(e, extent), float8_all(6)));
     out->ids = b->ids;
-    out->used = simd8_at_max(simd8_load(b->corner[0]), simd8_all(4)); /* an unused lane is outside of the frame */
+    out->used = float8_bits(
+        float8_less_equal(float8_load(b->corner[0]), float8_all(4))); /* an unused lane is outside of the frame */
 }
 
 /* One ray, eight triangles. */
 static inline __attribute__((always_inline)) void try_ray(struct packet *p, const struct parts *b, unsigned i,
                                                           const bool any) {
     /* The determinant and the scaled barycentric coordinates. */
-    simd8 dx = simd8_all(p->dx[i]), dy = simd8_all(p->dy[i]), dz = simd8_all(p->dz[i]);
-    simd8 det = simd8_multiply_add(dx, simd8_load(b->n[0]),
-                                   simd8_multiply_add(dy, simd8_load(b->n[1]), simd8_mul(dz, simd8_load(b->n[2]))));
-    simd8 u = simd8_multiply_add(dx, simd8_load(b->a[0]),
-                                 simd8_multiply_add(dy, simd8_load(b->a[1]), simd8_mul(dz, simd8_load(b->a[2]))));
-    simd8 v = simd8_multiply_add(dx, simd8_load(b->q[0]),
-                                 simd8_multiply_add(dy, simd8_load(b->q[1]), simd8_mul(dz, simd8_load(b->q[2]))));
+    float8 dx = float8_all(p->dx[i]), dy = float8_all(p->dy[i]), dz = float8_all(p->dz[i]);
+    float8 det = float8_multiply_add(
+        dx, float8_load(b->n[0]), float8_multiply_add(dy, float8_load(b->n[1]), float8_mul(dz, float8_load(b->n[2]))));
+    float8 u = float8_multiply_add(dx, float8_load(b->a[0]),
+                                   float8_multiply_add(dy, float8_load(b->a[1]), float8_mul(dz, float8_load(b->a[2]))));
+    float8 v = float8_multiply_add(dx, float8_load(b->q[0]),
+                                   float8_multiply_add(dy, float8_load(b->q[1]), float8_mul(dz, float8_load(b->q[2]))));
     /* All of them with a positive determinant. */
-    simd8 sign = simd8_sign(det), t = simd8_flip(simd8_load(b->t), sign);
-    det = simd8_flip(det, sign);
-    u = simd8_flip(u, sign);
-    v = simd8_flip(v, sign);
+    float8 sign = float8_sign(det), t = float8_flip(float8_load(b->t), sign);
+    det = float8_flip(det, sign);
+    u = float8_flip(u, sign);
+    v = float8_flip(v, sign);
     /* Triangles that the ray may meet, in bounds widened by the errors of rounding. */
-    simd8 e = simd8_load(b->e), e3 = simd8_mul(e, simd8_all(3)), slack = simd8_load(b->slack);
-    simd8 min = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
-    simd8 before = simd8_sub(simd8_multiply_add(det, simd8_all(p->limit[i]), slack), t);
-    simd8 inside = simd8_min(simd8_add(min, e), simd8_add(rest, e3));
-    unsigned met = b->used & simd8_not_negative(simd8_min(inside, simd8_min(simd8_add(t, slack), before)));
+    float8 e = float8_load(b->e), e3 = float8_mul(e, float8_all(3)), slack = float8_load(b->slack);
+    float8 min = float8_min(u, v), rest = float8_sub(det, float8_add(u, v));
+    float8 before = float8_sub(float8_multiply_add(det, float8_all(p->limit[i]), slack), t);
+    float8 inside = float8_min(float8_add(min, e), float8_add(rest, e3));
+    unsigned met = b->used & float8_not_negative(float8_min(inside, float8_min(float8_add(t, slack), before)));
     if (!met)
         return;
     /* Those that it meets for certain, in bounds narrowed by them. */
-    inside = simd8_min(simd8_sub(min, e), simd8_sub(rest, e3));
-    simd8 ends = simd8_sub(simd8_multiply_sub(det, simd8_all(p->certain[i]), slack), t);
-    simd8 begins = simd8_sub(simd8_sub(t, slack), simd8_mul(det, simd8_all(p->begun)));
-    unsigned certain = met & simd8_not_negative(simd8_min(inside, simd8_min(begins, ends)));
+    inside = float8_min(float8_sub(min, e), float8_sub(rest, e3));
+    float8 ends = float8_sub(float8_multiply_sub(det, float8_all(p->certain[i]), slack), t);
+    float8 begins = float8_sub(float8_sub(t, slack), float8_mul(det, float8_all(p->begun)));
+    unsigned certain = met & float8_not_negative(float8_min(inside, float8_min(begins, ends)));
     /* A shadow ray ends at one for certain; others are decided in double precision. */
     if (any) {
         if (certain) {
@@ -293,8 +305,8 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
     /* The nearest: a certain one keeps bounds of its t, others are decided. */
     _Alignas(32) float from[WIDTH], to[WIDTH];
     if (certain) {
-        simd8_store(from, simd8_div(simd8_sub(t, slack), det));
-        simd8_store(to, simd8_div(simd8_add(t, slack), det));
+        float8_store(from, float8_div(float8_sub(t, slack), det));
+        float8_store(to, float8_div(float8_add(t, slack), det));
     }
     for (; met; met &= met - 1) {
         unsigned k = (unsigned)__builtin_ctz(met);
@@ -309,28 +321,34 @@ static inline __attribute__((always_inline)) void try_ray(struct packet *p, cons
 static inline __attribute__((always_inline)) void try_group(struct packet *p, const struct parts *b, unsigned k,
                                                             unsigned first, unsigned active, const bool any) {
     /* The steps are those of try_ray. */
-    lanes dx = lanes_load(p->dx + first), dy = lanes_load(p->dy + first), dz = lanes_load(p->dz + first);
-    lanes det = lanes_multiply_add(dx, lanes_all(b->n[0][k]),
-                                   lanes_multiply_add(dy, lanes_all(b->n[1][k]), lanes_mul(dz, lanes_all(b->n[2][k]))));
-    lanes u = lanes_multiply_add(dx, lanes_all(b->a[0][k]),
-                                 lanes_multiply_add(dy, lanes_all(b->a[1][k]), lanes_mul(dz, lanes_all(b->a[2][k]))));
-    lanes v = lanes_multiply_add(dx, lanes_all(b->q[0][k]),
-                                 lanes_multiply_add(dy, lanes_all(b->q[1][k]), lanes_mul(dz, lanes_all(b->q[2][k]))));
-    lanes sign = lanes_sign(det), t = lanes_flip(lanes_all(b->t[k]), sign);
-    det = lanes_flip(det, sign);
-    u = lanes_flip(u, sign);
-    v = lanes_flip(v, sign);
-    lanes e = lanes_all(b->e[k]), e3 = lanes_mul(e, lanes_all(3)), slack = lanes_all(b->slack[k]);
-    lanes min = lanes_min(u, v), rest = lanes_sub(det, lanes_add(u, v));
-    lanes before = lanes_sub(lanes_multiply_add(det, lanes_load(p->limit + first), slack), t);
-    lanes inside = lanes_min(lanes_add(min, e), lanes_add(rest, e3));
-    unsigned met = active & lanes_not_negative(lanes_min(inside, lanes_min(lanes_add(t, slack), before)));
+    float_lanes dx = float_lanes_load(p->dx + first), dy = float_lanes_load(p->dy + first),
+                dz = float_lanes_load(p->dz + first);
+    float_lanes det = float_lanes_multiply_add(
+        dx, float_lanes_all(b->n[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->n[1][k]), float_lanes_mul(dz, float_lanes_all(b->n[2][k]))));
+    float_lanes u = float_lanes_multiply_add(
+        dx, float_lanes_all(b->a[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->a[1][k]), float_lanes_mul(dz, float_lanes_all(b->a[2][k]))));
+    float_lanes v = float_lanes_multiply_add(
+        dx, float_lanes_all(b->q[0][k]),
+        float_lanes_multiply_add(dy, float_lanes_all(b->q[1][k]), float_lanes_mul(dz, float_lanes_all(b->q[2][k]))));
+    float_lanes sign = float_lanes_sign(det), t = float_lanes_flip(float_lanes_all(b->t[k]), sign);
+    det = float_lanes_flip(det, sign);
+    u = float_lanes_flip(u, sign);
+    v = float_lanes_flip(v, sign);
+    float_lanes e = float_lanes_all(b->e[k]), e3 = float_lanes_mul(e, float_lanes_all(3)),
+                slack = float_lanes_all(b->slack[k]);
+    float_lanes min = float_lanes_min(u, v), rest = float_lanes_sub(det, float_lanes_add(u, v));
+    float_lanes before = float_lanes_sub(float_lanes_multiply_add(det, float_lanes_load(p->limit + first), slack), t);
+    float_lanes inside = float_lanes_min(float_lanes_add(min, e), float_lanes_add(rest, e3));
+    unsigned met =
+        active & float_lanes_not_negative(float_lanes_min(inside, float_lanes_min(float_lanes_add(t, slack), before)));
     if (!met)
         return;
-    inside = lanes_min(lanes_sub(min, e), lanes_sub(rest, e3));
-    lanes ends = lanes_sub(lanes_multiply_sub(det, lanes_load(p->certain + first), slack), t);
-    lanes begins = lanes_sub(lanes_sub(t, slack), lanes_mul(det, lanes_all(p->begun)));
-    unsigned certain = met & lanes_not_negative(lanes_min(inside, lanes_min(begins, ends)));
+    inside = float_lanes_min(float_lanes_sub(min, e), float_lanes_sub(rest, e3));
+    float_lanes ends = float_lanes_sub(float_lanes_multiply_sub(det, float_lanes_load(p->certain + first), slack), t);
+    float_lanes begins = float_lanes_sub(float_lanes_sub(t, slack), float_lanes_mul(det, float_lanes_all(p->begun)));
+    unsigned certain = met & float_lanes_not_negative(float_lanes_min(inside, float_lanes_min(begins, ends)));
     if (any) {
         p->found |= (uint64_t)certain << first;
         p->alive &= ~((uint64_t)certain << first);
@@ -338,9 +356,9 @@ static inline __attribute__((always_inline)) void try_group(struct packet *p, co
             decide(p, first + (unsigned)__builtin_ctz(met), b->ids[k], true);
         return;
     }
-    _Alignas(64) float from[LANES], to[LANES];
-    lanes_store(from, lanes_div(lanes_sub(t, slack), det));
-    lanes_store(to, lanes_div(lanes_add(t, slack), det));
+    _Alignas(64) float from[FLOAT_LANES], to[FLOAT_LANES];
+    float_lanes_store(from, float_lanes_div(float_lanes_sub(t, slack), det));
+    float_lanes_store(to, float_lanes_div(float_lanes_add(t, slack), det));
     for (; met; met &= met - 1) {
         unsigned lane = (unsigned)__builtin_ctz(met);
         if (certain >> lane & 1)
@@ -355,7 +373,7 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
     split_block(p, number, &parts);
     unsigned used = (unsigned)__builtin_popcount(parts.used), groups = 0; /* the unused ones come last */
     for (unsigned g = 0; g < p->groups; g++)
-        groups += (rays >> g * LANES & ALL_LANES) != 0;
+        groups += (rays >> g * FLOAT_LANES & ALL_LANES) != 0;
     unsigned count = (unsigned)__builtin_popcountll(rays);
     p->tests += (uint64_t)count * WIDTH;
     if (count <= used * groups) {
@@ -364,9 +382,9 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
         return;
     }
     for (unsigned g = 0; g < p->groups; g++) {
-        unsigned active = (unsigned)(rays >> g * LANES & ALL_LANES);
+        unsigned active = (unsigned)(rays >> g * FLOAT_LANES & ALL_LANES);
         for (unsigned k = 0; k < used && active; k++)
-            try_group(p, &parts, k, g * LANES, active, any);
+            try_group(p, &parts, k, g * FLOAT_LANES, active, any);
     }
 }
 
@@ -377,29 +395,31 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
                                                                uint64_t rays, const bool mixed) {
     uint64_t met = 0;
     /* If all rays have the same signs, the sides that they meet first are known. */
-    lanes low_x = lanes_all(box[p->negative[0]]), high_x = lanes_all(box[!p->negative[0]]);
-    lanes low_y = lanes_all(box[2 + p->negative[1]]), high_y = lanes_all(box[2 + !p->negative[1]]);
-    lanes low_z = lanes_all(box[4 + p->negative[2]]), high_z = lanes_all(box[4 + !p->negative[2]]);
+    float_lanes low_x = float_lanes_all(box[p->negative[0]]), high_x = float_lanes_all(box[!p->negative[0]]);
+    float_lanes low_y = float_lanes_all(box[2 + p->negative[1]]), high_y = float_lanes_all(box[2 + !p->negative[1]]);
+    float_lanes low_z = float_lanes_all(box[4 + p->negative[2]]), high_z = float_lanes_all(box[4 + !p->negative[2]]);
     for (unsigned g = 0; g < p->groups; g++) {
-        unsigned first = g * LANES;
+        unsigned first = g * FLOAT_LANES;
         uint64_t active = rays & ALL_LANES << first;
         if (!active)
             continue;
         /* The parameters of the six planes for a vector of rays. */
-        lanes rx = lanes_load(p->rx + first), ry = lanes_load(p->ry + first), rz = lanes_load(p->rz + first);
-        lanes ax = lanes_mul(low_x, rx), ay = lanes_mul(low_y, ry), az = lanes_mul(low_z, rz);
-        lanes bx = lanes_mul(high_x, rx), by = lanes_mul(high_y, ry), bz = lanes_mul(high_z, rz);
-        lanes enter, leave;
+        float_lanes rx = float_lanes_load(p->rx + first), ry = float_lanes_load(p->ry + first),
+                    rz = float_lanes_load(p->rz + first);
+        float_lanes ax = float_lanes_mul(low_x, rx), ay = float_lanes_mul(low_y, ry), az = float_lanes_mul(low_z, rz);
+        float_lanes bx = float_lanes_mul(high_x, rx), by = float_lanes_mul(high_y, ry),
+                    bz = float_lanes_mul(high_z, rz);
+        float_lanes enter, leave;
         if (mixed) {
-            enter =
-                lanes_max(lanes_max(lanes_min(ax, bx), lanes_min(ay, by)), lanes_max(lanes_min(az, bz), lanes_all(0)));
-            leave = lanes_min(lanes_min(lanes_max(ax, bx), lanes_max(ay, by)),
-                              lanes_min(lanes_max(az, bz), lanes_load(p->limit + first)));
+            enter = float_lanes_max(float_lanes_max(float_lanes_min(ax, bx), float_lanes_min(ay, by)),
+                                    float_lanes_max(float_lanes_min(az, bz), float_lanes_all(0)));
+            leave = float_lanes_min(float_lanes_min(float_lanes_max(ax, bx), float_lanes_max(ay, by)),
+                                    float_lanes_min(float_lanes_max(az, bz), float_lanes_load(p->limit + first)));
         } else {
-            enter = lanes_max(lanes_max(ax, ay), lanes_max(az, lanes_all(0)));
-            leave = lanes_min(lanes_min(bx, by), lanes_min(bz, lanes_load(p->limit + first)));
+            enter = float_lanes_max(float_lanes_max(ax, ay), float_lanes_max(az, float_lanes_all(0)));
+            leave = float_lanes_min(float_lanes_min(bx, by), float_lanes_min(bz, float_lanes_load(p->limit + first)));
         }
-        met |= active & (uint64_t)lanes_at_max(enter, leave) << first;
+        met |= active & (uint64_t)float_lanes_bits(float_lanes_less_equal(enter, leave)) << first;
     }
     return met;
 }
@@ -410,32 +430,32 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     /* The eight boxes, relative to the origin of the beam. */
     const struct wide_node *n = p->index->nodes + number;
     _Alignas(32) float box[6][WIDTH], t[WIDTH];
-    simd8 rows[6];
+    float8 rows[6];
     for (int i = 0; i < 6; i++) {
-        rows[i] = simd8_sub(simd8_load(n->bounds[i]), simd8_all(p->shifted[i]));
-        simd8_store(box[i], rows[i]);
+        rows[i] = float8_sub(float8_load(n->bounds[i]), float8_all(p->shifted[i]));
+        float8_store(box[i], rows[i]);
     }
     /* Along the axis of the beam, near comes before far. */
-    simd8 zero = simd8_all(0), near = rows[2 * p->forward], far = rows[2 * p->forward + 1];
+    float8 zero = float8_all(0), near = rows[2 * p->forward], far = rows[2 * p->forward + 1];
     if (p->backwards) {
-        simd8 swap = simd8_sub(zero, near);
-        near = simd8_sub(zero, far);
+        float8 swap = float8_sub(zero, near);
+        near = float8_sub(zero, far);
         far = swap;
     }
     /* A box is outside if it lies behind, or beyond a side of the beam. */
-    simd8 outside = simd8_sub(zero, far);
+    float8 outside = float8_sub(zero, far);
     for (int i = 0; i < 2; i++) {
-        simd8 low = rows[2 * p->side[i]], high = rows[2 * p->side[i] + 1];
-        simd8 max = simd8_mul(p->slope_max[i] > 0 ? far : near, simd8_all(p->slope_max[i]));
-        simd8 min = simd8_mul(p->slope_min[i] > 0 ? near : far, simd8_all(p->slope_min[i]));
-        outside = simd8_max(outside, simd8_max(simd8_sub(low, max), simd8_sub(min, high)));
+        float8 low = rows[2 * p->side[i]], high = rows[2 * p->side[i] + 1];
+        float8 max = float8_mul(p->slope_max[i] > 0 ? far : near, float8_all(p->slope_max[i]));
+        float8 min = float8_mul(p->slope_min[i] > 0 ? near : far, float8_all(p->slope_min[i]));
+        outside = float8_max(outside, float8_max(float8_sub(low, max), float8_sub(min, high)));
     }
-    unsigned met = simd8_at_max(outside, zero);
+    unsigned met = float8_bits(float8_less_equal(outside, zero));
     p->nodes++;
     if (!met)
         return top;
     /* The boxes that are met, sorted by insertion; t > 0 has the order of its bits. */
-    simd8_store(t, simd8_max(near, zero));
+    float8_store(t, float8_max(near, zero));
     uint64_t order[WIDTH];
     unsigned count = 0;
     for (; met; met &= met - 1) {
@@ -494,6 +514,15 @@ static void traverse(struct packet *p, uint32_t root, const bool any) {
 
 /* ---- beginning ---- */
 
+static float float_lanes_smallest(float_lanes a) {
+    _Alignas(64) float x[FLOAT_LANES];
+    float_lanes_store(x, a);
+    float m = x[0];
+    for (int i = 1; i < FLOAT_LANES; i++)
+        m = x[i] < m ? x[i] : m;
+    return m;
+}
+
 /* The planes around the rays, over the axis that is the longest for all of them. False: there is none. */
 static bool set_beam(struct packet *p) {
     const float *d[3] = {p->dx, p->dy, p->dz};
@@ -503,27 +532,27 @@ static bool set_beam(struct packet *p) {
     p->side[0] = (z + 1) % 3;
     p->side[1] = (z + 2) % 3;
     p->backwards = d[z][0] < 0;
-    lanes min = lanes_all(INFINITY), slope_min[2], slope_max[2];
+    float_lanes min = float_lanes_all(INFINITY), slope_min[2], slope_max[2];
     for (int k = 0; k < 2; k++) {
-        slope_min[k] = lanes_all(INFINITY);
-        slope_max[k] = lanes_all(-INFINITY);
+        slope_min[k] = float_lanes_all(INFINITY);
+        slope_max[k] = float_lanes_all(-INFINITY);
     }
-    lanes turn = lanes_all(p->backwards ? -0.0f : 0.0f);
+    float_lanes turn = float_lanes_all(p->backwards ? -0.0f : 0.0f);
     const float *inverse[3] = {p->rx, p->ry, p->rz};
     for (unsigned g = 0; g < p->groups; g++) {
-        min = lanes_min(min, lanes_flip(lanes_load(d[z] + g * LANES), turn));
-        lanes over = lanes_flip(lanes_load(inverse[z] + g * LANES), turn);
+        min = float_lanes_min(min, float_lanes_flip(float_lanes_load(d[z] + g * FLOAT_LANES), turn));
+        float_lanes over = float_lanes_flip(float_lanes_load(inverse[z] + g * FLOAT_LANES), turn);
         for (int k = 0; k < 2; k++) {
-            lanes slope = lanes_mul(lanes_load(d[p->side[k]] + g * LANES), over);
-            slope_min[k] = lanes_min(slope_min[k], slope);
-            slope_max[k] = lanes_max(slope_max[k], slope);
+            float_lanes slope = float_lanes_mul(float_lanes_load(d[p->side[k]] + g * FLOAT_LANES), over);
+            slope_min[k] = float_lanes_min(slope_min[k], slope);
+            slope_max[k] = float_lanes_max(slope_max[k], slope);
         }
     }
-    if (!(lanes_smallest(min) >= 0x1p-5f))
+    if (!(float_lanes_smallest(min) >= 0x1p-5f))
         return false;
     for (int k = 0; k < 2; k++) {
-        p->slope_min[k] = lanes_smallest(slope_min[k]) - 0x1p-20f;
-        p->slope_max[k] = lanes_largest(slope_max[k]) + 0x1p-20f;
+        p->slope_min[k] = float_lanes_smallest(slope_min[k]) - 0x1p-20f;
+        p->slope_max[k] = -float_lanes_smallest(float_lanes_sub(float_lanes_all(0), slope_max[k])) + 0x1p-20f;
         p->slope_min[k] -= fabsf(p->slope_min[k]) * 0x1p-20f;
         p->slope_max[k] += fabsf(p->slope_max[k]) * 0x1p-20f;
     }
@@ -532,7 +561,7 @@ static bool set_beam(struct packet *p) {
     p->axes = kind[z][p->backwards];
     const double *exact[3] = {p->rays->direction[0], p->rays->direction[1], p->rays->direction[2]};
     int differ = 0;
-    for (unsigned i = 0; i < p->groups * LANES; i++)
+    for (unsigned i = 0; i < p->groups * FLOAT_LANES; i++)
         differ |= (fabs(exact[p->side[0]][i]) >= fabs(exact[z][i])) | (fabs(exact[p->side[1]][i]) >= fabs(exact[z][i]));
     if (differ)
         p->axes = -1;
@@ -568,8 +597,8 @@ static bool begin(struct packet *p, uint64_t active) {
     const struct triangle_index *index = p->index;
     const struct ray_packet *rays = p->rays;
     double longest, shortest;
-    p->groups = (rays->count + LANES - 1) / LANES;
-    unsigned slots = p->groups * LANES;
+    p->groups = (rays->count + FLOAT_LANES - 1) / FLOAT_LANES;
+    unsigned slots = p->groups * FLOAT_LANES;
     if (index->voxel_count != 27 || !(rays->t_min >= 0) || !measure_rays(rays, slots, &longest, &shortest))
         return false;
     double scaled = longest * index->scale;
@@ -598,11 +627,12 @@ static bool begin(struct packet *p, uint64_t active) {
             d[k][i] = (float)(rays->direction[k][i] * shrink);
         unsigned any = 0, all = 1;
         for (unsigned g = 0; g < p->groups; g++) {
-            lanes x = lanes_load(d[k] + g * LANES), sign = lanes_sign(x);
+            float_lanes x = float_lanes_load(d[k] + g * FLOAT_LANES), sign = float_lanes_sign(x);
             /* A zero becomes so small that no way along it counts. */
-            lanes size = lanes_min(lanes_size(lanes_div(lanes_all(1), x)), lanes_all(0x1p60f));
-            lanes_store(inverse[k] + g * LANES, lanes_flip(size, sign));
-            unsigned positive = lanes_not_negative(x);
+            float_lanes size =
+                float_lanes_min(float_lanes_size(float_lanes_div(float_lanes_all(1), x)), float_lanes_all(0x1p60f));
+            float_lanes_store(inverse[k] + g * FLOAT_LANES, float_lanes_flip(size, sign));
+            unsigned positive = float_lanes_not_negative(x);
             any |= positive != ALL_LANES;
             all &= positive == 0;
         }
@@ -652,7 +682,7 @@ bool PACKET(nearest)(const struct triangle_index *index, const struct triangle_s
     if (!begin(&p, active))
         return false;
     for (unsigned g = 0; g < p.groups; g++)
-        lanes_store(p.nearer + g * LANES, lanes_all(INFINITY));
+        float_lanes_store(p.nearer + g * FLOAT_LANES, float_lanes_all(INFINITY));
     search(&p, cost, false);
     decide_candidates(&p);
     *answer_bits = p.found;

@@ -5,31 +5,31 @@
 
 enum { BINS = 16 };
 
-static simd4 reference_min(const struct reference *r) {
-    return simd4_three(simd4_load(r->min));
+static float4 reference_min(const struct reference *r) {
+    return float4_three(float4_load_any(r->min));
 }
 
-static simd4 reference_max(const struct reference *r) {
-    return simd4_three(simd4_load(r->max));
+static float4 reference_max(const struct reference *r) {
+    return float4_three(float4_load_any(r->max));
 }
 
 static void range_clear(struct range *range) {
-    range->min = range->centre_min = simd4_all(INFINITY);
-    range->max = range->centre_max = simd4_all(-INFINITY);
+    range->min = range->centre_min = float4_all(INFINITY);
+    range->max = range->centre_max = float4_all(-INFINITY);
 }
 
-static inline void range_add(struct range *range, simd4 lo, simd4 hi, simd4 centre) {
-    range->min = simd4_min(range->min, lo);
-    range->max = simd4_max(range->max, hi);
-    range->centre_min = simd4_min(range->centre_min, centre);
-    range->centre_max = simd4_max(range->centre_max, centre);
+static inline void range_add(struct range *range, float4 lo, float4 hi, float4 centre) {
+    range->min = float4_min(range->min, lo);
+    range->max = float4_max(range->max, hi);
+    range->centre_min = float4_min(range->centre_min, centre);
+    range->centre_max = float4_max(range->centre_max, centre);
 }
 
 void range_measure(const struct reference *references, struct range *range) {
     range_clear(range);
     for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        simd4 lo = reference_min(&references[i]), hi = reference_max(&references[i]);
-        range_add(range, lo, hi, simd4_add(lo, hi));
+        float4 lo = reference_min(&references[i]), hi = reference_max(&references[i]);
+        range_add(range, lo, hi, float4_add(lo, hi));
     }
 }
 
@@ -44,14 +44,14 @@ struct split {
     float low[4], scale[4];
 };
 
-static void bins_of(const struct split *split, simd4 centre, int32_t bin[4]) {
-    simd4_store_int(bin, simd4_mul(simd4_sub(centre, simd4_load(split->low)), simd4_load(split->scale)));
+static void bins_of(const struct split *split, float4 centre, int32_t bin[4]) {
+    float4_store_int(bin, float4_mul(float4_sub(centre, float4_load_any(split->low)), float4_load_any(split->scale)));
 }
 
 static void find_split(const struct reference *references, const struct range *range, struct split *split) {
     float extent[4];
-    simd4_store(extent, simd4_sub(range->centre_max, range->centre_min));
-    simd4_store(split->low, range->centre_min);
+    float4_store_any(extent, float4_sub(range->centre_max, range->centre_min));
+    float4_store_any(split->low, range->centre_min);
     split->axis = -1;
     bool any = false;
     /* The scale from a centre to its bin; 0 along an axis without extent. */
@@ -66,20 +66,20 @@ static void find_split(const struct reference *references, const struct range *r
     if (!any)
         return;
     /* The boxes and counts of the bins. */
-    simd4 lo[3][BINS], hi[3][BINS];
+    float4 lo[3][BINS], hi[3][BINS];
     uint32_t count[3][BINS] = {{0}};
     for (int k = 0; k < 3; k++)
         for (int b = 0; b < bins; b++) {
-            lo[k][b] = simd4_all(INFINITY);
-            hi[k][b] = simd4_all(-INFINITY);
+            lo[k][b] = float4_all(INFINITY);
+            hi[k][b] = float4_all(-INFINITY);
         }
     for (uint32_t i = range->first; i < range->first + range->count; i++) {
-        simd4 a = reference_min(&references[i]), b = reference_max(&references[i]);
+        float4 a = reference_min(&references[i]), b = reference_max(&references[i]);
         int32_t bin[4];
-        bins_of(split, simd4_add(a, b), bin);
+        bins_of(split, float4_add(a, b), bin);
         for (int k = 0; k < 3; k++) {
-            lo[k][bin[k]] = simd4_min(lo[k][bin[k]], a);
-            hi[k][bin[k]] = simd4_max(hi[k][bin[k]], b);
+            lo[k][bin[k]] = float4_min(lo[k][bin[k]], a);
+            hi[k][bin[k]] = float4_max(hi[k][bin[k]], b);
             count[k][bin[k]]++;
         }
     }
@@ -89,20 +89,20 @@ static void find_split(const struct reference *references, const struct range *r
         if (!(split->scale[k] > 0))
             continue;
         float right_cost[BINS];
-        simd4 a = simd4_all(INFINITY), b = simd4_all(-INFINITY);
+        float4 a = float4_all(INFINITY), b = float4_all(-INFINITY);
         uint32_t n = 0;
         for (int j = bins - 1; j > 0; j--) {
-            a = simd4_min(a, lo[k][j]);
-            b = simd4_max(b, hi[k][j]);
+            a = float4_min(a, lo[k][j]);
+            b = float4_max(b, hi[k][j]);
             n += count[k][j];
             right_cost[j] = n ? half_area(a, b) * leaf_cost(n) : -1;
         }
-        a = simd4_all(INFINITY);
-        b = simd4_all(-INFINITY);
+        a = float4_all(INFINITY);
+        b = float4_all(-INFINITY);
         n = 0;
         for (int j = 0; j + 1 < bins; j++) {
-            a = simd4_min(a, lo[k][j]);
-            b = simd4_max(b, hi[k][j]);
+            a = float4_min(a, lo[k][j]);
+            b = float4_max(b, hi[k][j]);
             n += count[k][j];
             if (n == 0 || right_cost[j + 1] < 0)
                 continue;
@@ -136,7 +136,7 @@ void split_range(struct reference *references, const struct range *range, bool h
     range_clear(right);
     uint32_t i = range->first, end = range->first + range->count;
     while (i < end) {
-        simd4 lo = reference_min(&references[i]), hi = reference_max(&references[i]), centre = simd4_add(lo, hi);
+        float4 lo = reference_min(&references[i]), hi = reference_max(&references[i]), centre = float4_add(lo, hi);
         int32_t bin[4];
         bins_of(&split, centre, bin);
         if (bin[split.axis] <= split.last_left) {
@@ -172,8 +172,8 @@ bool split_floor(struct reference *references, const struct range *range, struct
         return false;
     range_measure(references, floor);
     float extent[4], thin[4];
-    simd4_store(extent, simd4_sub(range->max, range->min));
-    simd4_store(thin, simd4_sub(floor->max, floor->min));
+    float4_store_any(extent, float4_sub(range->max, range->min));
+    float4_store_any(thin, float4_sub(floor->max, floor->min));
     if (!(thin[0] < extent[0] / 16 || thin[1] < extent[1] / 16 || thin[2] < extent[2] / 16))
         return false;
     range_measure(references, rest);

@@ -3,18 +3,18 @@
 #ifndef GRAY_ACCEL_TRIANGLE_SPLIT_INTERNAL_H
 #define GRAY_ACCEL_TRIANGLE_SPLIT_INTERNAL_H
 
-#include "accel/simd_internal.h"
 #include "accel/triangle_build_internal.h"
+#include "accel/triangle_vectors_internal.h"
 
 /* References first .. first + count - 1, their box and the box of their centres (times two). */
 struct range {
-    simd4 min, max, centre_min, centre_max;
+    float4 min, max, centre_min, centre_max;
     uint32_t first, count;
 };
 
-static inline float half_area(simd4 lo, simd4 hi) {
+static inline float half_area(float4 lo, float4 hi) {
     float e[4];
-    simd4_store(e, simd4_sub(hi, lo));
+    float4_store_any(e, float4_sub(hi, lo));
     return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
 }
 

@@ -34,10 +34,10 @@ enum {
 /* A move must save this fraction of the parent's surface: less is rounding, or not worth the time. */
 #define MIN_GAIN 1e-3f
 
-static void set_box(struct branch *branch, simd4 min, simd4 max) {
+static void set_box(struct branch *branch, float4 min, float4 max) {
     float lo[4], hi[4];
-    simd4_store(lo, min);
-    simd4_store(hi, max);
+    float4_store_any(lo, min);
+    float4_store_any(hi, max);
     memcpy(branch->min, lo, sizeof branch->min);
     memcpy(branch->max, hi, sizeof branch->max);
     branch->area = half_area(min, max);
@@ -92,7 +92,7 @@ static void tree_refit(struct tree *tree, uint32_t number) {
     while (number != NO_BRANCH) {
         struct branch *branch = &tree->branches[number];
         const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];
-        set_box(branch, simd4_min(branch_min(a), branch_min(b)), simd4_max(branch_max(a), branch_max(b)));
+        set_box(branch, float4_min(branch_min(a), branch_min(b)), float4_max(branch_max(a), branch_max(b)));
         branch->count = a->count + b->count;
         branch->height = branch_height(a, b);
         number = branch->parent;
@@ -125,13 +125,13 @@ static uint32_t best_position(const struct branch *branches, uint32_t number) {
         float gain;
     } stack[MAX_BRANCH_DEPTH + 2];
     const struct branch *moved = &branches[number];
-    const simd4 lo = branch_min(moved), hi = branch_max(moved);
+    const float4 lo = branch_min(moved), hi = branch_max(moved);
     const uint32_t parent = moved->parent;
     uint32_t pivot = parent, sibling = sibling_of(branches, number), best = NO_BRANCH;
     float best_gain = branches[parent].area * MIN_GAIN;
     float shrunk = branches[parent].area; /* by which all surfaces up to the pivot become smaller without it */
-    simd4 rest_lo = branch_min(&branches[sibling]),
-          rest_hi = branch_max(&branches[sibling]); /* the pivot's without it */
+    float4 rest_lo = branch_min(&branches[sibling]),
+           rest_hi = branch_max(&branches[sibling]); /* the pivot's without it */
     for (;;) {
         uint32_t top = 0;
         stack[top].number = sibling;
@@ -142,7 +142,7 @@ static uint32_t best_position(const struct branch *branches, uint32_t number) {
             if (gain - moved->area <= best_gain)
                 continue;
             const struct branch *there = &branches[target];
-            gain -= half_area(simd4_min(branch_min(there), lo), simd4_max(branch_max(there), hi));
+            gain -= half_area(float4_min(branch_min(there), lo), float4_max(branch_max(there), hi));
             if (gain > best_gain) {
                 best_gain = gain;
                 best = target;
@@ -153,8 +153,8 @@ static uint32_t best_position(const struct branch *branches, uint32_t number) {
             }
         }
         if (pivot != parent) {
-            rest_lo = simd4_min(rest_lo, branch_min(&branches[sibling]));
-            rest_hi = simd4_max(rest_hi, branch_max(&branches[sibling]));
+            rest_lo = float4_min(rest_lo, branch_min(&branches[sibling]));
+            rest_hi = float4_max(rest_hi, branch_max(&branches[sibling]));
             shrunk += branches[pivot].area - half_area(rest_lo, rest_hi);
         }
         if (branches[pivot].parent == NO_BRANCH)

@@ -30,11 +30,11 @@ struct tree {
     uint32_t count, capacity;
 };
 
-static inline simd4 branch_min(const struct branch *branch) {
-    return simd4_three(simd4_load(branch->min));
+static inline float4 branch_min(const struct branch *branch) {
+    return float4_three(float4_load_any(branch->min));
 }
-static inline simd4 branch_max(const struct branch *branch) {
-    return simd4_three(simd4_load(branch->max));
+static inline float4 branch_max(const struct branch *branch) {
+    return float4_three(float4_load_any(branch->max));
 }
 
 /* Of a branch with these children. */

@@ -5,8 +5,8 @@
 #include "expr/expr_batch_internal.h"
 #include "expr/expr_frames_internal.h"
 #include "expr/expr_link_internal.h"
-#include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"
+#include "math/lanes.h"
 #include "math/noise_lanes.h"
 
 #include <string.h>
@@ -45,7 +45,7 @@ typedef int64_t __attribute__((may_alias)) row_integer;
 /* Without links, the common operations have loops of constant length, for each operand that may be constant; the others
  * have one loop, and their constants are copied into rows. */
 static inline bool is_common(enum expr_operation operation) {
-#ifdef __AVX2__
+#if defined(LANES_AVX2)
     (void)operation;
     return false; /* they have links */
 #else
@@ -107,7 +107,7 @@ static inline const double *row_of(const double *from, uint32_t is_constant, uin
 /* Elementary functions and noise, with gathered tables: only where there are instructions for that. Points at which
  * the loop without branches does not apply are computed again one by one, from copies of the operands: the result may
  * have replaced them. */
-#ifdef __AVX2__
+#if defined(LANES_AVX2)
 #define LANES(name, fits, of_lane, of_one)                                                                             \
     static void name(const double *as, const double *bs, const double *cs, uint32_t width, double *out) {              \
         double copies[3][EXPR_BATCH];                                                                                  \
@@ -142,7 +142,7 @@ LANES(run_power, el_pow_fits(a, b), el_pow_lane(a, b), el_pow(a, b))
 LANES(run_noise_lanes, noise_fits(a, b, c), noise_perlin_lane(a, b, c), noise_perlin(a, b, c, 0))
 
 static void run_noise(const double *as, const double *bs, const double *cs, uint32_t width, double *out) {
-#ifdef __AVX512BW__
+#if defined(LANES_AVX512)
     int64_t is_other = 0;
     INDEPENDENT
     for (uint32_t i = 0; i < width; i++)
@@ -185,7 +185,7 @@ static void run_sincos(const double *from, uint32_t width, double *sines, double
     double copies[EXPR_BATCH]; /* a result may replace the operand */
     int64_t is_other = -1;
     memcpy(copies, from, width * sizeof *from);
-#ifdef __AVX2__
+#if defined(LANES_AVX2)
     is_other = 0;
     INDEPENDENT
     for (uint32_t i = 0; i < width; i++)
@@ -315,41 +315,34 @@ run_instruction(const struct expr_program *program, const struct expr_instructio
     return in;
 }
 
-#ifdef __AVX2__
+#if defined(LANES_AVX2)
 
 __attribute__((noinline)) static const struct expr_instruction *
 run_rows(const struct expr_program *program, const struct expr_instruction *in, uint32_t width, double *rows) {
     return run_instruction(program, in, width, rows);
 }
 
-#ifdef __AVX512F__
-#define TRUTH_OF(mask) _mm512_castsi512_pd(_mm512_movm_epi64(mask))
-#define MASK_OF(truth) _mm512_movepi64_mask(_mm512_castpd_si512(truth))
-#else
-#define TRUTH_OF(mask) (mask)
-#define MASK_OF(truth) (truth)
-#endif
 /* In terms of vectors what EXPR_OPERATIONS says of numbers. */
 #define LINKED_NEGATE(a) -(a)
-#define LINKED_ABS(a) SIZE_OF(a)
-#define LINKED_SQRT(a) ROOT_OF(a)
-#define LINKED_FLOOR(a) FLOOR_OF(a)
+#define LINKED_ABS(a) double_lanes_size(a)
+#define LINKED_SQRT(a) double_lanes_root(a)
+#define LINKED_FLOOR(a) double_lanes_floor(a)
 #define LINKED_ADD(a, b) (a) + (b)
 #define LINKED_SUBTRACT(a, b) (a) - (b)
 #define LINKED_MULTIPLY(a, b) (a) * (b)
 #define LINKED_DIVIDE(a, b) (a) / (b)
-#define LINKED_MIN(a, b) MIN_OF(b, a)
-#define LINKED_MAX(a, b) MAX_OF(b, a)
-#define LINKED_LESS(a, b) TRUTH_OF(LESS(a, b))
-#define LINKED_LESS_EQUAL(a, b) TRUTH_OF(LESS_EQUAL(a, b))
-#define LINKED_SELECT(a, b, c) PICK(MASK_OF(a), b, c)
+#define LINKED_MIN(a, b) double_lanes_min(b, a)
+#define LINKED_MAX(a, b) double_lanes_max(b, a)
+#define LINKED_LESS(a, b) double_lanes_of_mask(double_lanes_less(a, b))
+#define LINKED_LESS_EQUAL(a, b) double_lanes_of_mask(double_lanes_less_equal(a, b))
+#define LINKED_SELECT(a, b, c) double_lanes_choose(double_lanes_mask_of(a), b, c)
 
 /* One vector, for a few points; sixteen points; and eight vectors, which AVX2 has registers for. */
 #define VECTORS 1
 #define EACH(X, ...) X(0, __VA_ARGS__)
 #define RUN_LINKED run_one
 #include "expr/expr_linked_kernel_internal.h"
-#ifdef __AVX512F__
+#if defined(LANES_AVX512)
 #define VECTORS 2
 #define EACH(X, ...) X(0, __VA_ARGS__) X(1, __VA_ARGS__)
 #else
@@ -369,16 +362,16 @@ run_rows(const struct expr_program *program, const struct expr_instruction *in, 
 
 /* How many of the points that are left are computed together. */
 static inline uint32_t part_of(uint32_t left) {
-    return left >= 8 * WIDTH ? 8 * WIDTH : left >= 16 ? 16 : WIDTH;
+    return left >= 8 * DOUBLE_LANES ? 8 * DOUBLE_LANES : left >= 16 ? 16 : DOUBLE_LANES;
 }
 
 /* Runs the part of the points from number `at` on: up to the next loop, or to the end: NULL. */
 static inline const struct expr_instruction *run_part(const struct expr_program *program,
                                                       const struct expr_instruction *in, uint32_t at, uint32_t part,
                                                       double *rows, const struct expr_direct *direct) {
-    return part == 8 * WIDTH ? run_many(program, in, at, rows, direct)
-           : part == 16      ? run_few(program, in, at, rows, direct)
-                             : run_one(program, in, at, rows, direct);
+    return part == 8 * DOUBLE_LANES ? run_many(program, in, at, rows, direct)
+           : part == 16             ? run_few(program, in, at, rows, direct)
+                                    : run_one(program, in, at, rows, direct);
 }
 
 #else
@@ -462,7 +455,7 @@ static bool batch_begin_step(struct batch_frame *f) {
 
 static void batch_end_step(const struct batch_frame *f) {
     const struct expr_loop *loop = f->loop;
-    const uint32_t width = f->width & ~(WIDTH - 1U); /* which the compiler knows to be whole vectors */
+    const uint32_t width = f->width & ~(DOUBLE_LANES - 1U); /* which the compiler knows to be whole vectors */
     double *rows = f->rows;
     for (uint32_t k = 0; k < loop->state_count; k++)
         write_state(loop, k, width, rows, f->alive);

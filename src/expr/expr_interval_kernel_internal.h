@@ -3,7 +3,7 @@
  * The steps are those of expr_interval.c, and so are the results. */
 #include "expr/expr_frames_internal.h"
 #include "expr/expr_interval_internal.h"
-#include "expr/expr_vector_internal.h"
+#include "expr/expr_outwards_internal.h"
 
 #include <float.h>
 #include <math.h>
@@ -181,8 +181,8 @@ static void end_with(struct boxes_frame *l, uint32_t lane, const struct expr_int
 /* Lanes whose row of these numbers is below (or, for -1, above) a limit. */
 static inline uint64_t lanes_beyond(const double *row, double sign, double limit, uint32_t width) {
     uint64_t lanes = 0;
-    for (uint32_t i = 0; i < width; i += WIDTH)
-        lanes |= IS_LESS(LOAD(row + i) * ALL(sign), ALL(limit)) << i;
+    for (uint32_t i = 0; i < width; i += DOUBLE_LANES)
+        lanes |= IS_LESS(double_lanes_load(row + i) * double_lanes_all(sign), double_lanes_all(limit)) << i;
     return lanes;
 }
 
@@ -306,26 +306,6 @@ static void end_boxes(struct boxes_frame *l, uint32_t step) {
     }
 }
 
-/* One box after the other, which is faster without vectors. */
-static void run_box_by_box(struct boxes_frame *l) {
-    const struct expr_loop *loop = l->loop;
-    struct expr_interval *values =
-        (struct expr_interval *)(void *)(l->ended + (size_t)loop->state_count * 2 * EXPR_BOXES);
-    struct expr_interval *arguments = values + loop->body.constant_count;
-    for (uint32_t box = 0; box < l->m.width; box++) {
-        for (uint32_t k = 0; k < loop->argument_count; k++)
-            arguments[k] = argument_of(l, k, box);
-        expr_interval_loop(loop, loop->first, values);
-        for (uint32_t k = 0; k < loop->state_count; k++) {
-            double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
-            row[box] = arguments[k].low;
-            row[box + EXPR_BOXES] = arguments[k].high;
-            l->may_be_nan[k] |= (uint64_t)arguments[k].may_be_nan << box;
-        }
-    }
-    l->active = 0;
-}
-
 static void boxes_begin_loop(const struct boxes_frame *outer, struct boxes_frame *l) {
     const struct machine *m = &outer->m;
     const struct expr_loop *loop = expr_loop_access(m->program, outer->in).loop;
@@ -346,10 +326,7 @@ static void boxes_begin_loop(const struct boxes_frame *outer, struct boxes_frame
 
 static bool boxes_begin_step(struct boxes_frame *l) {
     const struct expr_loop *loop = l->loop;
-    if (WIDTH > 1)
-        end_boxes(l, l->step);
-    else
-        run_box_by_box(l);
+    end_boxes(l, l->step);
     /* All have ended. */
     if (!l->active) {
         memcpy(l->m.rows, l->ended, (size_t)loop->state_count * 2 * EXPR_BOXES * sizeof *l->ended);
@@ -385,19 +362,23 @@ static void set_unknown(uint64_t unknown, double *low) {
 
 /* One loop over vectors of boxes: al, ah, bl, bh are the ends of the operands, lo and hi those of the result. */
 #define EACH(body)                                                                                                     \
-    for (uint32_t i = 0; i < width; i += WIDTH) {                                                                      \
-        const vector al = LOAD(a.low + (i & a.mask)), ah = LOAD(a.high + (i & a.mask));                                \
-        const vector bl = LOAD(b.low + (i & b.mask)), bh = LOAD(b.high + (i & b.mask));                                \
-        vector lo, hi;                                                                                                 \
+    for (uint32_t i = 0; i < width; i += DOUBLE_LANES) {                                                               \
+        const double_lanes al = double_lanes_load(a.low + (i & a.mask)),                                               \
+                           ah = double_lanes_load(a.high + (i & a.mask));                                              \
+        const double_lanes bl = double_lanes_load(b.low + (i & b.mask)),                                               \
+                           bh = double_lanes_load(b.high + (i & b.mask));                                              \
+        double_lanes lo, hi;                                                                                           \
         (void)bl, (void)bh;                                                                                            \
         body;                                                                                                          \
-        STORE(low + i, lo);                                                                                            \
-        STORE(low + EXPR_BOXES + i, hi);                                                                               \
+        double_lanes_store(low + i, lo);                                                                               \
+        double_lanes_store(low + EXPR_BOXES + i, hi);                                                                  \
     }
 #define COMPARE(body)                                                                                                  \
-    for (uint32_t i = 0; i < width; i += WIDTH) {                                                                      \
-        const vector al = LOAD(a.low + (i & a.mask)), ah = LOAD(a.high + (i & a.mask));                                \
-        const vector bl = LOAD(b.low + (i & b.mask)), bh = LOAD(b.high + (i & b.mask));                                \
+    for (uint32_t i = 0; i < width; i += DOUBLE_LANES) {                                                               \
+        const double_lanes al = double_lanes_load(a.low + (i & a.mask)),                                               \
+                           ah = double_lanes_load(a.high + (i & a.mask));                                              \
+        const double_lanes bl = double_lanes_load(b.low + (i & b.mask)),                                               \
+                           bh = double_lanes_load(b.high + (i & b.mask));                                              \
         body;                                                                                                          \
     }
 /* Of numbers: true for all of both intervals, and for some; a NaN makes it false. */
@@ -409,9 +390,10 @@ static void set_unknown(uint64_t unknown, double *low) {
     out.first &= ~may_be_nan;
 /* Ends of integers that doubles do not represent exactly mean any integer. */
 #define INTEGERS                                                                                                       \
-    const lanes_mask is_exact = BOTH(LESS_EQUAL(ALL(-0x1p53), lo), LESS_EQUAL(hi, ALL(0x1p53)));                       \
-    lo = PICK(is_exact, lo, ALL(-0x1p63));                                                                             \
-    hi = PICK(is_exact, hi, ALL(0x1p63))
+    const double_lanes_mask is_exact = double_lanes_both(double_lanes_less_equal(double_lanes_all(-0x1p53), lo),       \
+                                                         double_lanes_less_equal(hi, double_lanes_all(0x1p53)));       \
+    lo = double_lanes_choose(is_exact, lo, double_lanes_all(-0x1p63));                                                 \
+    hi = double_lanes_choose(is_exact, hi, double_lanes_all(0x1p63))
 /* A result that is not a number, or both infinities, may be anything. */
 #define UNKNOWN(v) unknown |= IS_NAN(v) << i
 #define BOXES(bits) ((bits) >> i)
@@ -449,12 +431,13 @@ run_boxes(struct machine *m, const struct expr_instruction *in, const uint32_t w
         case EXPR_MULTIPLY: {
             TWO;
             if (in->a == in->b)
-                EACH(const vector near = MAX_OF(MAX_OF(al, -ah), ALL(0)); const vector far = MAX_OF(-al, ah);
-                     lo = below(near * near); hi = above(far * far))
+                EACH(const double_lanes near = double_lanes_max(double_lanes_max(al, -ah), double_lanes_all(0));
+                     const double_lanes far = double_lanes_max(-al, ah); lo = below(near * near); hi = above(far * far))
             else
-                EACH(const vector p = al * bl; const vector q = al * bh; const vector r = ah * bl;
-                     const vector s = ah * bh; UNKNOWN(p + q + (r + s)); lo = below(MIN_OF(MIN_OF(p, q), MIN_OF(r, s)));
-                     hi = above(MAX_OF(MAX_OF(p, q), MAX_OF(r, s))))
+                EACH(const double_lanes p = al * bl; const double_lanes q = al * bh; const double_lanes r = ah * bl;
+                     const double_lanes s = ah * bh; UNKNOWN(p + q + (r + s));
+                     lo = below(double_lanes_min(double_lanes_min(p, q), double_lanes_min(r, s)));
+                     hi = above(double_lanes_max(double_lanes_max(p, q), double_lanes_max(r, s))))
             break;
         }
         case EXPR_NEGATE: {
@@ -469,37 +452,38 @@ run_boxes(struct machine *m, const struct expr_instruction *in, const uint32_t w
         }
         case EXPR_ABS: {
             ONE;
-            EACH(lo = MAX_OF(MAX_OF(al, -ah), ALL(0)); hi = MAX_OF(-al, ah);
-                 decided.first |= LANES_OF(IS_LESS(ALL(0), al)))
+            EACH(lo = double_lanes_max(double_lanes_max(al, -ah), double_lanes_all(0)); hi = double_lanes_max(-al, ah);
+                 decided.first |= LANES_OF(IS_LESS(double_lanes_all(0), al)))
             break;
         }
         case EXPR_SQRT: {
             ONE;
-            EACH(lo = below(ROOT_OF(MAX_OF(al, ALL(0)))); hi = above(ROOT_OF(ah));
-                 unknown |= LANES_OF(IS_LESS(ah, ALL(0))); out.first |= LANES_OF(IS_LESS(al, ALL(0))))
+            EACH(lo = below(double_lanes_root(double_lanes_max(al, double_lanes_all(0))));
+                 hi = above(double_lanes_root(ah)); unknown |= LANES_OF(IS_LESS(ah, double_lanes_all(0)));
+                 out.first |= LANES_OF(IS_LESS(al, double_lanes_all(0))))
             break;
         }
         case EXPR_MIN: {
             TWO;
-            EACH(lo = MIN_OF(al, bl); hi = MIN_OF(ah, bh); decided.first |= LANES_OF(IS_LESS_EQUAL(ah, bl));
-                 decided.second |= LANES_OF(IS_LESS(bh, al));
-                 if (b.may_be_nan) hi = CHOOSE(BOXES(b.may_be_nan), ah, hi))
+            EACH(lo = double_lanes_min(al, bl); hi = double_lanes_min(ah, bh);
+                 decided.first |= LANES_OF(IS_LESS_EQUAL(ah, bl)); decided.second |= LANES_OF(IS_LESS(bh, al));
+                 if (b.may_be_nan) hi = double_lanes_choose_bits(BOXES(b.may_be_nan), ah, hi))
             decided.second &= ~out.first;
             out.first = a.may_be_nan;
             break;
         }
         case EXPR_MAX: {
             TWO;
-            EACH(lo = MAX_OF(al, bl); hi = MAX_OF(ah, bh); decided.first |= LANES_OF(IS_LESS_EQUAL(bh, al));
-                 decided.second |= LANES_OF(IS_LESS(ah, bl));
-                 if (b.may_be_nan) lo = CHOOSE(BOXES(b.may_be_nan), al, lo))
+            EACH(lo = double_lanes_max(al, bl); hi = double_lanes_max(ah, bh);
+                 decided.first |= LANES_OF(IS_LESS_EQUAL(bh, al)); decided.second |= LANES_OF(IS_LESS(ah, bl));
+                 if (b.may_be_nan) lo = double_lanes_choose_bits(BOXES(b.may_be_nan), al, lo))
             decided.second &= ~out.first;
             out.first = a.may_be_nan;
             break;
         }
         case EXPR_FLOOR: {
             ONE;
-            EACH(lo = FLOOR_OF(al); hi = FLOOR_OF(ah))
+            EACH(lo = double_lanes_floor(al); hi = double_lanes_floor(ah))
             break;
         }
         case EXPR_INTEGER_ADD: {
@@ -532,8 +516,12 @@ run_boxes(struct machine *m, const struct expr_instruction *in, const uint32_t w
             struct ends a = ends_of(m, in->b, 0, is_float), b = ends_of(m, in->c, 1, is_float);
             decided = (struct expr_choice){holds.first, ~holds.second};
             out.first = (a.may_be_nan & holds.second) | (b.may_be_nan & ~holds.first);
-            EACH(lo = CHOOSE(BOXES(holds.first), al, CHOOSE(BOXES(holds.second), MIN_OF(al, bl), bl));
-                 hi = CHOOSE(BOXES(holds.first), ah, CHOOSE(BOXES(holds.second), MAX_OF(ah, bh), bh)))
+            EACH(lo = double_lanes_choose_bits(
+                     BOXES(holds.first), al,
+                     double_lanes_choose_bits(BOXES(holds.second), double_lanes_min(al, bl), bl));
+                 hi = double_lanes_choose_bits(
+                     BOXES(holds.first), ah,
+                     double_lanes_choose_bits(BOXES(holds.second), double_lanes_max(ah, bh), bh)))
             break;
         }
         EXPR_LOOP_CASES : {

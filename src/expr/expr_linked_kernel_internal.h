@@ -5,11 +5,11 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic" /* addresses of labels */
 
-#define FROM_R(k, operand) LOAD(operand + (k)*WIDTH)
-#define FROM_K(k, operand) ALL(constants[in->operand].f)
+#define FROM_R(k, operand) double_lanes_load(operand + (k)*DOUBLE_LANES)
+#define FROM_K(k, operand) double_lanes_all(constants[in->operand].f)
 #define FROM_L(k, operand) x##k
-#define FROM_I(k, operand) LOAD_ANY(operand + (k)*WIDTH)
-#define KEEP(k, to) STORE(to + (k)*WIDTH, x##k);
+#define FROM_I(k, operand) double_lanes_load_any(operand + (k)*DOUBLE_LANES)
+#define KEEP(k, to) double_lanes_store(to + (k)*DOUBLE_LANES, x##k);
 #define KEEP_0
 #define KEEP_1                                                                                                         \
     double *const to = values + (size_t)in->out * EXPR_BATCH;                                                          \
@@ -60,9 +60,9 @@
     if (++in >= end)                                                                                                   \
         goto done;                                                                                                     \
     goto *targets[in->link];
-#define DECLARE(k, zero) vector x##k = zero;
+#define DECLARE(k, zero) double_lanes x##k = zero;
 #define FORGET(k, zero) x##k = zero;
-#define PUT(k, to) STORE_ANY(to + (k)*WIDTH, x##k);
+#define PUT(k, to) double_lanes_store_any(to + (k)*DOUBLE_LANES, x##k);
 
 /* Points from number `at` on, up to the next loop, or to the end: NULL. rows: of the first point. */
 static const struct expr_instruction *RUN_LINKED(const struct expr_program *program, const struct expr_instruction *in,
@@ -73,7 +73,7 @@ static const struct expr_instruction *RUN_LINKED(const struct expr_program *prog
     const union expr_value *const constants = program->constants;
     double *const values = rows + at - (size_t)program->constant_count * EXPR_BATCH;
     const struct expr_instruction *const end = program->code + program->count;
-    EACH(DECLARE, ALL(0.0))
+    EACH(DECLARE, double_lanes_all(0.0))
     if (in < end)
         goto *targets[in->link];
 done:
@@ -84,8 +84,8 @@ done:
 LOOP:
     return in;
 UNLINKED:
-    in = run_rows(program, in, VECTORS * WIDTH, rows + at);
-    EACH(FORGET, ALL(0.0)) /* not saved over the call */
+    in = run_rows(program, in, VECTORS * DOUBLE_LANES, rows + at);
+    EACH(FORGET, double_lanes_all(0.0)) /* not saved over the call */
     NEXT EXPR_LINK_CASES(TARGET_1, TARGET_2, TARGET_3) PAIR_TARGETS
 }
 

@@ -3,12 +3,12 @@
  * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of
  * vectors. */
 #include "expr/expr_derivative_internal.h"
+#include "expr/expr_outwards_internal.h"
 #include "expr/expr_slopes_internal.h"
-#include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"
 
 /* The part of an array that a vector covers. */
-#define EACH_VECTOR for (int i = 0; i < EXPR_LANES; i += WIDTH)
+#define EACH_VECTOR for (int i = 0; i < EXPR_LANES; i += DOUBLE_LANES)
 
 /* The types of operands. */
 #define TYPES_OF(member, name, R, A, B, C, expression) [member] = {EXPR_TYPE_##A, EXPR_TYPE_##B, EXPR_TYPE_##C},
@@ -18,7 +18,7 @@ static const uint8_t operand_types[EXPR_ALL_OPERATIONS][3] = {EXPR_OPERATIONS(TY
 
 /* Lower and upper ends. */
 struct span {
-    vector low, high;
+    double_lanes low, high;
 };
 
 enum { ALL_LANES = (1 << EXPR_LANES) - 1 };
@@ -38,24 +38,24 @@ static inline struct span outwards(struct span a) {
 }
 
 static inline struct span enclosure(struct span a, struct span b) {
-    return (struct span){MIN_OF(a.low, b.low), MAX_OF(a.high, b.high)};
+    return (struct span){double_lanes_min(a.low, b.low), double_lanes_max(a.high, b.high)};
 }
 
-static inline struct span pick(lanes_mask mask, struct span a, struct span b) {
-    return (struct span){PICK(mask, a.low, b.low), PICK(mask, a.high, b.high)};
+static inline struct span pick(double_lanes_mask mask, struct span a, struct span b) {
+    return (struct span){double_lanes_choose(mask, a.low, b.low), double_lanes_choose(mask, a.high, b.high)};
 }
 
 static inline struct span anything(void) {
-    return (struct span){ALL(-(double)INFINITY), ALL((double)INFINITY)};
+    return (struct span){double_lanes_all(-(double)INFINITY), double_lanes_all((double)INFINITY)};
 }
 
 static inline struct span single_number(double x) {
-    return (struct span){ALL(x), ALL(x)};
+    return (struct span){double_lanes_all(x), double_lanes_all(x)};
 }
 
 /* Ends that are not numbers are unbounded. */
 static inline struct span repaired(struct span a) {
-    lanes_mask unknown = NAN_LANES(a.low + a.high);
+    double_lanes_mask unknown = double_lanes_unordered(a.low + a.high, a.low + a.high);
     return BITS(unknown) ? pick(unknown, anything(), a) : a;
 }
 
@@ -64,58 +64,60 @@ static inline struct span sum_of(struct span a, struct span b) {
 }
 
 /* Products of the ends; NaN for infinity times 0. */
-static inline struct span corners(struct span a, struct span b, vector *check) {
-    vector p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+static inline struct span corners(struct span a, struct span b, double_lanes *check) {
+    double_lanes p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
     *check = p + q + (r + s);
-    return (struct span){MIN_OF(MIN_OF(p, q), MIN_OF(r, s)), MAX_OF(MAX_OF(p, q), MAX_OF(r, s))};
+    return (struct span){double_lanes_min(double_lanes_min(p, q), double_lanes_min(r, s)),
+                         double_lanes_max(double_lanes_max(p, q), double_lanes_max(r, s))};
 }
 
-static inline vector size_of(struct span a) {
-    return MAX_OF(-a.low, a.high) + ALL(0);
+static inline double_lanes size_of(struct span a) {
+    return double_lanes_max(-a.low, a.high) + double_lanes_all(0);
 }
 
 /* A slope times a derivative; a slope of 0 stays 0. */
 static inline struct span slope_times(struct span slope, struct span by) {
-    vector check;
+    double_lanes check;
     struct span out = outwards(corners(slope, by, &check));
-    lanes_mask unknown = NAN_LANES(check);
+    double_lanes_mask unknown = double_lanes_unordered(check, check);
     if (!BITS(unknown))
         return out;
     out = pick(unknown, anything(), out);
-    lanes_mask is_some = LESS(ALL(0), size_of(slope));
+    double_lanes_mask is_some = double_lanes_less(double_lanes_all(0), size_of(slope));
     return pick(is_some, out, single_number(0));
 }
 
 /* Of a slope that is divided by what is above 0, or may be 0. */
 static inline struct span over_positive(struct span slope, struct span by) {
-    lanes_mask below_0 = LESS(slope.low, ALL(0)), above_0 = LESS(ALL(0), slope.high);
-    return (struct span){PICK(below_0, slope.low / by.low, slope.low / by.high),
-                         PICK(above_0, slope.high / by.low, slope.high / by.high)};
+    double_lanes_mask below_0 = double_lanes_less(slope.low, double_lanes_all(0)),
+                      above_0 = double_lanes_less(double_lanes_all(0), slope.high);
+    return (struct span){double_lanes_choose(below_0, slope.low / by.low, slope.low / by.high),
+                         double_lanes_choose(above_0, slope.high / by.low, slope.high / by.high)};
 }
 
 /* --- operands --- */
 
 static inline struct span value_of(const struct expr_lanes *a, int i) {
-    return (struct span){LOAD(a->low + i), LOAD(a->high + i)};
+    return (struct span){double_lanes_load(a->low + i), double_lanes_load(a->high + i)};
 }
 
 static inline struct span slope_of(const struct expr_lanes *a, int k, int i) {
-    return (struct span){LOAD(a->slopes[k].low + i), LOAD(a->slopes[k].high + i)};
+    return (struct span){double_lanes_load(a->slopes[k].low + i), double_lanes_load(a->slopes[k].high + i)};
 }
 
 static inline void put_value(struct expr_lanes *out, int i, struct span a) {
-    STORE(out->low + i, a.low);
-    STORE(out->high + i, a.high);
+    double_lanes_store(out->low + i, a.low);
+    double_lanes_store(out->high + i, a.high);
 }
 
 static inline void put_slope(struct expr_lanes *out, int k, int i, struct span a) {
-    STORE(out->slopes[k].low + i, a.low);
-    STORE(out->slopes[k].high + i, a.high);
+    double_lanes_store(out->slopes[k].low + i, a.low);
+    double_lanes_store(out->slopes[k].high + i, a.high);
 }
 
 /* Results that are not numbers may be anything, and NaN. */
-static inline void put_computed(struct expr_lanes *out, int i, struct span a, vector check) {
-    lanes_mask unknown = NAN_LANES(check);
+static inline void put_computed(struct expr_lanes *out, int i, struct span a, double_lanes check) {
+    double_lanes_mask unknown = double_lanes_unordered(check, check);
     if (BITS(unknown)) {
         a = pick(unknown, anything(), a);
         out->may_be_nan |= (uint32_t)(BITS(unknown) << i);
@@ -134,16 +136,16 @@ static inline const struct expr_lanes *operand(struct machine *run, const struct
     if (type == EXPR_TYPE_N)
         return out;
     struct expr_interval x = expr_interval_of_constant(type, run->program->constants[value]);
-    EACH_VECTOR put_value(out, i, (struct span){ALL(x.low), ALL(x.high)});
+    EACH_VECTOR put_value(out, i, (struct span){double_lanes_all(x.low), double_lanes_all(x.high)});
     out->may_be_nan = x.may_be_nan ? ALL_LANES : 0;
     return out;
 }
 
 /* The largest slopes of the root of an operand. */
-static inline vector root_of(const struct expr_lanes *a, int k, int i) {
-    vector known = a->has_roots ? LOAD(a->roots[k] + i) : ALL((double)INFINITY);
-    vector is_moving = MAX_OF(size_of(slope_of(a, k, i)), -LOAD(a->low + i));
-    return PICK(LESS(ALL(0), is_moving), known, ALL(0));
+static inline double_lanes root_of(const struct expr_lanes *a, int k, int i) {
+    double_lanes known = a->has_roots ? double_lanes_load(a->roots[k] + i) : double_lanes_all((double)INFINITY);
+    double_lanes is_moving = double_lanes_max(size_of(slope_of(a, k, i)), -double_lanes_load(a->low + i));
+    return double_lanes_choose(double_lanes_less(double_lanes_all(0), is_moving), known, double_lanes_all(0));
 }
 
 /* --- box by box --- */
@@ -250,28 +252,32 @@ static void exponentials_of(const double *from, double *out) {
 
 /* By three units, as for all elementary functions. */
 static inline struct span widened(struct span a) {
-    const vector unit = ALL(2 * DBL_EPSILON), tiny = ALL(DBL_TRUE_MIN);
-    vector low = a.low - SIZE_OF(a.low) * unit, high = a.high + SIZE_OF(a.high) * unit;
-    return (struct span){PICK(LESS(low, a.low), low - tiny, a.low), PICK(LESS(a.high, high), high + tiny, a.high)};
+    const double_lanes unit = double_lanes_all(2 * DBL_EPSILON), tiny = double_lanes_all(DBL_TRUE_MIN);
+    double_lanes low = a.low - double_lanes_size(a.low) * unit, high = a.high + double_lanes_size(a.high) * unit;
+    return (struct span){double_lanes_choose(double_lanes_less(low, a.low), low - tiny, a.low),
+                         double_lanes_choose(double_lanes_less(a.high, high), high + tiny, a.high)};
 }
 
 /* Where an angle start + n * 2 pi is between the ends, or closer to them than rounding errors. */
-static inline lanes_mask contains_angle(struct span a, double start) {
+static inline double_lanes_mask contains_angle(struct span a, double start) {
     const double turn = 2 * PI, slack = 1e-9;
-    return LESS_EQUAL(CEIL_OF((a.low - ALL(start) - ALL(slack)) / ALL(turn)),
-                      FLOOR_OF((a.high - ALL(start) + ALL(slack)) / ALL(turn)));
+    return double_lanes_less_equal(
+        double_lanes_ceil((a.low - double_lanes_all(start) - double_lanes_all(slack)) / double_lanes_all(turn)),
+        double_lanes_floor((a.high - double_lanes_all(start) + double_lanes_all(slack)) / double_lanes_all(turn)));
 }
 
 /* Sine or cosine between ends that have these values, with its maximum at `top`. */
-static inline struct span wave(struct span a, vector at_low, vector at_high, double top) {
-    struct span out = {MIN_OF(at_low, at_high), MAX_OF(at_low, at_high)};
-    out.low = PICK(contains_angle(a, top + PI), ALL(-1), out.low);
-    out.high = PICK(contains_angle(a, top), ALL(1), out.high);
+static inline struct span wave(struct span a, double_lanes at_low, double_lanes at_high, double top) {
+    struct span out = {double_lanes_min(at_low, at_high), double_lanes_max(at_low, at_high)};
+    out.low = double_lanes_choose(contains_angle(a, top + PI), double_lanes_all(-1), out.low);
+    out.high = double_lanes_choose(contains_angle(a, top), double_lanes_all(1), out.high);
     out = widened(out);
-    out = (struct span){MAX_OF(out.low, ALL(-1)), MIN_OF(out.high, ALL(1))};
-    lanes_mask is_known = LESS(a.high - a.low, ALL(2 * PI)),
-               is_small = LESS(size_of(enclosure(a, single_number(0))), ALL(1e6));
-    return pick(is_known, pick(is_small, out, (struct span){ALL(-1), ALL(1)}), (struct span){ALL(-1), ALL(1)});
+    out =
+        (struct span){double_lanes_max(out.low, double_lanes_all(-1)), double_lanes_min(out.high, double_lanes_all(1))};
+    double_lanes_mask is_known = double_lanes_less(a.high - a.low, double_lanes_all(2 * PI)),
+                      is_small = double_lanes_less(size_of(enclosure(a, single_number(0))), double_lanes_all(1e6));
+    return pick(is_known, pick(is_small, out, (struct span){double_lanes_all(-1), double_lanes_all(1)}),
+                (struct span){double_lanes_all(-1), double_lanes_all(1)});
 }
 
 /* The sine, the cosine, or both; of one NULL. */
@@ -284,10 +290,11 @@ static void run_wave(struct machine *run, const struct expr_lanes *from, struct 
     uint32_t may_be_nan = from->may_be_nan, is_nan = from->is_nan;
     EACH_VECTOR {
         const struct span a = value_of(from, i);
-        const struct span sine = wave(a, LOAD(sines[0] + i), LOAD(sines[1] + i), PI / 2);
-        const struct span cosine = wave(a, LOAD(cosines[0] + i), LOAD(cosines[1] + i), 0);
+        const struct span sine = wave(a, double_lanes_load(sines[0] + i), double_lanes_load(sines[1] + i), PI / 2);
+        const struct span cosine = wave(a, double_lanes_load(cosines[0] + i), double_lanes_load(cosines[1] + i), 0);
         /* The waves of infinity are not numbers. */
-        may_be_nan |= (uint32_t)(IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-a.low, a.high)) << i);
+        may_be_nan |=
+            (uint32_t)(IS_LESS_EQUAL(double_lanes_all((double)INFINITY), double_lanes_max(-a.low, a.high)) << i);
         /* The slope of one is that of its argument times the other. */
         for (int k = 0; k < run->directions; k++) {
             const struct span slope = slope_of(from, k, i);
@@ -317,8 +324,8 @@ static void run_exponential(struct machine *run, const struct expr_lanes *from, 
     exponentials_of(from->high, ends[1]);
     uint32_t may_be_nan = from->may_be_nan, is_nan = from->is_nan; /* out may be from */
     EACH_VECTOR {
-        struct span value = widened((struct span){LOAD(ends[0] + i), LOAD(ends[1] + i)});
-        value.low = MAX_OF(value.low, ALL(0));
+        struct span value = widened((struct span){double_lanes_load(ends[0] + i), double_lanes_load(ends[1] + i)});
+        value.low = double_lanes_max(value.low, double_lanes_all(0));
         for (int k = 0; k < run->directions; k++)
             put_slope(out, k, i, slope_times(slope_of(from, k, i), value));
         put_value(out, i, value);
@@ -338,10 +345,11 @@ static inline void run_product(struct machine *run, const struct expr_lanes *a, 
     EACH_VECTOR {
         const struct span x = value_of(a, i), y = value_of(b, i);
         /* The value: of a square from its size, otherwise from the four corners. */
-        vector check = ALL(0);
+        double_lanes check = double_lanes_all(0);
         struct span value;
         if (is_square) {
-            vector near = MAX_OF(MAX_OF(x.low, -x.high), ALL(0)), far = MAX_OF(-x.low, x.high);
+            double_lanes near = double_lanes_max(double_lanes_max(x.low, -x.high), double_lanes_all(0)),
+                         far = double_lanes_max(-x.low, x.high);
             value = (struct span){near * near, far * far};
         } else {
             value = corners(x, y, &check);
@@ -352,8 +360,8 @@ static inline void run_product(struct machine *run, const struct expr_lanes *a, 
             if (is_square) {
                 slope = slope_times(s, x);
                 slope = (struct span){slope.low + slope.low, slope.high + slope.high};
-                vector largest = size_of(s);
-                STORE(out->roots[k] + i, largest + largest * ALL(4 * DBL_EPSILON));
+                double_lanes largest = size_of(s);
+                double_lanes_store(out->roots[k] + i, largest + largest * double_lanes_all(4 * DBL_EPSILON));
             } else if (b_is_constant || a_is_constant) {
                 slope = b_is_constant ? slope_times(s, y) : slope_times(t, x);
             } else {
@@ -375,14 +383,15 @@ static inline void run_sum(struct machine *run, const struct expr_lanes *a, cons
     EACH_VECTOR {
         struct span x = value_of(a, i), y = value_of(b, i);
         for (int k = 0; k < run->directions; k++) {
-            vector root = has_roots ? root_of(a, k, i) : ALL(0), other = has_roots ? root_of(b, k, i) : ALL(0);
+            double_lanes root = has_roots ? root_of(a, k, i) : double_lanes_all(0),
+                         other = has_roots ? root_of(b, k, i) : double_lanes_all(0);
             struct span s = slope_of(a, k, i), t = slope_of(b, k, i);
             if (is_difference)
                 t = (struct span){-t.high, -t.low};
             put_slope(out, k, i, b_is_constant ? s : sum_of(s, t));
             if (has_roots) {
-                vector both = ROOT_OF(root * root + other * other);
-                STORE(out->roots[k] + i, both + both * ALL(4 * DBL_EPSILON));
+                double_lanes both = double_lanes_root(root * root + other * other);
+                double_lanes_store(out->roots[k] + i, both + both * double_lanes_all(4 * DBL_EPSILON));
             }
         }
         if (is_difference)
@@ -402,20 +411,20 @@ static inline void run_quotient(struct machine *run, const struct expr_lanes *a,
     uint32_t may_be_nan = a->may_be_nan | b->may_be_nan;
     EACH_VECTOR {
         const struct span x = value_of(a, i), y = value_of(b, i);
-        lanes_mask is_negative = LESS(y.high, ALL(0));
+        double_lanes_mask is_negative = double_lanes_less(y.high, double_lanes_all(0));
         struct span by = pick(is_negative, (struct span){-y.high, -y.low}, y);
         struct span over = pick(is_negative, (struct span){-x.high, -x.low}, x);
-        lanes_mask has_zero = LESS_EQUAL(by.low, ALL(0));
+        double_lanes_mask has_zero = double_lanes_less_equal(by.low, double_lanes_all(0));
         struct span value = pick(has_zero, anything(), outwards(over_positive(over, by)));
         /* NaN is 0 / 0 or infinity by infinity. */
-        vector nearest = MAX_OF(MAX_OF(x.low, -x.high), ALL(0));
-        uint64_t is_some = IS_LESS(ALL(0), nearest), zeros = BITS(has_zero) & ~is_some;
-        uint64_t infinite = IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-x.low, x.high)) &
-                            IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-y.low, y.high));
+        double_lanes nearest = double_lanes_max(double_lanes_max(x.low, -x.high), double_lanes_all(0));
+        uint64_t is_some = IS_LESS(double_lanes_all(0), nearest), zeros = BITS(has_zero) & ~is_some;
+        uint64_t infinite = IS_LESS_EQUAL(double_lanes_all((double)INFINITY), double_lanes_max(-x.low, x.high)) &
+                            IS_LESS_EQUAL(double_lanes_all((double)INFINITY), double_lanes_max(-y.low, y.high));
         may_be_nan |= (uint32_t)((zeros | infinite) << i);
         if (infinite)
-            value = (struct span){CHOOSE(infinite, ALL(-(double)INFINITY), value.low),
-                                  CHOOSE(infinite, ALL((double)INFINITY), value.high)};
+            value = (struct span){double_lanes_choose_bits(infinite, double_lanes_all(-(double)INFINITY), value.low),
+                                  double_lanes_choose_bits(infinite, double_lanes_all((double)INFINITY), value.high)};
         for (int k = 0; k < run->directions; k++) {
             struct span s = slope_of(a, k, i), t = slope_of(b, k, i), slope = s;
             if (!b_is_constant) {
@@ -424,7 +433,7 @@ static inline void run_quotient(struct machine *run, const struct expr_lanes *a,
             }
             slope = pick(is_negative, (struct span){-slope.high, -slope.low}, slope);
             slope = repaired(outwards(over_positive(slope, by)));
-            lanes_mask moves = LESS(ALL(0), MAX_OF(size_of(s), size_of(t)));
+            double_lanes_mask moves = double_lanes_less(double_lanes_all(0), double_lanes_max(size_of(s), size_of(t)));
             put_slope(out, k, i, pick(has_zero, pick(moves, anything(), single_number(0)), slope));
         }
         put_value(out, i, value);
@@ -439,16 +448,21 @@ static inline void run_root(struct machine *run, const struct expr_lanes *a, str
     out->may_be_nan = a->may_be_nan;
     EACH_VECTOR {
         const struct span x = value_of(a, i);
-        struct span value = {below(ROOT_OF(MAX_OF(x.low, ALL(0)))), above(ROOT_OF(x.high))};
-        is_nan |= (uint32_t)(IS_LESS(x.high, ALL(0)) << i);
-        out->may_be_nan |= (uint32_t)(IS_LESS(x.low, ALL(0)) << i);
+        struct span value = {below(double_lanes_root(double_lanes_max(x.low, double_lanes_all(0)))),
+                             above(double_lanes_root(x.high))};
+        is_nan |= (uint32_t)(IS_LESS(x.high, double_lanes_all(0)) << i);
+        out->may_be_nan |= (uint32_t)(IS_LESS(x.low, double_lanes_all(0)) << i);
         for (int k = 0; k < run->directions; k++) {
-            struct span t = slope_of(a, k, i), half = {t.low * ALL(0.5), t.high * ALL(0.5)};
+            struct span t = slope_of(a, k, i), half = {t.low * double_lanes_all(0.5), t.high * double_lanes_all(0.5)};
             struct span slope = repaired(outwards(over_positive(half, value)));
-            vector max = root_of(a, k, i);
-            put_slope(out, k, i,
-                      (struct span){MAX_OF(slope.low, PICK(LESS(t.low, ALL(0)), -max, ALL(0))),
-                                    MIN_OF(slope.high, PICK(LESS(ALL(0), t.high), max, ALL(0)))});
+            double_lanes max = root_of(a, k, i);
+            put_slope(
+                out, k, i,
+                (struct span){
+                    double_lanes_max(slope.low, double_lanes_choose(double_lanes_less(t.low, double_lanes_all(0)), -max,
+                                                                    double_lanes_all(0))),
+                    double_lanes_min(slope.high, double_lanes_choose(double_lanes_less(double_lanes_all(0), t.high),
+                                                                     max, double_lanes_all(0)))});
         }
         put_computed(out, i, value, value.high);
     }
@@ -464,26 +478,28 @@ static inline void run_extreme(struct machine *run, const struct expr_lanes *a, 
     EACH_VECTOR {
         const struct span x = value_of(a, i), y = value_of(b, i);
         /* Lanes that an operand decides. */
-        lanes_mask first = is_max ? LESS_EQUAL(y.high, x.low) : LESS_EQUAL(x.high, y.low);
-        lanes_mask second = is_max ? LESS(x.high, y.low) : LESS(y.high, x.low);
-        struct span value = is_max ? (struct span){MAX_OF(x.low, y.low), MAX_OF(x.high, y.high)}
-                                   : (struct span){MIN_OF(x.low, y.low), MIN_OF(x.high, y.high)};
+        double_lanes_mask first =
+            is_max ? double_lanes_less_equal(y.high, x.low) : double_lanes_less_equal(x.high, y.low);
+        double_lanes_mask second = is_max ? double_lanes_less(x.high, y.low) : double_lanes_less(y.high, x.low);
+        struct span value = is_max ? (struct span){double_lanes_max(x.low, y.low), double_lanes_max(x.high, y.high)}
+                                   : (struct span){double_lanes_min(x.low, y.low), double_lanes_min(x.high, y.high)};
         /* The slopes of that operand, or of both. */
         for (int k = 0; k < run->directions; k++) {
             struct span s = slope_of(a, k, i), t = slope_of(b, k, i);
             struct span slope = pick(first, s, pick(second, t, enclosure(s, t)));
             if (b_nan)
-                slope = (struct span){CHOOSE(b_nan >> i, ALL(-(double)INFINITY), slope.low),
-                                      CHOOSE(b_nan >> i, ALL((double)INFINITY), slope.high)};
+                slope =
+                    (struct span){double_lanes_choose_bits(b_nan >> i, double_lanes_all(-(double)INFINITY), slope.low),
+                                  double_lanes_choose_bits(b_nan >> i, double_lanes_all((double)INFINITY), slope.high)};
             put_slope(out, k, i, slope);
         }
         decided->first |= BITS(first) << i;
         decided->second |= BITS(second) << i;
         /* Where b is not a number, the result is a. */
         if (b_nan && is_max)
-            value.low = CHOOSE(b_nan >> i, x.low, value.low);
+            value.low = double_lanes_choose_bits(b_nan >> i, x.low, value.low);
         else if (b_nan)
-            value.high = CHOOSE(b_nan >> i, x.high, value.high);
+            value.high = double_lanes_choose_bits(b_nan >> i, x.high, value.high);
         put_value(out, i, value);
     }
     decided->second &= ~(uint64_t)(a_nan | b_nan);
@@ -497,13 +513,16 @@ static inline void run_size(struct machine *run, const struct expr_lanes *a, str
     uint32_t may_be_nan = a->may_be_nan, is_nan = a->is_nan;
     EACH_VECTOR {
         const struct span x = value_of(a, i);
-        lanes_mask is_positive = LESS_EQUAL(ALL(0), x.low), is_negative = LESS_EQUAL(x.high, ALL(0));
-        decided->first |= IS_LESS(ALL(0), x.low) << i;
+        double_lanes_mask is_positive = double_lanes_less_equal(double_lanes_all(0), x.low),
+                          is_negative = double_lanes_less_equal(x.high, double_lanes_all(0));
+        decided->first |= IS_LESS(double_lanes_all(0), x.low) << i;
         for (int k = 0; k < run->directions; k++) {
             struct span s = slope_of(a, k, i), t = {-s.high, -s.low};
             put_slope(out, k, i, pick(is_positive, s, pick(is_negative, t, enclosure(s, t))));
         }
-        put_value(out, i, (struct span){MAX_OF(MAX_OF(x.low, -x.high), ALL(0)), MAX_OF(-x.low, x.high)});
+        put_value(out, i,
+                  (struct span){double_lanes_max(double_lanes_max(x.low, -x.high), double_lanes_all(0)),
+                                double_lanes_max(-x.low, x.high)});
     }
     out->may_be_nan = may_be_nan;
     out->is_nan = is_nan;

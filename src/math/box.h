@@ -3,14 +3,12 @@
 #define GRAY_MATH_BOX_H
 
 #include "math/affine.h"
+#include "math/lanes.h"
 #include "math/ray.h"
 #include "math/vec3.h"
 
 #include <stdbool.h>
 #include <stddef.h>
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 struct box {
     struct vec3 min, max;
@@ -80,38 +78,17 @@ struct box_span {
     double enter, leave;
 };
 
-static inline struct box_span box_probe_span_plain(const struct box_probe *probe, const struct box *b) {
-    const double *planes = (const double *)(const void *)b;
-    double near_max = -INFINITY, far_min = INFINITY;
-    for (int i = 0; i < 3; i++) {
-        double near = (planes[probe->near[i]] - probe->origin[i][0]) * probe->inverse[i][0];
-        double far = (planes[probe->far[i]] - probe->origin[i][0]) * probe->inverse[i][0];
-        near_max = near > near_max ? near : near_max;
-        far_min = far < far_min ? far : far_min;
-    }
-    const double near_less = near_max * (1 - 0x1p-49), near_more = near_max * (1 + 0x1p-49); /* infinities stay */
-    const double far_less = far_min * (1 - 0x1p-49), far_more = far_min * (1 + 0x1p-49);
-    return (struct box_span){near_less < near_more ? near_less : near_more, far_less > far_more ? far_less : far_more};
-}
-
-/* The same to the bit, with both planes of a slab at once: the nearest far plane is minus the maximum of the negated
- * values. For a NaN the maximum is its second operand. */
+/* Both planes of a slab at once: the nearest far plane is minus the maximum of the negated values. */
 static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
     _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
-#ifdef __SSE2__
     const double *planes = (const double *)(const void *)b;
-    __m128d max = _mm_set1_pd(-INFINITY);
+    double2 max = double2_all(-(double)INFINITY);
     for (int i = 0; i < 3; i++) {
-        __m128d plane = _mm_loadh_pd(_mm_load_sd(&planes[probe->near[i]]), &planes[probe->far[i]]);
-        __m128d sense = _mm_sub_pd(plane, _mm_loadu_pd(probe->origin[i]));
-        max = _mm_max_pd(_mm_mul_pd(sense, _mm_loadu_pd(probe->inverse[i])), max);
+        double2 plane = {planes[probe->near[i]], planes[probe->far[i]]};
+        max = double2_max((plane - double2_load_any(probe->origin[i])) * double2_load_any(probe->inverse[i]), max);
     }
-    __m128d less = _mm_mul_pd(max, _mm_set1_pd(1 - 0x1p-49)), more = _mm_mul_pd(max, _mm_set1_pd(1 + 0x1p-49));
-    __m128d wide = _mm_min_pd(less, more);
-    return (struct box_span){_mm_cvtsd_f64(wide), -_mm_cvtsd_f64(_mm_unpackhi_pd(wide, wide))};
-#else
-    return box_probe_span_plain(probe, b);
-#endif
+    double2 wide = double2_min(max * (1 - 0x1p-49), max * (1 + 0x1p-49)); /* infinities stay */
+    return (struct box_span){wide[0], -wide[1]};
 }
 
 /* Whether some t of [t_min, t_max] may lie inside the box; rounding never makes it false by mistake. A direction

@@ -5,13 +5,10 @@
 #include "world/packet.h"
 
 #include "accel/beam.h"
+#include "math/lanes.h"
 #include "world/world_internal.h"
 
 #include <string.h>
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
 struct packet_search {
     const struct world *world;
@@ -33,43 +30,22 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
     const double origin[3] = {s->rays->origin.x, s->rays->origin.y, s->rays->origin.z};
     uint64_t met = 0;
     uint32_t count = slot_count(s->rays);
-#ifdef __SSE2__
-    const __m128d size = _mm_castsi128_pd(_mm_set1_epi64x(INT64_MAX)), slack = _mm_set1_pd(0x1p-49);
+    const double2 infinity = double2_all(INFINITY);
     for (uint32_t i = 0; i < count; i += 2) {
-        __m128d enter = _mm_set1_pd(s->rays->t_min), leave = _mm_load_pd(&s->limit[i]);
+        double2 enter = double2_all(s->rays->t_min), leave = double2_load(&s->limit[i]);
         for (int axis = 0; axis < 3; axis++) {
-            __m128d inverse = _mm_load_pd(&s->inverse[axis][i]);
-            __m128d a = _mm_mul_pd(_mm_set1_pd(low[axis] - origin[axis]), inverse);
-            __m128d b = _mm_mul_pd(_mm_set1_pd(high[axis] - origin[axis]), inverse);
+            double2 inverse = double2_load(&s->inverse[axis][i]);
+            double2 a = (low[axis] - origin[axis]) * inverse, b = (high[axis] - origin[axis]) * inverse;
+            double2 near = double2_min(a, b), far = double2_max(a, b);
+            near -= double2_size(near) * 0x1p-49;
+            far += double2_size(far) * 0x1p-49;
             /* A NaN (the ray is in a plane) must not exclude: its slab is the whole line. */
-            __m128d known = _mm_cmpord_pd(a, b), near = _mm_min_pd(a, b), far = _mm_max_pd(a, b);
-            near = _mm_sub_pd(near, _mm_mul_pd(_mm_and_pd(near, size), slack));
-            far = _mm_add_pd(far, _mm_mul_pd(_mm_and_pd(far, size), slack));
-            near = _mm_or_pd(_mm_and_pd(known, near), _mm_andnot_pd(known, _mm_set1_pd(-INFINITY)));
-            far = _mm_or_pd(_mm_and_pd(known, far), _mm_andnot_pd(known, _mm_set1_pd(INFINITY)));
-            /* max and min give their second operand when one is NaN. */
-            enter = _mm_max_pd(near, enter);
-            leave = _mm_min_pd(far, leave);
+            double2_mask unknown = double2_unordered(a, b);
+            enter = double2_max(double2_choose(unknown, -infinity, near), enter);
+            leave = double2_min(double2_choose(unknown, infinity, far), leave);
         }
-        met |= (uint64_t)_mm_movemask_pd(_mm_cmple_pd(enter, leave)) << i;
+        met |= (uint64_t)double2_bits(double2_less_equal(enter, leave)) << i;
     }
-#else
-    for (uint32_t i = 0; i < count; i++) {
-        double enter = s->rays->t_min, leave = s->limit[i];
-        for (int axis = 0; axis < 3; axis++) {
-            double a = (low[axis] - origin[axis]) * s->inverse[axis][i];
-            double b = (high[axis] - origin[axis]) * s->inverse[axis][i];
-            if (isnan(a) || isnan(b))
-                continue;
-            double near = a < b ? a : b, far = a < b ? b : a;
-            near -= fabs(near) * 0x1p-49;
-            far += fabs(far) * 0x1p-49;
-            enter = near > enter ? near : enter;
-            leave = far < leave ? far : leave;
-        }
-        met |= (uint64_t)(enter <= leave) << i;
-    }
-#endif
     return met & ray_packet_all(s->rays);
 }
 
