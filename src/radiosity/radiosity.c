@@ -50,6 +50,7 @@ struct preparation {
     struct world_scratch *scratches; /* of each worker */
     uint32_t *sides, count;          /* those that send rays */
     uint32_t *targets;
+    double *until;
 };
 
 static void find_direct_of(void *context, uint32_t side, int worker) {
@@ -151,9 +152,29 @@ static bool refine(struct preparation *p, struct error *error) {
     return ok;
 }
 
+/* What bright patches reflect is sampled like light of lights: the shares of both sides of each. */
+static bool find_bright_patches(struct preparation *p) {
+    const struct patches *patches = &p->out->patches;
+    double sum = 0;
+    p->until = mem_alloc(2 * patches->all.count * sizeof *p->until);
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++) {
+        struct vec3 c[3];
+        patch_corners(patches, i / 2, c);
+        sum += patch_area(c) * receive_brightness(p->out, i / 2, i % 2);
+        p->until[i] = sum;
+    }
+    for (uint32_t i = 0; p->until && i < 2 * patches->all.count; i++)
+        p->until[i] /= sum;
+    p->receivers.until = p->until;
+    p->receivers.power = sum;
+    return p->until != NULL;
+}
+
 /* What rays of all sides meet, and from that the receivers of each side. */
 static bool find_rays(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
+    for (uint32_t i = 0; i < side_count(out); i++)
+        out->sides[i].unshot = out->sides[i].light;
     p->sides = mem_alloc((size_t)side_count(out) * sizeof *p->sides);
     for (uint32_t i = 0; p->sides && i < side_count(out); i++)
         if (out->sides[i].area > 0)
@@ -163,7 +184,7 @@ static bool find_rays(struct preparation *p, struct error *error) {
             error, ERROR_SCENE,
             "--integrator radiosity needs a diffuse surface with an end and an area, and the scene has none");
     p->targets = mem_alloc((size_t)p->count * p->receivers.rays * sizeof *p->targets);
-    if (!p->sides || !p->targets)
+    if (!p->sides || !p->targets || !find_bright_patches(p))
         return error_no_memory(error, "radiosity");
     if (!patches_index_space(&out->patches, p->input->pool, error))
         return false;
@@ -277,8 +298,11 @@ static struct digest digest_of(const struct preparation *p) {
 
 static bool solve(struct preparation *p, struct error *error) {
     struct radiosity *out = p->out;
-    return patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
-           find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
+    bool ok = patches_build(&out->patches, p->input->world, p->input->limit, p->input->pool, error) &&
+              find_direct(p, 0, error) && refine(p, error) && find_rays(p, error);
+    for (uint32_t i = 0; ok && i < p->count; i++)
+        out->sides[p->sides[i]].unshot = colour_sub(out->sides[p->sides[i]].light, out->sides[p->sides[i]].unshot);
+    return ok;
 }
 
 static void end_preparation(struct preparation *p) {
@@ -291,6 +315,7 @@ static void end_preparation(struct preparation *p) {
     mem_free(p->receivers.emissive);
     mem_free(p->sides);
     mem_free(p->targets);
+    mem_free(p->until);
 }
 
 bool radiosity_prepare(struct radiosity *radiosity, const struct radiosity_input *input, struct error *error) {
@@ -396,7 +421,7 @@ bool radiosity_finish(struct radiosity *radiosity, double error_share, struct po
     struct colour *smoothed = mem_alloc(count * sizeof *smoothed);
     bool ok = (direct && indirect && smoothed) || error_no_memory(error, "radiosity");
     for (uint32_t i = 0; ok && i < count; i++)
-        direct[i] = radiosity->sides[i].light;
+        direct[i] = colour_sub(radiosity->sides[i].light, radiosity->sides[i].unshot);
     if (ok && !radiosity_shoot(radiosity, error_share, pool))
         ok = error_set(error, ERROR_CANCELLED, "stopped while radiosity was computed");
     for (uint32_t i = 0; ok && i < count; i++)

@@ -281,22 +281,90 @@ static bool follow_ray(struct receiver_ray *r, uint64_t key, struct hit *hit) {
     return false;
 }
 
-/* The side of a vertex of a hit, by the shares of those that reflect light. */
-static uint32_t find_target(const struct radiosity *radiosity, const struct hit *hit, double choice) {
+/* --- light that patches reflect --- */
+
+/* Where a ray meets a patch: the shares of its sides that reflect light, and what they reflect of the light of samples
+ * of lights. pdf: of positions on bright patches, by solid angle. */
+struct reflection {
     uint32_t patch;
-    double shares[3], sum = 0;
-    if (!patches_find(&radiosity->patches, hit, &patch, shares))
-        return SIDE_NONE;
-    const uint32_t *vertex = patch_at(&radiosity->patches, patch)->vertex;
+    double shares[3], sum, pdf;
+    struct colour light;
+};
+
+double receive_brightness(const struct radiosity *radiosity, uint32_t patch, bool back) {
+    double sum = 0;
     for (int k = 0; k < 3; k++) {
-        shares[k] = radiosity->sides[2 * vertex[k] + !hit->front].area > 0 ? shares[k] : 0;
-        sum += shares[k];
+        const struct side_light *side = &radiosity->sides[2 * patch_at(&radiosity->patches, patch)->vertex[k] + back];
+        sum += colour_max_abs(colour_mul(side->reflectance, side->unshot));
     }
-    choice *= sum;
+    return sum / 3;
+}
+
+static bool find_reflection(const struct receiver_ray *r, const struct hit *hit, struct reflection *out) {
+    const struct receiver_input *input = r->receiver->input;
+    const struct radiosity *radiosity = input->radiosity;
+    const double cosine = fabs(vec3_dot(r->direction, hit->normal_geometric));
+    const struct vec3 to = vec3_sub(hit->point, r->from.point);
+    *out = (struct reflection){0};
+    if (!patches_find(&radiosity->patches, hit, &out->patch, out->shares))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        uint32_t number = 2 * patch_at(&radiosity->patches, out->patch)->vertex[k] + !hit->front;
+        const struct side_light *side = &radiosity->sides[number];
+        out->shares[k] = side->area > 0 ? out->shares[k] : 0;
+        out->sum += out->shares[k];
+        out->light = colour_add_scaled(out->light, colour_mul(side->reflectance, side->unshot), out->shares[k]);
+    }
+    if (out->sum > 0)
+        out->light = colour_scale(out->light, 1 / out->sum);
+    if (input->power > 0)
+        out->pdf = receive_brightness(radiosity, out->patch, !hit->front) / input->power * vec3_dot(to, to) / cosine;
+    return true;
+}
+
+/* The side of a vertex of a hit, by the shares of those that reflect light; the ray meets what its patch reflects. */
+static uint32_t find_target(struct receiver_ray *r, const struct hit *hit, double choice) {
+    struct reflection there;
     int k = 0;
-    while (k < 2 && choice >= shares[k])
-        choice -= shares[k++];
-    return shares[k] > 0 ? 2 * vertex[k] + !hit->front : SIDE_NONE;
+    if (!find_reflection(r, hit, &there))
+        return SIDE_NONE;
+    if (there.pdf > 0)
+        meet(r, there.light, there.pdf);
+    choice *= there.sum;
+    while (k < 2 && choice >= there.shares[k])
+        choice -= there.shares[k++];
+    return there.shares[k] > 0
+               ? 2 * patch_at(&r->receiver->input->radiosity->patches, there.patch)->vertex[k] + !hit->front
+               : SIDE_NONE;
+}
+
+static struct receiver_ray start_ray(const struct receiver *receiver, const struct hit *from, struct vec3 direction) {
+    struct receiver_ray r = {.receiver = receiver, .from = light_receiver_of(from), .direction = direction};
+    const struct ray start = {.origin = r.from.from};
+    r.pdf = intensity_of(vec3_dot(direction, from->view)) * rays_per_sample(receiver->input);
+    r.ray = hit_ray(from, &start, direction, NULL);
+    return r;
+}
+
+/* The intensity that arrives from a position on a bright patch, which is chosen by brightness and area. */
+static struct colour light_of_patch(const struct receiver *receiver, const struct hit *from, uint32_t position) {
+    const struct receiver_input *input = receiver->input;
+    const struct patches *patches = &input->radiosity->patches;
+    const double choice = stratified(receiver, position, 5).x;
+    const uint32_t side = (uint32_t)sample_entry(input->until, 2 * patches->all.count, choice);
+    const struct sample2 xi = stratified(receiver, position, 6);
+    const double root = sqrt(xi.x), shares[3] = {1 - root, root * (1 - xi.y), root * xi.y};
+    struct vec3 c[3], point = {0, 0, 0};
+    struct reflection there;
+    struct hit hit;
+    patch_corners(patches, side / 2, c);
+    for (int k = 0; k < 3; k++)
+        point = vec3_add_scaled(point, c[k], shares[k]);
+    struct receiver_ray r = start_ray(receiver, from, vec3_normalize(vec3_sub(point, from->point)));
+    if (!(r.pdf > 0) || !follow_ray(&r, random_combine(receiver->key, position), &hit) ||
+        !find_reflection(&r, &hit, &there) || there.patch != side / 2 || hit.front == (side & 1))
+        return colour_all(0);
+    return colour_scale(there.light, r.pdf / rays_per_sample(input) * power_weight(there.pdf, r.pdf) / there.pdf);
 }
 
 /* All of the scene is behind the surface, as outside of a room: no ray can meet anything. */
@@ -328,20 +396,19 @@ void receive_rays(const struct receiver_input *input, uint32_t side, struct worl
             if (bsdf.opacity < 0.5)
                 continue;
         }
+        if (input->power > 0)
+            sum = colour_add_scaled(sum, light_of_patch(&receiver, &from, i), each);
         for (uint32_t k = 0; k < each; k++) {
             uint32_t cell = sample_permute(i * each + k, input->rays, key);
             uint64_t own = random_combine(key, input->rays + cell);
-            struct receiver_ray r = {.receiver = &receiver, .from = light_receiver_of(&from)};
-            r.direction = sample_cosine(from.view, sample_cell(key, cell % n, cell / n, n));
-            r.pdf = intensity_of(vec3_dot(r.direction, from.view)) * rays_per_sample(input);
-            const struct ray start = {.origin = r.from.from};
-            r.ray = hit_ray(&from, &start, r.direction, NULL);
+            const struct sample2 xi = sample_cell(key, cell % n, cell / n, n);
+            struct receiver_ray r = start_ray(&receiver, &from, sample_cosine(from.view, xi));
             if (follow_ray(&r, own, &hit))
-                targets[i * each + k] = find_target(input->radiosity, &hit, random_unit(own));
+                targets[i * each + k] = find_target(&r, &hit, random_unit(own));
             sum = colour_add(sum, r.light);
         }
     }
-    out->light = out->unshot = colour_add_scaled(out->light, sum, out->weight);
+    out->light = colour_add_scaled(out->light, sum, out->weight);
 }
 
 /* --- digests --- */

@@ -17,13 +17,19 @@ struct receiver_input {
     struct box bounds; /* of all that rays can meet */
     uint64_t seed;
     uint32_t rays; /* a square, and a multiple of RECEIVE_POSITIONS */
+    /* For receive_rays: the light of samples of lights that patches reflect, by area, and the rising shares of the
+     * fronts and backs of patches in it. In `unshot` of each side is that light. */
+    double power;
+    const double *until;
 };
 
 /* Sets reflectance, area and weight, and as light that of samples of lights. */
 void receive_direct(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                     struct side_light *out);
-/* Adds the direct light that rays meet; all light is unshot then. targets: of each ray the side of a vertex that it
- * meets, or SIDE_NONE. */
+/* How bright a side of a patch is by its three vertices. */
+double receive_brightness(const struct radiosity *radiosity, uint32_t patch, bool back);
+/* Adds the direct light that rays meet, and the light of samples of lights that comes by one reflection: by rays and by
+ * positions on bright patches. targets: of each ray the side of a vertex that it meets, or SIDE_NONE. */
 void receive_rays(const struct receiver_input *input, uint32_t side, struct world_scratch *scratch,
                   struct side_light *out, uint32_t *targets);
 
