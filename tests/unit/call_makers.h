@@ -46,8 +46,8 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     double middle = !bounded ? 1 : isfinite(p->high) ? fmax(p->low, floor(p->low / 2 + p->high / 2)) : p->low + 1;
     const char *text = "nil";
     switch (p->kind) {
-    case KIND_NUMBER:
-        (void)snprintf(out, size, "%.17g", middle);
+    case KIND_NUMBER: /* edges are shorter than half of a shape's sides */
+        (void)snprintf(out, size, "%.17g", strcmp(p->name, "edge") == 0 ? 0.25 : middle);
         return;
     case KIND_WHOLE:
         (void)snprintf(out, size, "%.0f", middle > 16 && p->low <= 16 ? 16 : middle);

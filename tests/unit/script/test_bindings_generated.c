@@ -205,22 +205,28 @@ static void note_kinds(struct listener *listener, const struct render_request *r
     }
 }
 
+static void note_kinds_of(struct kinds *kinds, const char *call) {
+    char text[CALL_SIZE + 512];
+    struct error error;
+    (void)snprintf(text, sizeof text,
+                   PREPARATION "root = gr.node('root')\nroot:add_child(%s)\n"
+                               "gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n",
+                   call);
+    if (!listen_to_text(&kinds->listener, text, NULL, &error))
+        test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+}
+
 TEST(every_kind_of_shape_is_made_by_a_function) {
     write_files();
     struct kinds kinds = {.listener = {.seen = note_kinds}};
+    note_kinds_of(&kinds, "gr.box{min = {0, 0, 0}, max = {1, 1, 1}, edge = 0.1}");
     for (int f = 0; f < function_count(); f++) {
         const struct script_function *function = function_at(f);
         if (function->owner != OWNER_GR || function->result != RESULT_NODE)
             continue;
-        char call[CALL_SIZE], text[CALL_SIZE + 512];
-        struct error error;
+        char call[CALL_SIZE];
         positional_call(function, function->forms[0], -1, "", call);
-        (void)snprintf(text, sizeof text,
-                       PREPARATION "root = gr.node('root')\nroot:add_child(%s)\n"
-                                   "gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n",
-                       call);
-        if (!listen_to_text(&kinds.listener, text, NULL, &error))
-            test_fail(__FILE__, __LINE__, "%s: %s", call, error.text);
+        note_kinds_of(&kinds, call);
     }
     CHECK(kinds.csg);
     for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++)
