@@ -47,7 +47,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     const char *text = "nil";
     switch (p->kind) {
     case KIND_NUMBER: /* edges are shorter than half of a shape's sides */
-        (void)snprintf(out, size, "%.17g", strcmp(p->name, "edge") == 0 ? 0.25 : middle);
+        (void)snprintf(out, size, "%.17g", strstr(p->help, "rounded edges") ? 0.25 : middle);
         return;
     case KIND_WHOLE:
         (void)snprintf(out, size, "%.0f", middle > 16 && p->low <= 16 ? 16 : middle);
