@@ -335,7 +335,7 @@ TEST(a_farm_with_noise_has_the_bytes_of_one_run_whatever_is_lost) {
     expect_pictures(NULL, COMPARE);
     for (int rank = 0; rank < 3; rank += 2) {
         char line[100];
-        farm = start_farm("", 3, NOISE " --farm-stall 0.4 --farm-silence 1");
+        farm = start_farm("", 3, NOISE " --farm-stall 0.4 --farm-silence 10");
         if (await_work(rank, 0.1, NULL))
             CHECK(kill(process_of(rank, true), rank ? SIGSTOP : SIGKILL) == 0);
         CHECK_EQ_INT(await_end(farm), 0);
