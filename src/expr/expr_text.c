@@ -6,7 +6,6 @@
 
 #include "base/mem.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,31 +23,10 @@ struct operand {
 };
 
 struct text {
-    char *out;
-    size_t used, room;
+    struct document *out;
     struct expr_images *images;
     uint32_t count; /* numbers in use */
-    bool full;      /* no memory */
 };
-
-static void put(struct text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put(struct text *t, const char *format, ...) {
-    char words[64];
-    va_list arguments;
-    va_start(arguments, format);
-    int length = vsnprintf(words, sizeof words, format, arguments);
-    va_end(arguments);
-    if (t->used + sizeof words > t->room) {
-        char *larger = mem_resize_array(t->out, 2 * t->room + sizeof words, 1);
-        t->full |= !larger;
-        if (!larger)
-            return;
-        t->out = larger;
-        t->room = 2 * t->room + sizeof words;
-    }
-    memcpy(t->out + t->used, words, (size_t)length + 1);
-    t->used += (size_t)length;
-}
 
 static void put_float(struct text *t, double x) {
     char words[32];
@@ -57,18 +35,18 @@ static void put_float(struct text *t, double x) {
         if (strtod(words, NULL) == x)
             break;
     }
-    put(t, " %s", words);
+    document_add(t->out, " %s", words);
 }
 
 static void put_operand(struct text *t, const struct operand *operand) {
     if (operand->number != EXPR_NONE)
-        put(t, " v%u", (unsigned)operand->number);
+        document_add(t->out, " v%u", (unsigned)operand->number);
     else if (operand->type == EXPR_TYPE_F)
         put_float(t, operand->constant.f);
     else if (operand->type == EXPR_TYPE_B)
-        put(t, operand->constant.i ? " true" : " false");
+        document_add(t->out, operand->constant.i ? " true" : " false");
     else
-        put(t, " %lld", (long long)operand->constant.i);
+        document_add(t->out, " %lld", (long long)operand->constant.i);
 }
 
 /* map: of the registers. */
@@ -88,7 +66,7 @@ static bool put_image(struct text *t, int64_t operand, struct error *error) {
         return error_set(error, ERROR_SCENE, "a function reads more than %d pictures", EXPR_IMAGES);
     t->images->items[at] = function;
     t->images->count += at == t->images->count;
-    put(t, " image%d.%d", at + 1, (int)(operand & 3));
+    document_add(t->out, " image%d.%d", at + 1, (int)(operand & 3));
     return true;
 }
 
@@ -101,26 +79,26 @@ static bool put_loop(struct text *t, const struct expr_loop *loop, struct operan
     if (!map)
         return error_no_memory(error, "a function");
     uint32_t step = t->count;
-    put(t, "loop v%u %u %u %s", (unsigned)step, loop->first, loop->last, loop->ends ? "while" : "all");
+    document_add(t->out, "loop v%u %u %u %s", (unsigned)step, loop->first, loop->last, loop->ends ? "while" : "all");
     for (uint32_t k = 0; k < loop->state_count; k++) {
         outside[k].type = loop->type[k];
-        put(t, " %s", type_names[loop->type[k]]);
+        document_add(t->out, " %s", type_names[loop->type[k]]);
         put_operand(t, &outside[k]);
     }
-    put(t, "; ");
+    document_add(t->out, "; ");
     map[loop->argument_count] = (struct operand){step, EXPR_TYPE_I, {.i = 0}};
     for (uint32_t k = 0; k < loop->argument_count; k++)
         map[k] = k < loop->state_count ? (struct operand){step + 1 + k, loop->type[k], {.i = 0}} : outside[k];
     t->count += 1 + loop->state_count;
     bool ok = put_code(t, body, map, error);
-    put(t, "next v%u", (unsigned)t->count);
+    document_add(t->out, "next v%u", (unsigned)t->count);
     for (uint32_t k = 0; ok && k < loop->state_count; k++) {
         struct operand next = operand_of(body, map, loop->next[k], loop->type[k]);
         put_operand(t, &next);
         outside[k] = (struct operand){t->count + k, loop->type[k], {.i = 0}};
     }
     t->count += loop->state_count;
-    put(t, "; ");
+    document_add(t->out, "; ");
     mem_free(map);
     return ok;
 }
@@ -129,7 +107,7 @@ static bool put_instruction(struct text *t, const struct expr_program *program, 
                             struct operand *map, struct error *error) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
     const uint16_t operands[3] = {in->a, in->b, in->c};
-    put(t, "v%u = %s", (unsigned)t->count, expr_operation_name(operation));
+    document_add(t->out, "v%u = %s", (unsigned)t->count, expr_operation_name(operation));
     for (int k = 0; k < expr_operand_count(operation); k++) {
         const enum expr_type type = expr_operand_type(operation, k);
         const struct operand value = operand_of(program, map, operands[k], type);
@@ -140,7 +118,7 @@ static bool put_instruction(struct text *t, const struct expr_program *program, 
             put_operand(t, &value);
         }
     }
-    put(t, "; ");
+    document_add(t->out, "; ");
     map[in->out - program->constant_count] = (struct operand){t->count++, expr_result_type(operation), {.i = 0}};
     return true;
 }
@@ -175,30 +153,24 @@ static bool put_code(struct text *t, const struct expr_program *program, struct 
     return ok;
 }
 
-char *expr_write_text(const struct expr_program *program, struct expr_images *images, struct error *error) {
-    struct text t = {.images = images};
+bool expr_write_text(const struct expr_program *program, struct document *out, struct expr_images *images,
+                     struct error *error) {
+    struct text t = {.out = out, .images = images};
     struct operand *map = mem_alloc_zero((size_t)program->register_count + 1, sizeof *map);
-    if (!map) {
-        (void)error_no_memory(error, "a function");
-        return NULL;
-    }
+    if (!map)
+        return error_no_memory(error, "a function");
     for (int i = 0; i < program->input_count; i++) {
-        put(&t, "v%u = %s; ", (unsigned)t.count, expr_input_name((enum expr_input)program->inputs[i].input));
+        document_add(out, "v%u = %s; ", (unsigned)t.count, expr_input_name((enum expr_input)program->inputs[i].input));
         map[program->inputs[i].value - program->constant_count] = (struct operand){t.count++, EXPR_TYPE_F, {.i = 0}};
     }
     bool ok = put_code(&t, program, map, error);
-    put(&t, "result");
+    document_add(out, "result");
     for (int i = 0; ok && i < program->output_count; i++) {
         struct operand value = operand_of(program, map, program->outputs[i], EXPR_TYPE_F);
         put_operand(&t, &value);
     }
     mem_free(map);
-    if (ok && !t.full)
-        return t.out;
-    if (ok)
-        (void)error_no_memory(error, "a function");
-    mem_free(t.out);
-    return NULL;
+    return ok && (!out->failed || error_no_memory(error, "a function"));
 }
 
 /* --- reading --- */
@@ -364,7 +336,7 @@ static bool end_loop(struct reading *r) {
     if (r->depth == 0)
         return fail(r, "next without a loop");
     struct open_loop *open = &r->loops[r->depth - 1];
-    uint32_t states[EXPR_STATES], step = r->depth == 0 ? 0 : open->step;
+    uint32_t states[EXPR_STATES];
     (void)next_word(r);
     if (!read_number(r))
         return false;
@@ -373,7 +345,7 @@ static bool end_loop(struct reading *r) {
             return false;
     if (!expr_loop(&r->graph, &open->loop, states))
         return add_number(r, EXPR_NONE);
-    for (uint32_t k = step; k < r->count; k++)
+    for (uint32_t k = open->step; k < r->count; k++)
         r->nodes[k] = EXPR_NONE;
     r->depth--;
     for (uint32_t k = 0; k < open->loop.state_count; k++)

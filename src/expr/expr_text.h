@@ -13,6 +13,7 @@
 #ifndef GRAY_EXPR_EXPR_TEXT_H
 #define GRAY_EXPR_EXPR_TEXT_H
 
+#include "base/document.h"
 #include "expr/expr_program.h"
 
 /* The pictures of a program. */
@@ -22,8 +23,9 @@ struct expr_images {
     int count;
 };
 
-/* The text, which the caller frees, and its pictures. NULL with an error: no memory, or too many pictures. */
-char *expr_write_text(const struct expr_program *program, struct expr_images *images, struct error *error);
+/* Adds the text, and fills in its pictures. Errors: no memory, or too many pictures. */
+bool expr_write_text(const struct expr_program *program, struct document *out, struct expr_images *images,
+                     struct error *error);
 /* Compiles a text. Any text is allowed: it gives a program that ends, or an error. */
 bool expr_read_text(const char *text, const struct expr_images *images, struct arena *arena,
                     struct expr_program *program, struct error *error);

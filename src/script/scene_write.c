@@ -1,10 +1,11 @@
 /* Records the calls of a scene that is written, and writes it: scene_write.lua has the records and the text. */
 #include "script/scene_write_internal.h"
 
-#include "base/mem.h"
+#include "base/document.h"
 #include "expr/expr_text.h"
 #include "sandbox/embedded.h"
 #include "script/gr_model_internal.h"
+#include "script/scene_json_internal.h"
 #include "script/script_internal.h"
 #include "script/table_internal.h"
 
@@ -62,14 +63,6 @@ static int quote(lua_State *L) {
     return 1;
 }
 
-/* The text of a program that C owns becomes one of Lua. Arguments: the function, a name, the text, a table. */
-static int call_with_code(lua_State *L) {
-    lua_pushstring(L, lua_touserdata(L, 3));
-    lua_replace(L, 3);
-    lua_call(L, 3, 0);
-    return 0;
-}
-
 /* The function of a picture that texture:at has made, or NULL. */
 static int image_function(lua_State *L) {
     const struct script_texture *texture = lua_touserdata(L, 1);
@@ -95,28 +88,23 @@ static void note_function(struct script_context *context, const struct script_pa
                           const struct script_value *value) {
     lua_State *L = context->sandbox.lua;
     struct expr_images images = {0};
+    struct document code = {.arena = &context->sandbox.call};
     struct error error = {0};
     const struct expr_program *program =
         value->texture ? value->texture->texture->operation.recorded.program : value->program;
     if (!program)
         sandbox_raise(&context->sandbox, "%s is a function that is not recorded, so it cannot be written", p->name);
+    if (!expr_write_text(program, &code, &images, &error))
+        sandbox_raise_error(&context->sandbox, &error);
     push_writer(L, "program");
     lua_pushstring(L, p->name);
-    char *code = expr_write_text(program, &images, &error);
-    if (!code)
-        sandbox_raise_error(&context->sandbox, &error);
-    lua_pushlightuserdata(L, code);
+    lua_pushlstring(L, code.text, code.used);
     lua_createtable(L, images.count, 0);
     for (int k = 0; k < images.count; k++) {
         lua_pushlightuserdata(L, (void *)(uintptr_t)images.items[k]);
         lua_rawseti(L, -2, k + 1);
     }
-    lua_pushcfunction(L, call_with_code);
-    lua_insert(L, -5);
-    int status = lua_pcall(L, 4, 0, 0);
-    mem_free(code);
-    if (status != LUA_OK)
-        lua_error(L);
+    lua_call(L, 3, 0);
 }
 
 /* A file as gray has found it, so that the text may be elsewhere than the script: relative to the text if it is below
@@ -197,11 +185,11 @@ void scene_write_call(struct script_context *context, const struct script_functi
         lua_pushstring(L, function->name);
         lua_call(L, 2, 0);
     }
-    if (model) { /* without materials it is lighter than in a script, see flatten_material.c */
+    if (model) { /* without materials it is lighter than in a script */
         push_writer(L, "model");
         lua_pushlightuserdata(L, result->pointer);
         if (model->materials.count == 0)
-            lua_pushnumber(L, 0.85);
+            lua_pushnumber(L, STUDIO_GRAY);
         else
             lua_pushnil(L);
         lua_pushboolean(L, models_turn(context).forward.m[1][1] != 1);
@@ -272,7 +260,9 @@ static int write_picture(lua_State *L) {
     push_writer(L, "picture");
     lua_pushstring(L, context->function->name);
     lua_pushlightuserdata(L, request->root);
-    lua_createtable(L, 0, 3);
+    lua_createtable(L, 0, 5);
+    lua_pushinteger(L, SCENE_JSON_VERSION);
+    lua_setfield(L, -2, "version");
     lua_pushboolean(L, !script_of(context)->only_named_pictures);
     lua_setfield(L, -2, "classic");
     lua_pushboolean(L, script_of(context)->host->text_is_lua);
