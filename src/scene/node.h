@@ -138,6 +138,9 @@ struct scene_changes {
     struct posed_node posed[SCENE_POSED_MAX]; /* nodes whose transforms were set, each once */
 };
 
+/* The diffuse colour of shapes without a material in the light of a studio, and of models. */
+#define STUDIO_GRAY 0.85
+
 enum { SCENE_NAMES = 64 };
 struct scene {
     struct arena arena;

@@ -32,8 +32,8 @@ void scene_json_run(lua_State *L) {
 
 #else
 
-/* VERSION: of the files. DEPTH: of objects in each other, through `ref`, too. */
-enum { VERSION = 1, DEPTH = 1000 };
+/* Of values in each other, through `ref`, too. */
+enum { DEPTH = 1000 };
 
 /* A member by its key, or an entry by its index if the key is NULL. */
 struct position {
@@ -373,10 +373,10 @@ static void check_top(struct scene_reader *r, const json_t *root) {
     const char *key;
     json_t *value;
     if (!json_is_integer(version))
-        sandbox_raise(sandbox, "it is no scene of gray: \"gray\": %d is missing at the top", VERSION);
-    if (json_integer_value(version) != VERSION)
+        sandbox_raise(sandbox, "it is no scene of gray: \"gray\": %d is missing at the top", SCENE_JSON_VERSION);
+    if (json_integer_value(version) != SCENE_JSON_VERSION)
         sandbox_raise(sandbox, "it is of version %lld; this gray reads version %d",
-                      (long long)json_integer_value(version), VERSION);
+                      (long long)json_integer_value(version), SCENE_JSON_VERSION);
     json_object_foreach((json_t *)(uintptr_t)root, key, value) {
         struct suggestion suggestion;
         bool known = false;

@@ -5,6 +5,9 @@
 #include <lua.h>
 #include <stdbool.h>
 
+/* Of the files. */
+enum { SCENE_JSON_VERSION = 1 };
+
 /* Whether it is the name of one: it ends in .json. */
 bool scene_json_is_named(const char *path);
 /* Reads the file that takes the place of the script. May raise. */

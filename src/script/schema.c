@@ -5,6 +5,7 @@
 
 #include "base/document.h"
 #include "base/unreachable.h"
+#include "script/scene_json_internal.h"
 #include "script/table_internal.h"
 
 #include <math.h>
@@ -212,22 +213,31 @@ void script_json_schema(struct document *document) {
     } results[] = {{RESULT_NODE, "node"},       {RESULT_MATERIAL, "material"}, {RESULT_LIGHT, "light"},
                    {RESULT_TEXTURE, "texture"}, {RESULT_FOG, "fog"},           {RESULT_MEDIUM, "medium"},
                    {RESULT_SKY, "sky"}};
-    const struct script_function *render = function_find(OWNER_GR, "render");
+    const char *separator = "";
     document_add(document,
                  "{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
                  "\"title\": \"A scene of gray\", \"type\": \"object\", \"required\": [\"gray\", \"nodes\"],\n"
                  "\"additionalProperties\": false, \"properties\": {\n"
-                 " \"gray\": {\"const\": 1},\n"
+                 " \"gray\": {\"const\": %d},\n"
                  " \"define\": {\"type\": \"object\", \"additionalProperties\": {\"type\": \"object\", "
                  "\"required\": [\"type\"]}},\n"
                  " \"nodes\": {\"type\": \"array\", \"minItems\": 1, \"items\": " REF(
                      "node") "},\n"
-                             " \"transform_order\": {\"enum\": [\"new\", \"old\", \"separate\"]},\n"
-                             " \"defaults\": {\"enum\": [\"light\", \"classic\"]},\n"
-                             " \"time\": {\"type\": \"number\", \"minimum\": 0},\n"
-                             " \"picture\": {\"type\": \"object\", \"properties\": {\n"
-                             "   \"type\": {\"enum\": [\"render\", \"render_skybox\", \"light_field\"]}");
-    add_fields(document, render, "node");
+                             " \"transform_order\": {\"enum\": [",
+                 SCENE_JSON_VERSION);
+    add_words(document, &function_find(OWNER_GR, "transform_order")->parameters[0]);
+    document_add(document, "]},\n"
+                           " \"defaults\": {\"enum\": [\"light\", \"classic\"]},\n"
+                           " \"time\": {\"type\": \"number\", \"minimum\": 0},\n"
+                           " \"picture\": {\"type\": \"object\", \"properties\": {\n"
+                           "   \"type\": {\"enum\": [");
+    for (int k = 0; k < function_count(); k++)
+        if (function_at(k)->owner == OWNER_GR && function_renders(function_at(k))) {
+            document_add(document, "%s\"%s\"", separator, function_at(k)->name);
+            separator = ", ";
+        }
+    document_add(document, "]}");
+    add_fields(document, function_find(OWNER_GR, "render"), "node");
     document_add(
         document,
         "}},\n\"$defs\": {\n"
@@ -239,7 +249,7 @@ void script_json_schema(struct document *document) {
                  "}") ",\n"
                       " \"transform\": {\"type\": \"array\", \"items\": {\"type\": \"object\", \"minProperties\": 1, "
                       "\"maxProperties\": 1, \"additionalProperties\": false, \"properties\": {");
-    const char *separator = "\n   ";
+    separator = "\n   ";
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
         if (function->owner != OWNER_NODE || function->result != RESULT_SELF)

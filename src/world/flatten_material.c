@@ -41,7 +41,7 @@ static const struct material light_gray = {
     .kind = MATERIAL_PHONG,
     .depth = 1,
     .name = "light gray",
-    .phong = {.kd = {0.85, 0.85, 0.85}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
+    .phong = {.kd = {STUDIO_GRAY, STUDIO_GRAY, STUDIO_GRAY}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
 /* Where shapes without a material are meant to have none. */
