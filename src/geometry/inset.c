@@ -36,11 +36,12 @@ bool inset_corners(const double (*points)[2], uint32_t count, bool left, double 
         double half = sine / (1 + cosine);
         if (!(fabs(half) * distance <= shorter) && (half > 0 || !isfinite(half)))
             return too_large(distance, at, error);
-        corner->convex = half > straight_turn;
+        const double along[2] = {half * distance * in[0], half * distance * in[1]};
+        corner->convex = half > straight_turn && (at[0] - along[0] != at[0] || at[1] - along[1] != at[1]);
         for (int k = 0; k < 2; k++) {
             double normal = side * (k == 0 ? -in[1] : in[0]);
-            corner->inner[k] = at[k] - half * distance * in[k] + distance * normal;
-            corner->before[k] = corner->convex ? at[k] - half * distance * in[k] : at[k];
+            corner->inner[k] = at[k] - along[k] + distance * normal;
+            corner->before[k] = corner->convex ? at[k] - along[k] : at[k];
             corner->after[k] = corner->convex ? at[k] + half * distance * out[k] : at[k];
         }
     }

@@ -6,7 +6,7 @@ bool bevel_prism(struct script_context *context, const struct prism_input *input
                  const struct script_value *chamfer, struct shape *shape, struct error *error) {
     if (!chamfer->boolean) {
         shape->kind = SHAPE_BEVELLED;
-        shape->bevelled = bevelled_prism(&context->scene.arena, input, edge->number, error);
+        shape->bevelled = bevelled_prism(&context->scene.arena, &context->sandbox.call, input, edge->number, error);
         return shape->bevelled != NULL;
     }
     struct chamfered_prism faces;

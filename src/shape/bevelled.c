@@ -474,7 +474,7 @@ static bool prism_of(const struct curves *curves, bool inner, struct arena *aren
 /* --- rounded prisms --- */
 
 struct rounding {
-    struct arena *arena;
+    struct arena *arena, *work;
     struct bevelled *out;
     const struct prism_input *in;
     double radius;
@@ -483,7 +483,7 @@ struct rounding {
 /* A path of balls. */
 static bool add_balls(struct rounding *r, enum spline_kind kind, double (*path)[3], uint32_t count,
                       struct error *error) {
-    double *radii = arena_alloc_array(r->arena, count, sizeof *radii);
+    double *radii = arena_alloc_array(r->work, count, sizeof *radii);
     if (!radii)
         return error_no_memory(error, "a prism");
     for (uint32_t i = 0; i < count; i++)
@@ -504,7 +504,7 @@ static void put(double (*path)[3], uint32_t *count, const double point[2], doubl
 /* Straight lines: balls run around the bottom, then around the top, from there down and up again at convex corners. */
 static bool round_corners(struct rounding *r, const struct curve *curve, struct error *error) {
     const double low = r->in->from + r->radius, high = r->in->to - r->radius;
-    double(*path)[3] = arena_alloc_array(r->arena, (size_t)4 * curve->count + 4, sizeof *path);
+    double(*path)[3] = arena_alloc_array(r->work, (size_t)4 * curve->count + 4, sizeof *path);
     uint32_t count = 0;
     if (!path)
         return error_no_memory(error, "a prism");
@@ -524,7 +524,7 @@ static bool round_corners(struct rounding *r, const struct curve *curve, struct 
 static bool round_curve(struct rounding *r, const struct curve *curve, struct error *error) {
     for (int k = 0; k < 2; k++) {
         const double y = k == 0 ? r->in->from + r->radius : r->in->to - r->radius;
-        double(*path)[3] = arena_alloc_array(r->arena, curve->inner_count, sizeof *path);
+        double(*path)[3] = arena_alloc_array(r->work, curve->inner_count, sizeof *path);
         uint32_t count = 0;
         if (!path)
             return error_no_memory(error, "a prism");
@@ -542,20 +542,20 @@ static bool check_height(const struct prism_input *in, double edge, struct error
                      in->to - in->from);
 }
 
-const struct bevelled *bevelled_prism(struct arena *arena, const struct prism_input *in, double radius,
-                                      struct error *error) {
+const struct bevelled *bevelled_prism(struct arena *arena, struct arena *work, const struct prism_input *in,
+                                      double radius, struct error *error) {
     const bool straight = in->kind == SPLINE_LINEAR;
-    struct rounding r = {.arena = arena, .in = in, .radius = radius};
+    struct rounding r = {.arena = arena, .work = work, .in = in, .radius = radius};
     struct curves curves = {0};
     struct prism_input inner = *in, wide = *in;
     /* The curves, each inset by itself. */
-    if (!prism_build(arena, in, error) || !check_height(in, radius, error) || !find_curves(&curves, arena, in, error))
+    if (!prism_build(work, in, error) || !check_height(in, radius, error) || !find_curves(&curves, work, in, error))
         return NULL;
     for (uint32_t k = 0; k < curves.count; k++) {
         struct curve *curve = &curves.all[k];
         struct inset_points inner_points = {0};
-        if (straight ? !find_corners(curve, arena, radius, error)
-                     : !inset_curve(arena, curve->segments, curve->segment_count, curve->left ? radius : -radius,
+        if (straight ? !find_corners(curve, work, radius, error)
+                     : !inset_curve(work, curve->segments, curve->segment_count, curve->left ? radius : -radius,
                                     &inner_points, error))
             return NULL;
         if (!straight) {
@@ -566,7 +566,7 @@ const struct bevelled *bevelled_prism(struct arena *arena, const struct prism_in
     if (!check_clear(&curves, radius, straight ? 0 : 0.02, error))
         return NULL;
     /* Two prisms, and the balls around them. */
-    if (!prism_of(&curves, true, arena, &inner, error) || (straight && !prism_of(&curves, false, arena, &wide, error)))
+    if (!prism_of(&curves, true, work, &inner, error) || (straight && !prism_of(&curves, false, work, &wide, error)))
         return NULL;
     inner.kind = straight ? SPLINE_LINEAR : SPLINE_BEZIER;
     wide.from += radius;

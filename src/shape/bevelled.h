@@ -9,10 +9,10 @@
 
 struct bevelled;
 
-/* A prism whose edges are rounded, but for those where the outline turns inwards. Errors: those of prism_build; the
- * radius is too large. */
-const struct bevelled *bevelled_prism(struct arena *arena, const struct prism_input *input, double radius,
-                                      struct error *error);
+/* A prism whose edges are rounded, but for those where the outline turns inwards. work: an arena for what is needed
+ * meanwhile. Errors: those of prism_build; the radius is too large. */
+const struct bevelled *bevelled_prism(struct arena *arena, struct arena *work, const struct prism_input *input,
+                                      double radius, struct error *error);
 /* 0 < edge < radius and less than half of the length. Chamfered: its ends are cut at 45 degrees. Errors: no memory. */
 struct bevelled_cylinder {
     struct vec3 from, to;

@@ -41,7 +41,8 @@ TEST(a_rounded_prism_that_turns_inwards_is_its_rounded_arms_at_half_a_million_po
         for (int i = 0; i < 6; i++)
             memcpy(points[i], ell[turned ? 5 - i : i], sizeof *points);
         const struct prism_input in = {SPLINE_LINEAR, (const double(*)[2])points, ell_starts, 1, 0, 0.7};
-        const struct shape shape = {.kind = SHAPE_BEVELLED, .bevelled = bevelled_prism(&arena, &in, 0.11, &error)};
+        const struct shape shape = {.kind = SHAPE_BEVELLED,
+                                    .bevelled = bevelled_prism(&arena, &arena, &in, 0.11, &error)};
         CHECK(shape.bevelled != NULL);
         struct test_random random = {21};
         uint32_t wrong = 0;

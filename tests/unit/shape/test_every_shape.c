@@ -222,7 +222,7 @@ static struct made_shape made_bevelled(struct shape_makers *makers, struct test_
                              .from = -height / 2,
                              .to = height / 2};
     struct made_shape made = {
-        {.kind = SHAPE_BEVELLED, .bevelled = bevelled_prism(&makers->arena, &in, e, &error)}, NAN, NAN};
+        {.kind = SHAPE_BEVELLED, .bevelled = bevelled_prism(&makers->arena, &makers->arena, &in, e, &error)}, NAN, NAN};
     if (!made.shape.bevelled)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     if (convex) {
