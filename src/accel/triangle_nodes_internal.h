@@ -48,8 +48,7 @@ static const uint64_t node_lanes[256] = {LANES_64(0), LANES_64(64), LANES_64(128
 static inline float8 float8_permuted(float8 a, float8_integers order) {
     return _mm256_permutevar8x32_ps(a, (__m256i)order);
 }
-/* Some lanes, moved to the first ones: without an instruction for it, a loop over the lanes takes 20 instructions more
- * for each node. */
+/* Some lanes, moved to the first ones: vectors of C can only be permuted by a constant order. */
 static inline float8 float8_compressed(float8 a, unsigned lanes) {
 #if defined(LANES_AVX512)
     return _mm256_maskz_compress_ps((__mmask8)lanes, a);
