@@ -462,32 +462,19 @@ static void render(struct scene_reader *r, const json_t *root) {
     r->position = NULL;
 }
 
-/* The text of the file ends its life with the Lua state, whatever happens. */
-static int release(lua_State *L) {
-    json_t **root = lua_touserdata(L, 1);
-    json_decref(*root);
-    *root = NULL;
-    return 0;
-}
-
 static json_t *read_file(lua_State *L, const char *path) {
     struct sandbox *sandbox = sandbox_enter(L);
     struct error error = {0};
     struct file_bytes bytes;
-    json_t **root = lua_newuserdatauv(L, sizeof *root, 0);
-    *root = NULL;
-    lua_createtable(L, 0, 1);
-    lua_pushcfunction(L, release);
-    lua_setfield(L, -2, "__gc");
-    lua_setmetatable(L, -2);
+    json_t *root = NULL;
     if (file_map(path, FILE_LIMIT, &bytes, &error)) {
         const char *text = (const char *)bytes.data;
         size_t mark = bytes.size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-        *root = json_text_parse(path, text + mark, bytes.size - mark, true, &error);
+        root = json_text_parse(path, text + mark, bytes.size - mark, true, &sandbox->keep, &error);
         file_unmap(&bytes);
     }
-    if (*root)
-        return *root;
+    if (root)
+        return root;
     if (error.kind == ERROR_SCENE)
         (void)error_elsewhere(&error);
     sandbox_raise_error(sandbox, &error);

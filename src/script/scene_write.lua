@@ -240,7 +240,7 @@ local function json_of(names)
         for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. ' ') end
         return join(parts, '[', ']', indent)
     end
-    return text_of
+    return text_of, object
 end
 
 local function one_order(orders)
@@ -252,7 +252,7 @@ end
 local function write_json(root, picture, state)
     local uses, list, orders = survey({root, picture}, JSON_NESTED)
     local names = name_records(uses, list, '[%c"\\]', {})
-    local text_of = json_of(names)
+    local text_of, object = json_of(names)
     local define, by_name = {}, {}
     for record, name in next, names do by_name[name] = record end
     for k, name in ipairs(sorted_keys(by_name)) do define[k] = '  ' .. quote(name) .. ': ' .. text_of(by_name[name], '  ', true) end
@@ -261,7 +261,7 @@ local function write_json(root, picture, state)
     if #define > 0 then out[#out + 1] = '"define": {\n' .. concat(define, ',\n') .. '\n }' end
     out[#out + 1] = '"gray": ' .. state.version
     out[#out + 1] = '"nodes": [\n  ' .. text_of(root, '  ') .. '\n ]'
-    out[#out + 1] = '"picture": ' .. text_of(picture, ' ')
+    out[#out + 1] = '"picture": ' .. object(picture, ' ')
     if state.time > 0 then out[#out + 1] = '"time": ' .. number_text(state.time) end
     if order and order ~= 'new' then out[#out + 1] = '"transform_order": ' .. quote(order) end
     return '{' .. concat(out, ',\n ') .. '\n}\n'
