@@ -13,8 +13,10 @@ const char *json_text_library(void) {
 
 #include "base/hash.h"
 
-/* jansson needs about 40 bytes for a number and 300 for an object. */
-enum { OBJECT_LIMIT = 1 << 20, VALUE_LIMIT = 1 << 24 };
+#include <string.h>
+
+/* jansson needs about 40 bytes for a number, 130 for a list and 300 for an object. */
+enum { OBJECT_LIMIT = 1 << 23, VALUE_LIMIT = 1 << 24 };
 
 const char *json_text_library(void) {
     return "jansson " JANSSON_VERSION;
@@ -34,8 +36,8 @@ static bool check_size(const char *path, const char *text, size_t size, struct e
         }
     }
     return (objects <= OBJECT_LIMIT && values <= VALUE_LIMIT) ||
-           error_set(error, ERROR_SCENE, "%s: its JSON: more than %d objects or %d values", path, OBJECT_LIMIT,
-                     VALUE_LIMIT);
+           error_set(error, ERROR_SCENE, "%s: its JSON: more than %d lists and objects or %d values", path,
+                     OBJECT_LIMIT, VALUE_LIMIT);
 }
 
 /* jansson reports lack of memory as a syntax error, and its allocator has no context. Hence these variables; they are
@@ -51,6 +53,23 @@ static void *allocate(size_t size) {
 
 static void keep(void *block) {
     (void)block;
+}
+
+/* What others call JSON. */
+static const char *hint_of(const char *fault) {
+    static const char *const hints[][2] = {
+        {"near '/'", "; JSON has no comments"},
+        {"near '#'", "; JSON has no comments"},
+        {"near '''", "; strings stand in double quotes"},
+        {"near ']'", "; a comma may be too many"},
+        {"near '}'", "; a comma may be too many"},
+        {"invalid token near", "; words are only true, false and null, and numbers are finite"},
+        {"decode byte", "; the text must be UTF-8"},
+    };
+    for (size_t i = 0; i < sizeof hints / sizeof *hints; i++)
+        if (strstr(fault, hints[i][0]))
+            return hints[i][1];
+    return "";
 }
 
 json_t *json_text_parse(const char *path, const char *text, size_t size, bool strict, struct arena *arena,
@@ -77,7 +96,8 @@ json_t *json_text_parse(const char *path, const char *text, size_t size, bool st
     if (root)
         (void)error_set(error, ERROR_SCENE, "%s: its JSON: an object must be at the top", path);
     else
-        (void)error_set(error, ERROR_SCENE, "%s:%d: broken JSON: %s", path, fault.line, fault.text);
+        (void)error_set(error, ERROR_SCENE, "%s:%d: broken JSON: %s (column %d)%s", path, fault.line, fault.text,
+                        fault.column, hint_of(fault.text));
     return NULL;
 }
 

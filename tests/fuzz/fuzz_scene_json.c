@@ -28,7 +28,7 @@ struct stage {
     struct arena arena;
     struct path_policy path_policy;
     lua_State *L;
-    char *text, error[256];
+    char *text, error[1024];
     size_t size;
     int inputs;
 };
@@ -141,6 +141,7 @@ static bool run(struct stage *stage, const void *data, size_t size) {
     sandbox->locate = NULL;
     sandbox->running = (struct running_function){0};
     sandbox->raised[0] = sandbox->refused[0] = '\0';
+    limits_restart_time(&sandbox->limits);
     lua_pushcfunction(stage->L, read_scene);
     bool ok = lua_pcall(stage->L, 0, 0, 0) == LUA_OK;
     const char *text = sandbox->fatal.kind != ERROR_NONE ? sandbox->fatal.text : lua_tostring(stage->L, -1);
