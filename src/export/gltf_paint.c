@@ -1,5 +1,6 @@
 /* The layers of OpenPBR are those of glTF with its extensions; classic materials are taken for the layers that
- * openpbr_classic makes them of. Colours are linear light; numbers of a scene with classic colours are taken for it.
+ * openpbr_classic makes them of. Colours are linear light; those of a scene with classic colours are what a screen
+ * shows.
  *
  * A picture over the coordinates of the shape is copied. Other textures are baked: evaluated at the points of the
  * surface that the texels of a picture have by the surface's u and v. A surface that has no u and v of its own, or the
@@ -105,7 +106,15 @@ static void set_layers(const struct surface_material *material, const struct sur
     out->film_thickness = 1000 * v->film_thickness;
 }
 
-static struct values values_at(const struct world *world, uint32_t index, const struct hit *hit) {
+static const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
+
+struct colour gltf_light_of(const struct gltf_painter *p, struct colour colour) {
+    colour = colour_max(colour, colour_all(0));
+    return p->linear ? colour : transfer_decode_colour(srgb, colour);
+}
+
+static struct values values_at(const struct gltf_painter *p, uint32_t index, const struct hit *hit) {
+    const struct world *world = p->world;
     const struct surface_material *material = &world->surfaces.materials[index];
     struct values out = {.specular = {1, 1, 1}, .specular_weight = 1, .ior = 1.5};
     struct surface_inputs in;
@@ -117,8 +126,11 @@ static struct values values_at(const struct world *world, uint32_t index, const 
     } else {
         set_classic(material, &in, &out);
     }
-    out.base = colour_max(colour_min(out.base, colour_all(1)), colour_all(0));
-    out.emission = colour_max(in.emission, colour_all(0));
+    out.base = gltf_light_of(p, colour_min(out.base, colour_all(1)));
+    out.specular = gltf_light_of(p, out.specular);
+    out.sheen = gltf_light_of(p, out.sheen);
+    double brightest = math_max(colour_max_abs(in.emission), 1);
+    out.emission = colour_scale(gltf_light_of(p, colour_scale(in.emission, 1 / brightest)), brightest);
     out.alpha = math_min(math_max(in.opacity, 0), 1);
     out.unlit = in.unlit;
     out.normal = in.normal;
@@ -173,7 +185,6 @@ static unsigned kinds_of_material(const struct world *world, uint32_t material) 
 /* A product of numbers and of at most one image, which is *image. False: something else. */
 static bool find_image(const struct gltf_painter *p, const struct texture *t, const struct phong *numbers,
                        const struct texture_image **image, struct colour *factor) {
-    const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
     switch (t->operation.kind) {
     case TEXTURE_CONSTANT: {
         struct colour colour = t->operation.constant.colour;
@@ -300,11 +311,11 @@ static uint32_t add_picture(struct gltf_file *file, const struct pixels *pixels,
     return texture;
 }
 
-/* What the numbers of a picture mean; that of a classic scene has light as it is. */
+/* What the numbers of a picture mean. */
 static struct transfer_function transfer_of(const struct gltf_painter *p, const struct texture_image *image) {
-    const struct transfer_function light = {.kind = TRANSFER_POWER, .exponent = 1}, srgb = {.kind = TRANSFER_SRGB};
+    const struct transfer_function light = {.kind = TRANSFER_POWER, .exponent = 1};
     if (!p->linear)
-        return light;
+        return srgb;
     if (image->gamma > 0)
         return (struct transfer_function){.kind = TRANSFER_POWER, .exponent = image->gamma};
     switch (image->encoding) {
@@ -381,11 +392,12 @@ static void find_owners(const struct baking *b, bool rim) {
             low[k % 2] = math_min(low[k % 2], x);
             high[k % 2] = math_max(high[k % 2], x);
         }
-        double reach = rim ? 1.5 : 0, slack = 1e-6 + reach / math_max(math_max(high[0] - low[0], high[1] - low[1]), 1);
-        uint32_t x1 = (uint32_t)math_min(math_max(high[0] + reach + 0.5, 0), size),
-                 y1 = (uint32_t)math_min(math_max(high[1] + reach + 0.5, 0), size);
-        for (uint32_t y = (uint32_t)math_max(low[1] - reach - 0.5, 0); y < y1; y++)
-            for (uint32_t x = (uint32_t)math_max(low[0] - reach - 0.5, 0); x < x1; x++) {
+        double margin = rim ? 1.5 : 0,
+               slack = 1e-6 + margin / math_max(math_max(high[0] - low[0], high[1] - low[1]), 1);
+        uint32_t x1 = (uint32_t)math_min(math_max(high[0] + margin + 0.5, 0), size),
+                 y1 = (uint32_t)math_min(math_max(high[1] + margin + 0.5, 0), size);
+        for (uint32_t y = (uint32_t)math_max(low[1] - margin - 0.5, 0); y < y1; y++)
+            for (uint32_t x = (uint32_t)math_max(low[0] - margin - 0.5, 0); x < x1; x++) {
                 uint32_t *owner = &b->owners[y * GLTF_BAKED_SIZE + x];
                 double w[3];
                 weights_at(b, t, (x + 0.5) / size, (y + 0.5) / size, w);
@@ -402,7 +414,7 @@ static bool find_hit(const struct baking *b, const struct gltf_triangle *t, cons
     const struct gltf_vertex *all = gltf_vertices(b->surface);
     struct transform map = world_placement(world, b->primitive, 0);
     struct vec3 c[3], point = vec3_all(0);
-    if (b->surface->is_placed)
+    if (b->surface->is_unit)
         map = transform_compose(&map, &b->surface->object_from_surface);
     for (int k = 0; k < 3; k++) {
         c[k] = gltf_point(all[t->vertex[k]].point);
@@ -425,23 +437,12 @@ static bool find_hit(const struct baking *b, const struct gltf_triangle *t, cons
 /* The turned normal in the frame of u and v. */
 static void frame_normal(const struct baking *b, const struct gltf_triangle *t, const struct hit *hit,
                          struct vec3 turned, float out[3]) {
-    const struct gltf_vertex *v[3];
     struct transform map = world_placement(b->painter->world, b->primitive, 0);
-    for (int k = 0; k < 3; k++)
-        v[k] = &gltf_vertices(b->surface)[t->vertex[k]];
-    double du[2], dv[2];
-    struct vec3 edge[2];
-    for (int k = 0; k < 2; k++) {
-        du[k] = (double)v[k + 1]->uv[0] - (double)v[0]->uv[0];
-        dv[k] = (double)v[k + 1]->uv[1] - (double)v[0]->uv[1];
-        edge[k] = vec3_sub(gltf_point(v[k + 1]->point), gltf_point(v[0]->point));
-        if (b->surface->is_placed)
-            edge[k] = affine_vector(&b->surface->object_from_surface.forward, edge[k]);
-        edge[k] = affine_vector(&map.forward, edge[k]);
-    }
-    double sign = du[0] * dv[1] - du[1] * dv[0] < 0 ? -1 : 1;
-    struct vec3 along = vec3_scale(vec3_add_scaled(vec3_scale(edge[0], dv[1]), edge[1], -dv[0]), sign);
-    struct vec3 up = vec3_scale(vec3_add_scaled(vec3_scale(edge[1], du[0]), edge[0], -du[1]), sign);
+    struct vec3 directions[2];
+    if (b->surface->is_unit)
+        map = transform_compose(&map, &b->surface->object_from_surface);
+    gltf_directions(b->surface, t, &map.forward, directions);
+    struct vec3 along = directions[0], up = directions[1];
     along = vec3_normalize(vec3_add_scaled(along, hit->normal, -vec3_dot(along, hit->normal)));
     struct vec3 across = vec3_cross(hit->normal, along);
     across = vec3_dot(across, up) < 0 ? vec3_negate(across) : across;
@@ -460,7 +461,7 @@ static bool bake_at(const struct baking *b, const struct gltf_triangle *t, const
     struct hit hit;
     if (!find_hit(b, t, w, scratch, &hit))
         return false;
-    const struct values at = values_at(b->painter->world, hit.material, &hit);
+    const struct values at = values_at(b->painter, hit.material, &hit);
     set_colour(out->base, at.base);
     out->base[3] = (float)at.alpha;
     out->rough = (float)math_min(math_max(at.roughness, 0), 1);
@@ -593,6 +594,10 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
     bool bakes = false;
     uint32_t last = GLTF_NONE;
     *out = (struct gltf_paint){.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
+    for (size_t i = 0; surface->has_colours && i < surface->vertices.count; i++) {
+        float *c = gltf_vertices(surface)[i].colour;
+        set_colour(c, gltf_light_of(painter, colour_make((double)c[0], (double)c[1], (double)c[2])));
+    }
     for (size_t i = 0; i < surface->triangles.count; i++) {
         uint32_t m = gltf_triangles(surface)[i].material;
         struct copies copies;
@@ -717,12 +722,12 @@ static void note_losses(const struct gltf_painter *p, uint32_t index, const char
 }
 
 uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t material, const struct gltf_surface *surface,
-                             const struct gltf_paint *paint, bool *uses_uv, bool *uses_colours) {
+                             const struct gltf_paint *paint, struct gltf_attributes *uses) {
     const struct world *world = painter->world;
     const struct material *authored = world->authored.materials[material];
     const struct hit nowhere = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .view = {0, 1, 0}, .front = true};
     const unsigned kinds = kinds_of_material(world, material);
-    struct values v = values_at(world, material, &nowhere);
+    struct values v = values_at(painter, material, &nowhere);
     struct copies copies = {.factor = {1, 1, 1}};
     struct gltf_paint own = {.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
     struct gltf_text text = {0};
@@ -736,14 +741,15 @@ uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t materi
         v.metallic = v.roughness = own.rough != GLTF_NONE ? 1 : v.roughness;
         v.alpha = own.base != GLTF_NONE ? 1 : v.alpha;
     } else if ((kinds & VARIES) && find_copies(painter, material, &copies)) {
-        v.base = copies.base ? colour_max(colour_min(copies.factor, colour_all(1)), colour_all(0)) : v.base;
+        v.base = copies.base ? gltf_light_of(painter, colour_min(copies.factor, colour_all(1))) : v.base;
         own.base = copies.base ? copy_image(painter, copies.base, true) : GLTF_NONE;
         own.normal = copies.normal ? copy_image(painter, copies.normal, false) : GLTF_NONE;
     }
     bool blends = baked && own.base != GLTF_NONE ? own.has_veils : v.alpha < 1;
     bool masks = baked && own.base != GLTF_NONE && own.has_holes && !blends;
-    *uses_uv = own.base != GLTF_NONE || own.rough != GLTF_NONE || own.emission != GLTF_NONE || own.normal != GLTF_NONE;
-    *uses_colours = own.by_vertex || (!baked && (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
+    uses->tangents = own.normal != GLTF_NONE;
+    uses->uv = uses->tangents || own.base != GLTF_NONE || own.rough != GLTF_NONE || own.emission != GLTF_NONE;
+    uses->colours = own.by_vertex || (!baked && (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
     gltf_open(&text, NULL, '{');
     if (*name)
         gltf_string(&text, "name", name);

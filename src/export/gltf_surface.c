@@ -80,7 +80,7 @@ static uint32_t chords(double share) {
     return 4 * (uint32_t)math_min(math_max(ceil(count / 4), 3), 256);
 }
 
-static struct vec3 around(double u, struct vec3 x, struct vec3 y) {
+static struct vec3 circle_at(double u, struct vec3 x, struct vec3 y) {
     double sine, cosine;
     el_sincos(2 * PI * u, &sine, &cosine);
     return vec3_add(vec3_scale(x, cosine), vec3_scale(y, sine));
@@ -90,15 +90,15 @@ static const struct vec3 x_axis = {1, 0, 0}, y_axis = {0, 1, 0}, back = {0, 0, -
 
 static void ball_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
     (void)context;
-    struct vec3 side = around(v == 1 ? 0.25 : v / 2 - 0.25, x_axis, y_axis);
+    struct vec3 side = circle_at(v == 1 ? 0.25 : v / 2 - 0.25, x_axis, y_axis);
     double radius = v == 0 || v == 1 ? 0 : side.x;
-    *normal = *point = vec3_add_scaled(vec3_scale(y_axis, side.y), around(u == 1 ? 0 : u, x_axis, back), radius);
+    *normal = *point = vec3_add_scaled(vec3_scale(y_axis, side.y), circle_at(u == 1 ? 0 : u, x_axis, back), radius);
 }
 
 static void torus_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
     const struct torus *torus = context;
-    struct vec3 out = around(u == 1 ? 0 : u, x_axis, back);
-    *normal = around(v == 1 ? -0.5 : v - 0.5, out, y_axis);
+    struct vec3 out = circle_at(u == 1 ? 0 : u, x_axis, back);
+    *normal = circle_at(v == 1 ? -0.5 : v - 0.5, out, y_axis);
     *point = vec3_add(vec3_scale(out, torus->major), vec3_scale(*normal, torus->minor));
 }
 
@@ -112,7 +112,7 @@ static void side_at(const void *context, double u, double v, struct vec3 *point,
     const struct turned *t = context;
     const struct revolved_quadric *q = t->shape;
     double s = q->lo + v * (q->hi - q->lo), radius = sqrt(math_max((q->a * s + q->b) * s + q->c, 0));
-    struct vec3 out = around(u == 1 ? 0 : u, t->x, t->y);
+    struct vec3 out = circle_at(u == 1 ? 0 : u, t->x, t->y);
     /* The gradient; at a tip, where it is 0, that of points nearby. */
     double slope = q->a * s + q->b / 2, near = radius;
     if (radius == 0) {
@@ -127,7 +127,7 @@ static void side_at(const void *context, double u, double v, struct vec3 *point,
 /* v runs inwards, where u runs to the right seen from the outside of the end. */
 static void end_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
     const struct turned *t = context;
-    struct vec3 out = around(u == 1 ? 0 : u, t->x, t->y);
+    struct vec3 out = circle_at(u == 1 ? 0 : u, t->x, t->y);
     *normal = vec3_cross(t->x, t->y);
     *point = vec3_add_scaled(vec3_add_scaled(t->shape->base, t->shape->axis, t->height), out, t->radius * (1 - v));
 }
@@ -166,7 +166,7 @@ static bool add_turned(struct gltf_surface *s, const struct revolved_quadric *q,
 }
 
 /* A corner, and the edges along u and v. */
-static void flat_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
+static void rectangle_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
     const struct vec3 *corner = context;
     *normal = vec3_cross(corner[1], corner[2]);
     *point = vec3_add_scaled(vec3_add_scaled(corner[0], corner[1], u), corner[2], v);
@@ -179,7 +179,7 @@ static bool add_box(struct gltf_surface *s, uint32_t material) {
         struct vec3 u = vec3_make(i == 2, i == 0, i == 1), v = vec3_make(i == 1, i == 2, i == 0);
         const struct vec3 corner[3] = {side % 2 ? vec3_sub(vec3_all(1), vec3_add(u, v)) : vec3_all(0), side % 2 ? u : v,
                                        side % 2 ? v : u};
-        ok = add_grid(s, &(struct surface_grid){.at = flat_at,
+        ok = add_grid(s, &(struct surface_grid){.at = rectangle_at,
                                                 .context = corner,
                                                 .columns = 1,
                                                 .rows = 1,
@@ -192,7 +192,8 @@ static bool add_box(struct gltf_surface *s, uint32_t material) {
 
 /* --- flat shapes --- */
 
-static bool add_flat_vertex(struct gltf_surface *s, const struct planar *p, double a, double b, const double scale[2]) {
+static bool add_planar_vertex(struct gltf_surface *s, const struct planar *p, double a, double b,
+                              const double scale[2]) {
     struct vec3 point = vec3_add_scaled(vec3_add_scaled(p->origin, p->u, a), p->v, b);
     struct gltf_vertex vertex = vertex_make(point, p->normal, scale[0] + scale[1] * a, scale[0] + scale[1] * b);
     return list_add(&s->vertices, &vertex, 1, sizeof vertex);
@@ -206,8 +207,8 @@ static bool add_disc(struct gltf_surface *s, const struct planar *p, double shar
     for (uint32_t i = 0; ok && i < n; i++) {
         double cosine, sine;
         el_sincos(2 * PI * i / n, &sine, &cosine);
-        ok = add_flat_vertex(s, p, p->inner * cosine, p->inner * sine, scale) &&
-             add_flat_vertex(s, p, cosine, sine, scale);
+        ok = add_planar_vertex(s, p, p->inner * cosine, p->inner * sine, scale) &&
+             add_planar_vertex(s, p, cosine, sine, scale);
     }
     for (uint32_t i = 0; ok && i < 2 * n; i += 2) {
         uint32_t next = (i + 2) % (2 * n);
@@ -256,10 +257,10 @@ static bool add_slab(struct gltf_surface *s, const struct planar *p, const struc
         qsort(found.items, found.count, sizeof *at, by_middle);
     for (size_t i = 0; ok && i + 1 < found.count; i += 2) {
         uint32_t first = (uint32_t)s->vertices.count;
-        ok = add_flat_vertex(s, p, at[i].low, levels[0], scale) &&
-             add_flat_vertex(s, p, at[i + 1].low, levels[0], scale) &&
-             add_flat_vertex(s, p, at[i + 1].high, levels[1], scale) &&
-             add_flat_vertex(s, p, at[i].high, levels[1], scale) &&
+        ok = add_planar_vertex(s, p, at[i].low, levels[0], scale) &&
+             add_planar_vertex(s, p, at[i + 1].low, levels[0], scale) &&
+             add_planar_vertex(s, p, at[i + 1].high, levels[1], scale) &&
+             add_planar_vertex(s, p, at[i].high, levels[1], scale) &&
              add_triangle(s, first, first + 1, first + 2, material) &&
              add_triangle(s, first, first + 2, first + 3, material);
     }
@@ -300,13 +301,14 @@ static bool add_planar(struct gltf_surface *s, const struct planar *p, double sh
     case PLANAR_PARALLELOGRAM:
         s->has_uv = true;
         return add_grid(
-            s, &(struct surface_grid){
-                   .at = flat_at, .context = corner, .columns = 1, .rows = 1, .material = material, .size = {1, 1}});
+            s,
+            &(struct surface_grid){
+                .at = rectangle_at, .context = corner, .columns = 1, .rows = 1, .material = material, .size = {1, 1}});
     case PLANAR_DISC:
         return add_disc(s, p, share, material);
     case PLANAR_TRIANGLE:
-        return add_flat_vertex(s, p, 0, 0, scale) && add_flat_vertex(s, p, 1, 0, scale) &&
-               add_flat_vertex(s, p, 0, 1, scale) && add_triangle(s, 0, 1, 2, material);
+        return add_planar_vertex(s, p, 0, 0, scale) && add_planar_vertex(s, p, 1, 0, scale) &&
+               add_planar_vertex(s, p, 0, 1, scale) && add_triangle(s, 0, 1, 2, material);
     case PLANAR_POLYGON:
         return add_polygon(s, p, material);
     }
@@ -412,7 +414,7 @@ static bool add_height_field(struct gltf_surface *s, const struct height_field *
         ok = add_grid(s, &grid);
     }
     const struct vec3 floor[3] = {{0, h.field.floor, 0}, x_axis, vec3_negate(back)};
-    ok = ok && (h.field.open || add_grid(s, &(struct surface_grid){.at = flat_at,
+    ok = ok && (h.field.open || add_grid(s, &(struct surface_grid){.at = rectangle_at,
                                                                    .context = floor,
                                                                    .columns = 1,
                                                                    .rows = 1,
@@ -441,7 +443,7 @@ static void tube_at(const void *context, double u, double v, struct vec3 *point,
     along = vec3_max_abs(along) > 0 ? vec3_normalize(along) : y_axis;
     frame_tangents(along, &x, &y);
     y = vec3_cross(along, x);
-    *normal = around(u == 1 ? 0 : u, x, y);
+    *normal = circle_at(u == 1 ? 0 : u, x, y);
     *point = vec3_add_scaled(vec3_make(at[0], at[1], at[2]), *normal, at[3]);
 }
 
@@ -491,9 +493,9 @@ static bool add_solid_mesh(struct gltf_surface *s, const struct solid_mesh *mesh
     return ok;
 }
 
-static bool add_solid(struct gltf_surface *s, const struct world *world, uint32_t primitive, double share,
-                      struct pool *pool, struct arena *arena, const char **why, struct error *error) {
-    const struct prototype *prototype = primitive_prototype(world, primitive);
+static bool add_solid(struct gltf_surface *s, const struct gltf_source *source, struct arena *arena,
+                      struct error *error) {
+    const struct prototype *prototype = primitive_prototype(source->world, source->primitive);
     const struct csg_leaf leaf = {.shape = prototype->geometry.shape,
                                   .csg_from_leaf = transform_identity(),
                                   .material = prototype->material,
@@ -503,14 +505,14 @@ static bool add_solid(struct gltf_surface *s, const struct world *world, uint32_
     if (!csg && !(csg = csg_build(arena, &leaf, 1, &token, 1, error)))
         return false;
     struct box box = csg->bounds;
-    struct solid_input input = {csg, primitive_node(world, primitive)->name,
-                                share * vec3_max_abs(vec3_sub(box.max, box.min)), pool};
+    struct solid_input input = {csg, primitive_node(source->world, source->primitive)->name,
+                                source->share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool};
     struct solid_mesh mesh = {0};
     struct solid_findings findings;
     bool ok = solid_mesh_build(&input, &mesh, &findings, error);
     if (!ok && error->kind == ERROR_SCENE && !error->limit) {
         *error = (struct error){0};
-        *why = "has details that no mesh within the tolerance has";
+        s->why = "has details that no mesh within the tolerance has";
         return true;
     }
     ok = ok && (add_solid_mesh(s, &mesh, csg) || error_no_memory(error, "the mesh of a solid"));
@@ -548,7 +550,7 @@ static const char *why_left_out(const struct geometry *geometry) {
     return NULL;
 }
 
-bool gltf_surface_is_placed(const struct geometry *geometry, struct transform *object_from_surface) {
+bool gltf_surface_is_unit(const struct geometry *geometry, struct transform *object_from_surface) {
     const struct shape *shape = &geometry->shape;
     struct vec3 origin = vec3_all(0), size = vec3_all(1);
     bool is_sphere = shape->kind == SHAPE_SPHERE, is_ellipsoid = shape->kind == SHAPE_ELLIPSOID;
@@ -566,25 +568,25 @@ bool gltf_surface_is_placed(const struct geometry *geometry, struct transform *o
 /* Whether the side is there from end to end. */
 static bool is_whole(const struct revolved_quadric *q) {
     double middle = -q->b / (2 * q->a), slack = 1e-12 * fabs(q->c);
-    double least = q->a > 0 && middle > q->lo && middle < q->hi ? (q->a * middle + q->b) * middle + q->c : 0;
-    return least >= -slack && (q->a * q->lo + q->b) * q->lo + q->c >= -slack &&
+    double min_square = q->a > 0 && middle > q->lo && middle < q->hi ? (q->a * middle + q->b) * middle + q->c : 0;
+    return min_square >= -slack && (q->a * q->lo + q->b) * q->lo + q->c >= -slack &&
            (q->a * q->hi + q->b) * q->hi + q->c >= -slack;
 }
 
-bool gltf_surface_make(const struct world *world, uint32_t primitive, double share, struct pool *pool,
-                       struct gltf_surface *out, const char **why, struct error *error) {
-    const struct prototype *prototype = primitive_prototype(world, primitive);
+bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *out, struct error *error) {
+    const struct prototype *prototype = primitive_prototype(source->world, source->primitive);
+    const double share = source->share;
     const struct shape *shape = &prototype->geometry.shape;
     const uint32_t material = prototype->material;
     struct arena arena = {0};
     bool ok = true, is_solid = prototype->geometry.csg != NULL;
-    *out = (struct gltf_surface){.object_from_surface = transform_identity()};
-    *why = why_left_out(&prototype->geometry);
+    *out =
+        (struct gltf_surface){.object_from_surface = transform_identity(), .why = why_left_out(&prototype->geometry)};
     struct surface_grid grid = {.material = material, .size = {1, 1}, .columns = chords(share)};
     grid.rows = grid.columns / 2;
-    if (*why)
+    if (out->why)
         return true;
-    out->is_placed = gltf_surface_is_placed(&prototype->geometry, &out->object_from_surface);
+    out->is_unit = gltf_surface_is_unit(&prototype->geometry, &out->object_from_surface);
     switch (is_solid ? SHAPE_BLOB : shape->kind) {
     case SHAPE_SPHERE:
     case SHAPE_ELLIPSOID:
@@ -597,7 +599,7 @@ bool gltf_surface_make(const struct world *world, uint32_t primitive, double sha
     case SHAPE_REVOLVED_QUADRIC:
         is_solid = !is_whole(&shape->revolved_quadric);
         if (is_solid && shape->revolved_quadric.open)
-            *why = "has no caps";
+            out->why = "has no caps";
         ok = is_solid || add_turned(out, &shape->revolved_quadric, share, material);
         break;
     case SHAPE_TORUS:
@@ -632,12 +634,29 @@ bool gltf_surface_make(const struct world *world, uint32_t primitive, double sha
     }
     if (!ok && error->kind == ERROR_NONE)
         (void)error_no_memory(error, "the surfaces of a model");
-    ok = ok && (!is_solid || *why || add_solid(out, world, primitive, share, pool, &arena, why, error));
+    ok = ok && (!is_solid || out->why || add_solid(out, source, &arena, error));
     arena_destroy(&arena);
     struct box box = geometry_bounds(&prototype->geometry);
-    double stretch = out->is_placed ? transform_stretch(&out->object_from_surface) : 1;
+    double stretch = out->is_unit ? transform_stretch(&out->object_from_surface) : 1;
     out->tolerance = share * vec3_max_abs(vec3_sub(box.max, box.min)) / stretch;
     return ok;
+}
+
+void gltf_directions(const struct gltf_surface *surface, const struct gltf_triangle *triangle, const struct affine *map,
+                     struct vec3 out[2]) {
+    const struct gltf_vertex *all = gltf_vertices(surface), *o = &all[triangle->vertex[0]];
+    struct vec3 edge[2];
+    double du[2], dv[2];
+    for (int k = 0; k < 2; k++) {
+        const struct gltf_vertex *v = &all[triangle->vertex[k + 1]];
+        du[k] = (double)v->uv[0] - (double)o->uv[0];
+        dv[k] = (double)v->uv[1] - (double)o->uv[1];
+        edge[k] = vec3_sub(gltf_point(v->point), gltf_point(o->point));
+        edge[k] = map ? affine_vector(map, edge[k]) : edge[k];
+    }
+    double sign = du[0] * dv[1] - du[1] * dv[0] < 0 ? -1 : 1;
+    out[0] = vec3_scale(vec3_add_scaled(vec3_scale(edge[0], dv[1]), edge[1], -dv[0]), sign);
+    out[1] = vec3_scale(vec3_add_scaled(vec3_scale(edge[1], du[0]), edge[0], -du[1]), sign);
 }
 
 bool gltf_surface_unfold(struct gltf_surface *surface, uint32_t size, uint32_t smallest) {

@@ -22,8 +22,9 @@ struct gltf_surface {
     bool has_uv;      /* those of the shape, which images follow */
     bool is_unfolded; /* u and v are between 0 and 1, and no two places of the surface have the same */
     bool is_open;
-    bool is_placed; /* in a space of its own: spheres of all sizes are one */
+    bool is_unit; /* in a space of its own: spheres of all sizes are one */
     struct transform object_from_surface;
+    const char *why;  /* it is left out: the end of a sentence; or NULL */
     double tolerance; /* about the largest distance from the exact one, in its space */
 };
 void gltf_surface_destroy(struct gltf_surface *surface);
@@ -38,13 +39,20 @@ static inline struct vec3 gltf_point(const float numbers[3]) {
     return vec3_make((double)numbers[0], (double)numbers[1], (double)numbers[2]);
 }
 
-/* The surface of a primitive in its own space, within a tolerance that is a share of its size; *why: it is left out for
- * this reason, the end of a sentence. Errors: no memory, cancelled. */
-bool gltf_surface_make(const struct world *world, uint32_t primitive, double share, struct pool *pool,
-                       struct gltf_surface *out, const char **why, struct error *error);
+struct gltf_source {
+    const struct world *world;
+    uint32_t primitive;
+    double share; /* the tolerance as a share of the size */
+    struct pool *pool;
+};
+/* The surface of a primitive in its own space. Errors: no memory, cancelled. */
+bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *out, struct error *error);
+/* The vectors along which u and v grow on a triangle, with weights by its area, under a map (NULL: none). */
+void gltf_directions(const struct gltf_surface *surface, const struct gltf_triangle *triangle, const struct affine *map,
+                     struct vec3 out[2]);
 /* Spheres and boxes: where the one of unit size is in the space of the primitive. */
-bool gltf_surface_is_placed(const struct geometry *geometry, struct transform *object_from_surface);
-/* Gives each triangle a place of its own in the unit square, of at least `smallest` of the `size` steps along each
+bool gltf_surface_is_unit(const struct geometry *geometry, struct transform *object_from_surface);
+/* Gives each triangle a place of its own in the unit square, of at min_square `smallest` of the `size` steps along each
  * side. False: there are too many. */
 bool gltf_surface_unfold(struct gltf_surface *surface, uint32_t size, uint32_t smallest);
 

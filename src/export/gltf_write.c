@@ -28,7 +28,7 @@ struct key {
     struct pose pose;
 };
 
-struct placed {
+struct out_node {
     const char *name;
     uint32_t first_child, last_child, next; /* or GLTF_NONE */
     uint32_t mesh, camera, light;           /* likewise */
@@ -51,7 +51,7 @@ struct gltf_scene {
     struct gltf_file file;
     struct gltf_painter painter;
     struct arena arena;
-    struct list nodes, roots, lacks; /* struct placed, uint32_t, struct lack */
+    struct list nodes, roots, lacks; /* struct out_node, uint32_t, struct lack */
     struct key_map meshes, images;   /* by shape and material: numbers of meshes */
     uint32_t moments, cursor;        /* the node of the next place in a later moment */
     bool differs;                    /* that moment has other nodes */
@@ -72,15 +72,15 @@ struct gltf_scene *gltf_scene_create(const struct gltf_options *options) {
     return scene;
 }
 
-static struct placed *placed_at(const struct gltf_scene *scene, uint32_t node) {
-    return (struct placed *)scene->nodes.items + node;
+static struct out_node *node_at(const struct gltf_scene *scene, uint32_t node) {
+    return (struct out_node *)scene->nodes.items + node;
 }
 
 void gltf_scene_destroy(struct gltf_scene *scene) {
     if (!scene)
         return;
     for (uint32_t i = 0; i < scene->nodes.count; i++)
-        list_destroy(&placed_at(scene, i)->keys);
+        list_destroy(&node_at(scene, i)->keys);
     list_destroy(&scene->nodes);
     list_destroy(&scene->roots);
     list_destroy(&scene->lacks);
@@ -199,7 +199,7 @@ static bool pose_is(const struct pose *a, const struct pose *b) {
 
 /* Poses between keys are linear: a node that stands still has no keys, or those before and after. */
 static void add_key(struct gltf_scene *scene, uint32_t node, double time, struct pose pose) {
-    struct placed *at = placed_at(scene, node);
+    struct out_node *at = node_at(scene, node);
     const double *last = at->last.pose.turn;
     double along = 0;
     bool ok = true;
@@ -218,15 +218,15 @@ static void add_key(struct gltf_scene *scene, uint32_t node, double time, struct
 }
 
 static uint32_t new_node(struct gltf_scene *scene, uint32_t parent, const char *name, struct pose pose, double time) {
-    struct placed own = {.name = arena_copy_text(&scene->arena, name, strlen(name)),
-                         .first_child = GLTF_NONE,
-                         .last_child = GLTF_NONE,
-                         .next = GLTF_NONE,
-                         .mesh = GLTF_NONE,
-                         .camera = GLTF_NONE,
-                         .light = GLTF_NONE,
-                         .pose = pose,
-                         .last = {time, pose}};
+    struct out_node own = {.name = arena_copy_text(&scene->arena, name, strlen(name)),
+                           .first_child = GLTF_NONE,
+                           .last_child = GLTF_NONE,
+                           .next = GLTF_NONE,
+                           .mesh = GLTF_NONE,
+                           .camera = GLTF_NONE,
+                           .light = GLTF_NONE,
+                           .pose = pose,
+                           .last = {time, pose}};
     uint32_t number = (uint32_t)scene->nodes.count;
     if (!own.name || !list_add(&scene->nodes, &own, 1, sizeof own) ||
         (parent == GLTF_NONE && !list_add_index(&scene->roots, number))) {
@@ -234,19 +234,19 @@ static uint32_t new_node(struct gltf_scene *scene, uint32_t parent, const char *
         return 0;
     }
     if (parent != GLTF_NONE) {
-        struct placed *above = placed_at(scene, parent);
+        struct out_node *above = node_at(scene, parent);
         if (above->first_child == GLTF_NONE)
             above->first_child = number;
         else
-            placed_at(scene, above->last_child)->next = number;
+            node_at(scene, above->last_child)->next = number;
         above->last_child = number;
     }
     return number;
 }
 
 /* The next node below another one, in a later moment the same; the node that is placed so is *inner. */
-static uint32_t place(const struct visit *visit, uint32_t parent, const char *name, const struct affine *map,
-                      uint32_t *inner) {
+static uint32_t node_for(const struct visit *visit, uint32_t parent, const char *name, const struct affine *map,
+                         uint32_t *inner) {
     struct gltf_scene *scene = visit->scene;
     const double time = visit->moment->time;
     struct pose parts[2];
@@ -256,18 +256,18 @@ static uint32_t place(const struct visit *visit, uint32_t parent, const char *na
     if (scene->moments == 0) {
         number = *inner = new_node(scene, parent, name, parts[0], time);
         if (!is_plain && !scene->file.failed) {
-            placed_at(scene, number)->is_sheared = true;
+            node_at(scene, number)->is_sheared = true;
             *inner = new_node(scene, number, name, parts[1], time);
         }
         return number;
     }
-    if (number >= scene->nodes.count || strcmp(placed_at(scene, number)->name, name) != 0) {
+    if (number >= scene->nodes.count || strcmp(node_at(scene, number)->name, name) != 0) {
         scene->differs = true;
         *inner = 0;
         return 0;
     }
     add_key(scene, number, time, parts[0]);
-    *inner += placed_at(scene, number)->is_sheared;
+    *inner += node_at(scene, number)->is_sheared;
     if (*inner > number)
         add_key(scene, *inner, time, parts[1]);
     else if (!is_plain)
@@ -295,12 +295,47 @@ static uint32_t add_attribute(struct gltf_file *file, const struct gltf_surface 
     return accessor;
 }
 
+/* The directions of u, at right angles to the normals: the last number is -1 where v runs to their right. */
+static uint32_t add_tangents(struct gltf_file *file, const struct gltf_surface *s) {
+    const struct gltf_vertex *all = gltf_vertices(s);
+    struct vec3 *sums = mem_alloc_zero(2 * s->vertices.count + 1, sizeof *sums); /* along u, and along v */
+    float *out = mem_alloc((4 * s->vertices.count + 1) * sizeof *out);
+    uint32_t accessor = GLTF_NONE;
+    for (size_t i = 0; sums && i < s->triangles.count; i++) {
+        const uint32_t *v = gltf_triangles(s)[i].vertex;
+        struct vec3 along[2];
+        gltf_directions(s, &gltf_triangles(s)[i], NULL, along);
+        for (uint32_t k = 0; k < 6; k++) {
+            struct vec3 *sum = &sums[2 * v[k / 2] + k % 2];
+            *sum = vec3_add(*sum, along[k % 2]);
+        }
+    }
+    for (size_t i = 0; sums && out && i < s->vertices.count; i++) {
+        struct vec3 n = gltf_point(all[i].normal), other;
+        struct vec3 t = vec3_add_scaled(sums[2 * i], n, -vec3_dot(n, sums[2 * i]));
+        if (vec3_max_abs(t) > 0)
+            t = vec3_normalize(t);
+        else
+            frame_tangents(n, &t, &other);
+        for (int k = 0; k < 3; k++)
+            out[4 * i + (size_t)k] = (float)vec3_get(t, k);
+        out[4 * i + 3] = vec3_dot(vec3_cross(n, t), sums[2 * i + 1]) < 0 ? -1 : 1;
+    }
+    file->failed = file->failed || !sums || !out;
+    if (sums && out)
+        accessor = gltf_add_floats(file, out, s->vertices.count, 4, GLTF_VERTICES);
+    mem_free(sums);
+    mem_free(out);
+    return accessor;
+}
+
 /* The triangles of one material. */
 static void put_primitive(struct gltf_scene *scene, const struct gltf_surface *s, const struct gltf_paint *paint,
                           uint32_t material, struct gltf_text *text) {
     struct list indices = {0};
-    bool uses_uv, uses_colours, ok = true;
-    uint32_t number = gltf_paint_material(&scene->painter, material, s, paint, &uses_uv, &uses_colours);
+    struct gltf_attributes uses;
+    bool ok = true;
+    uint32_t number = gltf_paint_material(&scene->painter, material, s, paint, &uses);
     for (size_t i = 0; ok && i < s->triangles.count; i++) {
         const struct gltf_triangle *t = &gltf_triangles(s)[i];
         ok = t->material != material || list_add(&indices, t->vertex, 3, sizeof *t->vertex);
@@ -308,11 +343,13 @@ static void put_primitive(struct gltf_scene *scene, const struct gltf_surface *s
     gltf_open(text, NULL, '{');
     gltf_open(text, "attributes", '{');
     gltf_number(text, "POSITION", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
-    if (s->has_normals)
+    if (s->has_normals || uses.tangents)
         gltf_number(text, "NORMAL", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
-    if (uses_uv)
+    if (uses.uv)
         gltf_number(text, "TEXCOORD_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
-    if (uses_colours)
+    if (uses.tangents)
+        gltf_number(text, "TANGENT", add_tangents(&scene->file, s));
+    if (uses.colours)
         gltf_number(text, "COLOR_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
     gltf_close(text, '}');
     gltf_number(text, "indices",
@@ -356,7 +393,7 @@ static uint64_t key_of_primitive(const struct gltf_scene *scene, uint32_t primit
                                 prototype->geometry.csg ? world->primitives[primitive].prototype : 0};
     uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
     bool is_plain =
-        gltf_surface_is_placed(&prototype->geometry, &unused) && world->surfaces.materials[prototype->material].plain;
+        gltf_surface_is_unit(&prototype->geometry, &unused) && world->surfaces.materials[prototype->material].plain;
     return (is_plain ? hash : hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash)) | 1;
 }
 
@@ -364,7 +401,7 @@ static uint64_t key_of_primitive(const struct gltf_scene *scene, uint32_t primit
 static uint32_t mesh_of(struct visit *visit, uint32_t primitive) {
     struct gltf_scene *scene = visit->scene;
     const struct world *world = scene->painter.world;
-    const char *name = primitive_node(world, primitive)->name, *why = NULL;
+    const char *name = primitive_node(world, primitive)->name;
     const uint64_t key = key_of_primitive(scene, primitive);
     const uint32_t *known = key_map_find(&scene->meshes, key);
     const struct box *box = &world->boxes[primitive];
@@ -375,10 +412,10 @@ static uint32_t mesh_of(struct visit *visit, uint32_t primitive) {
     uint32_t mesh = GLTF_NONE;
     if (known)
         return *known;
-    visit->ok =
-        visit->ok && gltf_surface_make(world, primitive, share, scene->options.pool, &surface, &why, visit->error);
-    if (visit->ok && why)
-        lacks(scene, why, name);
+    const struct gltf_source source = {world, primitive, share, scene->options.pool};
+    visit->ok = visit->ok && gltf_surface_make(&source, &surface, visit->error);
+    if (visit->ok && surface.why)
+        lacks(scene, surface.why, name);
     if (visit->ok && surface.triangles.count > 0) {
         visit->ok = gltf_paint_make(&scene->painter, primitive, &surface, &paint, visit->error);
         mesh = visit->ok ? put_mesh(scene, &surface, &paint, name) : GLTF_NONE;
@@ -440,18 +477,18 @@ static void add_motion(const struct visit *visit, const struct node *node, uint3
 }
 
 /* The node of the file that has what is below the node of the scene. */
-static uint32_t place_node(const struct visit *visit, const struct node *node, uint32_t parent,
+static uint32_t enter_node(const struct visit *visit, const struct node *node, uint32_t parent,
                            const struct transform *below) {
     struct gltf_scene *scene = visit->scene;
     struct affine map = map_at(node, NULL, 0);
     uint32_t inner, spun;
     if (below)
         map = affine_compose(&map, &below->forward);
-    uint32_t outer = place(visit, parent, node->name, &map, &inner);
+    uint32_t outer = node_for(visit, parent, node->name, &map, &inner);
     spun = inner;
     if (node->spin && node->spin->degrees != 0) {
         struct affine turn = spin_at(node, visit->moment->is_frame ? visit->moment->time : 0);
-        (void)place(visit, inner, node->name, &turn, &spun);
+        (void)node_for(visit, inner, node->name, &turn, &spun);
     }
     if (node_moves(node) && scene->moments == 0 && !visit->moment->is_frame && !scene->file.failed)
         add_motion(visit, node, outer, inner, spun);
@@ -465,42 +502,42 @@ static uint32_t enter(struct visit *visit, const struct node *node, uint32_t par
     bool is_leaf = node->child_count == 0 && !node_moves(node) && count == 1;
     if (scene->moments > 0) {
         uint32_t at = scene->cursor < scene->nodes.count ? scene->cursor : 0;
-        uint32_t number = place_node(visit, node, parent, placed_at(scene, at)->below);
-        scene->cursor += placed_at(scene, number)->mesh_nodes;
+        uint32_t number = enter_node(visit, node, parent, node_at(scene, at)->below);
+        scene->cursor += node_at(scene, number)->mesh_nodes;
         return number;
     }
     uint32_t number = GLTF_NONE, nodes = 0, start = (uint32_t)scene->nodes.count;
     for (uint32_t i = 0; i < count; i++) {
         struct transform below = identity;
         uint32_t mesh = mesh_of(visit, first + i);
-        bool is_placed = gltf_surface_is_placed(primitive_geometry(visit->moment->world, first + i), &below);
+        bool is_unit = gltf_surface_is_unit(primitive_geometry(visit->moment->world, first + i), &below);
         if (i == 0)
-            number = place_node(visit, node, parent, is_leaf && is_placed ? &below : NULL);
+            number = enter_node(visit, node, parent, is_leaf && is_unit ? &below : NULL);
         if (!visit->ok || scene->file.failed || mesh == GLTF_NONE)
             continue;
         uint32_t holder = number;
-        if (is_leaf && is_placed) {
+        if (is_leaf && is_unit) {
             struct transform *kept = arena_alloc(&scene->arena, sizeof *kept);
             scene->file.failed = !kept || scene->file.failed;
             if (kept)
                 *kept = below;
-            placed_at(scene, start)->below = kept;
-        } else if (is_placed || count > 1) {
+            node_at(scene, start)->below = kept;
+        } else if (is_unit || count > 1) {
             uint32_t made = (uint32_t)scene->nodes.count;
-            (void)place(visit, number, node->name, &below.forward, &holder);
+            (void)node_for(visit, number, node->name, &below.forward, &holder);
             nodes += (uint32_t)scene->nodes.count - made;
         }
         if (!scene->file.failed)
-            placed_at(scene, holder)->mesh = mesh;
+            node_at(scene, holder)->mesh = mesh;
     }
     if (count == 0)
-        number = place_node(visit, node, parent, NULL);
+        number = enter_node(visit, node, parent, NULL);
     if (!scene->file.failed)
-        placed_at(scene, number)->mesh_nodes = nodes;
+        node_at(scene, number)->mesh_nodes = nodes;
     return number;
 }
 
-static void walk(struct visit *visit, uint32_t root) {
+static void visit_tree(struct visit *visit, uint32_t root) {
     struct gltf_scene *scene = visit->scene;
     struct scene_traversal t = world_traversal(visit->moment->world, visit->moment->root, sizeof(struct frame));
     enum scene_event event = SCENE_END;
@@ -516,7 +553,7 @@ static void walk(struct visit *visit, uint32_t root) {
             frame->of_children = frame->node;
             (void)snprintf(name, sizeof name, "%.120s [%u]", node->name, placement);
             if (placement > 0)
-                (void)place(visit, frame->node, name, &map.forward, &frame->of_children);
+                (void)node_for(visit, frame->node, name, &map.forward, &frame->of_children);
         } else if (event == SCENE_ENTER) {
             const struct frame *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
             bool is_operand = above && scene_traversal_operand(&t) != SCENE_CHILD;
@@ -548,17 +585,17 @@ static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *m
     const struct box box = world_finite_bounds(moment->world);
     double size = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, box.min));
     double far = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, moment->camera->eye)) + size;
-    bool is_flat = lens->projection == PROJECTION_ORTHOGRAPHIC;
+    bool is_orthographic = lens->projection == PROJECTION_ORTHOGRAPHIC;
     struct gltf_text text = {0};
-    if (lens->projection != PROJECTION_PERSPECTIVE && !is_flat)
+    if (lens->projection != PROJECTION_PERSPECTIVE && !is_orthographic)
         lacks(scene, "the camera has a perspective projection, not that of the scene", "");
     if (lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
         lens->shift_y != 0)
         lacks(scene, "the camera is a pinhole, without depth of field, shift, stereo and light field", "");
     gltf_open(&text, NULL, '{');
-    gltf_string(&text, "type", is_flat ? "orthographic" : "perspective");
-    gltf_open(&text, is_flat ? "orthographic" : "perspective", '{');
-    if (is_flat) {
+    gltf_string(&text, "type", is_orthographic ? "orthographic" : "perspective");
+    gltf_open(&text, is_orthographic ? "orthographic" : "perspective", '{');
+    if (is_orthographic) {
         gltf_number(&text, "xmag", lens->view_height / 2 * moment->aspect);
         gltf_number(&text, "ymag", lens->view_height / 2);
         gltf_number(&text, "zfar", 2 * far);
@@ -566,7 +603,7 @@ static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *m
         gltf_number(&text, "aspectRatio", moment->aspect);
         gltf_number(&text, "yfov", moment->camera->fov * (PI / 180));
     }
-    gltf_number(&text, "znear", is_flat ? 0 : far / 10000);
+    gltf_number(&text, "znear", is_orthographic ? 0 : far / 10000);
     gltf_close(&text, '}');
     gltf_close(&text, '}');
     uint32_t number = gltf_add(&scene->file, GLTF_CAMERAS, &text);
@@ -575,7 +612,7 @@ static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *m
 }
 
 /* A light as the file has it. */
-struct lamp {
+struct punctual {
     enum light_kind kind; /* LIGHT_POINT, LIGHT_SPOT or LIGHT_DIRECTIONAL */
     struct vec3 from, along;
     double strength, inner, outer; /* radians */
@@ -606,10 +643,10 @@ static double strength_of(struct gltf_scene *scene, const struct light *light, s
 }
 
 /* False: it is left out. */
-static bool lamp_of(struct gltf_scene *scene, const struct light *light, struct lamp *out) {
+static bool punctual_of(struct gltf_scene *scene, const struct light *light, struct punctual *out) {
     struct light_target middle;
     const bool has_middle = light_middle(light, &middle);
-    *out = (struct lamp){.kind = LIGHT_POINT, .along = {0, -1, 0}, .outer = PI / 2, .strength = 1};
+    *out = (struct punctual){.kind = LIGHT_POINT, .along = {0, -1, 0}, .outer = PI / 2, .strength = 1};
     out->from = has_middle ? middle.at : vec3_all(0);
     switch (light->kind) {
     case LIGHT_POINT:
@@ -650,18 +687,21 @@ static bool lamp_of(struct gltf_scene *scene, const struct light *light, struct 
     return false;
 }
 
-static uint32_t put_light(struct gltf_scene *scene, const struct light *light, const struct lamp *lamp) {
+static uint32_t put_light(struct gltf_scene *scene, const struct light *light, const struct punctual *punctual) {
     double largest = colour_max_abs(light->colour);
-    struct colour colour = colour_max(colour_scale(light->colour, 1 / largest), colour_all(0));
+    struct colour colour = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
     struct gltf_text text = {0};
     gltf_open(&text, NULL, '{');
     gltf_tuple(&text, "color", (const double[3]){colour.r, colour.g, colour.b}, 3);
-    gltf_number(&text, "intensity", lumens * largest * lamp->strength);
-    gltf_string(&text, "type", lamp->kind == LIGHT_POINT ? "point" : lamp->kind == LIGHT_SPOT ? "spot" : "directional");
-    if (lamp->kind == LIGHT_SPOT) {
+    gltf_number(&text, "intensity", lumens * largest * punctual->strength);
+    gltf_string(&text, "type",
+                punctual->kind == LIGHT_POINT  ? "point"
+                : punctual->kind == LIGHT_SPOT ? "spot"
+                                               : "directional");
+    if (punctual->kind == LIGHT_SPOT) {
         gltf_open(&text, "spot", '{');
-        gltf_number(&text, "innerConeAngle", math_min(lamp->inner, 0.9999 * lamp->outer));
-        gltf_number(&text, "outerConeAngle", lamp->outer);
+        gltf_number(&text, "innerConeAngle", math_min(punctual->inner, 0.9999 * punctual->outer));
+        gltf_number(&text, "outerConeAngle", punctual->outer);
         gltf_close(&text, '}');
     }
     gltf_close(&text, '}');
@@ -676,18 +716,18 @@ static void add_lights(struct visit *visit, uint32_t root) {
     const struct world *world = visit->moment->world;
     for (uint32_t i = 0; i < world->light_count && !scene->file.failed && !scene->differs; i++) {
         const struct light *light = &world->lights[i];
-        struct lamp lamp;
+        struct punctual punctual;
         uint32_t inner;
-        if (!lamp_of(scene, light, &lamp) || !(colour_max_abs(light->colour) > 0))
+        if (!punctual_of(scene, light, &punctual) || !(colour_max_abs(light->colour) > 0))
             continue;
         if (light->profile)
             lacks(scene, "the profile of a light is left out", "");
         if (light->lit)
             lacks(scene, "a light that leaves out nodes lights them, too", "");
-        struct affine map = looking(lamp.from, lamp.along, vec3_make(0, 1, 0));
-        uint32_t node = place(visit, root, "light", &map, &inner);
+        struct affine map = looking(punctual.from, punctual.along, vec3_make(0, 1, 0));
+        uint32_t node = node_for(visit, root, "light", &map, &inner);
         if (scene->moments == 0 && !scene->file.failed)
-            placed_at(scene, node)->light = put_light(scene, light, &lamp);
+            node_at(scene, node)->light = put_light(scene, light, &punctual);
     }
 }
 
@@ -698,9 +738,9 @@ static void add_camera(struct visit *visit, uint32_t root) {
     if (!camera)
         return;
     struct affine map = looking(camera->eye, camera->view, camera->up);
-    uint32_t node = place(visit, root, "camera", &map, &inner);
+    uint32_t node = node_for(visit, root, "camera", &map, &inner);
     if (scene->moments == 0 && !scene->file.failed)
-        placed_at(scene, node)->camera = put_camera(scene, visit->moment);
+        node_at(scene, node)->camera = put_camera(scene, visit->moment);
 }
 
 bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, struct error *error) {
@@ -718,11 +758,11 @@ bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, 
     /* In a file y is up. */
     if (camera && fabs(camera->up.z) > fabs(camera->up.y)) {
         struct affine turn = transform_rotate(0, camera->up.z > 0 ? -90 : 90).forward;
-        (void)place(&visit, GLTF_NONE, "upright", &turn, &root);
+        (void)node_for(&visit, GLTF_NONE, "upright", &turn, &root);
     }
     add_camera(&visit, root);
     add_lights(&visit, root);
-    walk(&visit, root);
+    visit_tree(&visit, root);
     if (scene->differs) {
         lacks(scene, "a frame shows other nodes than the first one: from there on nothing moves", "");
         scene->differs = false;
@@ -735,7 +775,7 @@ bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, 
 
 static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input, const char *path, size_t offset,
                         int width) {
-    const struct placed *at = placed_at(scene, node);
+    const struct out_node *at = node_at(scene, node);
     const struct key *keys = at->keys.items;
     const size_t count = at->keys.count;
     float *numbers = mem_alloc((count * (size_t)width + 1) * sizeof *numbers);
@@ -770,8 +810,8 @@ static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input,
 }
 
 static void put_animation(struct gltf_scene *scene, uint32_t node) {
-    const struct key *keys = placed_at(scene, node)->keys.items;
-    const size_t count = placed_at(scene, node)->keys.count;
+    const struct key *keys = node_at(scene, node)->keys.items;
+    const size_t count = node_at(scene, node)->keys.count;
     float *times = count > 0 ? mem_alloc(count * sizeof *times) : NULL;
     scene->file.failed = scene->file.failed || (count > 0 && !times);
     if (!times)
@@ -787,7 +827,7 @@ static void put_animation(struct gltf_scene *scene, uint32_t node) {
 
 static void put_node(struct gltf_scene *scene, uint32_t number, struct gltf_text *text) {
     static const struct pose rest = {.turn = {0, 0, 0, 1}, .size = {1, 1, 1}};
-    const struct placed *at = placed_at(scene, number);
+    const struct out_node *at = node_at(scene, number);
     gltf_open(text, NULL, '{');
     if (at->name[0])
         gltf_string(text, "name", at->name);
@@ -810,7 +850,7 @@ static void put_node(struct gltf_scene *scene, uint32_t number, struct gltf_text
     }
     if (at->first_child != GLTF_NONE) {
         gltf_open(text, "children", '[');
-        for (uint32_t child = at->first_child; child != GLTF_NONE; child = placed_at(scene, child)->next)
+        for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
             gltf_number(text, NULL, child);
         gltf_close(text, ']');
     }
