@@ -50,8 +50,8 @@ def same(a, b):
 
 
 def check():
-    """What is wrong with s.lua; None if it is no scene, or cannot be written."""
-    if gray(*SMALL, 's.lua', '-o', 'out/a%d.png') or not os.path.exists(f'{FOLDER}/out/a1.png'):
+    """What is wrong with s.lua; None if it is no scene, has more than 20 pictures, or cannot be written."""
+    if gray(*SMALL, 's.lua', '-o', 'out/a%d.png') or len(os.listdir(f'{FOLDER}/out')) not in range(1, 21):
         return None
     for pattern, kind in (('out/x%d.json', 'json'), ('out/l%d.lua', 'lua')):
         error = gray('-q', 's.lua', '-o', pattern)
