@@ -1,5 +1,5 @@
 -- TITLE: The town at the blue hour
--- OPTIONS: --size 400x250 --spp 32
+-- OPTIONS: --size 400x250 --spp 8
 -- A wet street after rain: lit windows, lamps and the last light of the sky in the puddles. Houses are boxes whose windows
 -- are functions of the point; ledges, roofs, lamps and cars are geometry. Fog is thicker near the ground.
 local random = require 'random'

@@ -1,5 +1,5 @@
 -- TITLE: The movement of a watch
--- OPTIONS: --size 400x250 --spp 32
+-- OPTIONS: --size 400x250 --spp 8
 -- Going train, balance and hairspring over a plate with stripes. Bridges and wheels are prisms with bevelled edges, whose
 -- polished bevels catch the strips of light; jewels of ruby sit in gold; screws are blued. One unit is two millimetres.
 local gear = require 'gear'

@@ -1,5 +1,5 @@
 -- TITLE: An octopus at rest
--- OPTIONS: --size 400x300 --spp 24
+-- OPTIONS: --size 400x300 --spp 3
 -- The skin scatters light below its surface: arms glow where the lamp is behind them. The animal is one union of sweeps and a
 -- smooth head, so light walks from arm to arm; suckers, eyes, sand and corals are around it. -D seed=3 makes another one;
 -- --frames 72 --loop moves the arms.

@@ -1,5 +1,5 @@
 -- TITLE: The pavilion
--- OPTIONS: --size 400x250 --spp 24
+-- OPTIONS: --size 400x250 --spp 8
 -- A dome cut from a gyroid, lit by one lamp inside, in new snow at night. Footprints lead to it; flakes fall between the birches.
 local sdf, random = require 'sdf', require 'random'
 local scene = gr.node 'garden'

@@ -1,5 +1,5 @@
 -- TITLE: A buoy at sunset
--- OPTIONS: --size 400x250 --spp 24
+-- OPTIONS: --size 400x250 --spp 12
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
 -- crests; the buoy has rust, a cage, a lamp, and a gull.
 local random, sdf = require 'random', require 'sdf'

@@ -1,5 +1,5 @@
 -- TITLE: The red stairs
--- OPTIONS: --size 400x500 --spp 24
+-- OPTIONS: --size 320x400 --spp 4
 -- A spiral staircase from above: daylight falls from a skylight down the well, and a lamp waits on the marble at the bottom.
 -- 120 steps with rounded noses, a carpet that folds over them, brass rods, iron balusters and a handrail of oak.
 local materials = require 'materials'

@@ -1,5 +1,5 @@
 -- TITLE: Still life with lemons
--- OPTIONS: --size 400x250 --spp 24
+-- OPTIONS: --size 400x250 --spp 10
 -- A window on the left, a dark wall, and what Dutch painters laid on a table: a white cloth with folds, pewter, a glass of
 -- wine, lemons, grapes and bread. Grapes and lemons scatter light inside.
 local random, patterns = require 'random', require 'patterns'

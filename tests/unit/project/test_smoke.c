@@ -153,6 +153,10 @@ TEST(smoke_path_traced_demos_render_in_small_from_any_folder_without_a_warning) 
     smoke("data/path", ".lua", false);
 }
 
+TEST(smoke_pictures_of_the_gallery_render_in_small) {
+    smoke_with("--spp 1 --caustics 2000", "data/gallery", ".lua", false);
+}
+
 TEST(smoke_animations_and_drawn_pictures_render_in_small) {
     smoke_with("--frames 1-25/8", "data/animation", ".lua", false);
     smoke("data", "styles.lua", false);
