@@ -42,8 +42,8 @@ for name in sys.argv[sys.argv.index('--') + 1:]:
     blender, gray, mask = render(name), load(name + '.exr'), load(name + '-mask.exr')
     covered = abs(blender[:, :, 3] - mask[:, :, 0]).mean()
     a, b = blender[:, :, :3], gray[:, :, :3]
-    around = [numpy.roll(b, (y, x), (0, 1)).max(2) for y in (-1, 0, 1) for x in (-1, 0, 1)]
-    even = (numpy.min(around, 0) > 0.85 * numpy.max(around, 0)) & (b.max(2) > 0.1) & (mask[:, :, 0] == 1)
+    nearby = [numpy.roll(b, (y, x), (0, 1)).max(2) for y in (-1, 0, 1) for x in (-1, 0, 1)]
+    even = (numpy.min(nearby, 0) > 0.85 * numpy.max(nearby, 0)) & (b.max(2) > 0.1) & (mask[:, :, 0] == 1)
     ratio = (b[even] / numpy.maximum(a[even], 1e-3)).max(1)
     middle = numpy.median(ratio)
     wrong = covered > 0.001 or abs(middle - 1) > 0.02 or even.sum() < 500
