@@ -283,6 +283,8 @@ TEST(what_gltf_lacks_is_left_out_with_one_warning_each) {
     expect("gr.node('nothing'):export('z.glb')\n", "scene.lua", 0, NULL);
     CHECK(file_is_regular(test_path("z.glb")));
     expect("gr.sphere{}:export('../x.glb')\n", "scene.lua", 1, "models of scripts must be below the working directory");
+    expect("gr.render{node = gr.sphere{}, width = 8, height = 8}\n", "--check-print -o x.glb scene.lua", 2,
+           "--check-print is for solids");
     test_write_text(test_path("mine.glb"), "my notes\n");
     expect("gr.sphere{}:export('mine.glb')\n", "scene.lua", 1, "exists already and is not a model");
 }
