@@ -2429,13 +2429,13 @@ function node:translate(x, y, z) end
 function node:render(file, width, height, eye, view, up, fov, ambient, lights, fields) end
 
 ---@class gr.node.export.fields
----@field file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---@field file string file (the name of a file): Model file: .stl .obj .ply .gltf .glb .3mf.
 ---@field tolerance? number tolerance (a number, > 0; default 1/1000 of the size): Largest distance of the model from the exact surface.
 ---@field unit? 'mm'|'cm'|'m'|'in' unit ('mm'|'cm'|'m'|'in'; default 'mm'): Unit of the numbers, for files that name it (3MF).
 ---@field text? boolean text (true or false; default false): Whether an STL file is text, not binary.
 
----Writes the solids of the node as a closed mesh, for printers and other programs.
----@param file string file (the name of a file): Model file: .stl .obj .ply .3mf.
+---Writes the solids of the node as a closed mesh, or as glTF the whole node, for printers and other programs.
+---@param file string file (the name of a file): Model file: .stl .obj .ply .gltf .glb .3mf.
 ---@param fields? gr.node.export.fields Fields that are no arguments before it
 ---@overload fun(self: gr.node, fields: gr.node.export.fields)
 function node:export(file, fields) end

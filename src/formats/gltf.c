@@ -268,8 +268,9 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
     struct gltf g = {.model = model, .path = model->path, .error = error, .bytes = size};
     const char *text;
     size_t length;
-    bool ok = split(&g, data, size, &text, &length) && (g.root = json_text_parse(g.path, text, length, false, error)) &&
-              load(&g);
+    struct arena json = {0};
+    bool ok = split(&g, data, size, &text, &length) &&
+              (g.root = json_text_parse(g.path, text, length, false, &json, error)) && load(&g);
     for (size_t i = 0; g.buffers && i < g.buffer_count; i++) {
         mem_free(g.buffers[i].decoded);
         file_unmap(&g.buffers[i].file);
@@ -279,7 +280,7 @@ bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct err
     mem_free(g.buffers);
     mem_free(g.images);
     mem_free(g.plain);
-    json_decref(g.root);
+    arena_destroy(&json);
     report_lacks(&g);
     return ok;
 }

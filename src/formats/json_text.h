@@ -2,6 +2,7 @@
 #ifndef GRAY_FORMATS_JSON_TEXT_H
 #define GRAY_FORMATS_JSON_TEXT_H
 
+#include "base/arena.h"
 #include "base/error.h"
 
 #include <stddef.h>
@@ -12,9 +13,10 @@ const char *json_text_library(void);
 #ifdef HAVE_JANSSON
 #include <jansson.h>
 
-/* What stands in the text, an object; the caller releases it. NULL: an error that names the file and the line. Names
- * that stand twice in an object are an error if `strict` is set. */
-json_t *json_text_parse(const char *path, const char *text, size_t size, bool strict, struct error *error);
+/* What stands in the text, an object, which lives as long as the arena. NULL: an error that names the file and the
+ * line. Names that stand twice in an object are an error if `strict` is set. */
+json_t *json_text_parse(const char *path, const char *text, size_t size, bool strict, struct arena *arena,
+                        struct error *error);
 #endif
 
 #endif

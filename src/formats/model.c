@@ -456,9 +456,8 @@ static bool check_numbers(const struct model *model, struct error *error) {
     return true;
 }
 
-#define MODEL_FORMATS_READ(X) MODEL_FORMATS_BOTH(X) X(FORMAT_GLTF, ".gltf") X(FORMAT_GLB, ".glb")
 #define EXTENSION(format, extension) (extension),
-static const char *const extensions[] = {MODEL_FORMATS_READ(EXTENSION)};
+static const char *const extensions[] = {MODEL_FORMATS_BOTH(EXTENSION)};
 
 /* The extension without ".gz", and its length. */
 static const char *extension_of(const char *path, size_t *length) {

@@ -9,19 +9,17 @@ const char model_scene_header[] = "-- A scene written by gray";
 const char model_glb_header[] = "{\"asset\":{\"generator\":\"gray\",";
 
 enum model_format model_format_written(const char *name) {
-    static const char *const endings[] = {MODEL_FORMATS_WRITTEN(LIST_WORD)};
+    static const char *const endings[] = {MODEL_FORMATS(LIST_WORD)};
     size_t length = strlen(name);
-    for (int i = 0; i < LIST_COUNT(MODEL_FORMATS_WRITTEN); i++)
+    for (int i = 0; i < LIST_COUNT(MODEL_FORMATS); i++)
         if (length > strlen(endings[i]) && strcasecmp(name + length - strlen(endings[i]), endings[i]) == 0)
             return (enum model_format)i;
     return FORMAT_OTHER;
 }
 
 enum model_format model_format_baked(const char *name) {
-    size_t length = strlen(name);
-    if (length > 4 && strcasecmp(name + length - 4, ".glb") == 0)
-        return FORMAT_GLB;
-    return model_format_written(name) == FORMAT_PLY ? FORMAT_PLY : FORMAT_OTHER;
+    enum model_format format = model_format_written(name);
+    return format == FORMAT_PLY || format == FORMAT_GLB ? format : FORMAT_OTHER;
 }
 
 static bool begins(const uint8_t *head, size_t size, const char *text) {
@@ -33,8 +31,8 @@ bool model_file_is(const uint8_t *head, size_t size) {
      */
     bool package = begins(head, size, "PK\3\4") && size > 33 && memcmp(head + 30, "3D/", 3) == 0;
     bool glb = begins(head, size, "glTF") && size > 20 && begins(head + 20, size - 20, model_glb_header);
-    bool json = begins(head, size, "{\"define\": {\n") || begins(head, size, "{\"defaults\": \"classic\",\n") ||
-                begins(head, size, "{\"gray\": 1,\n");
+    bool json = begins(head, size, model_glb_header) || begins(head, size, "{\"define\": {\n") ||
+                begins(head, size, "{\"defaults\": \"classic\",\n") || begins(head, size, "{\"gray\": 1,\n");
     return package || glb || json || begins(head, size, model_scene_header) || begins(head, size, model_stl_header) ||
            begins(head, size, model_obj_header) || begins(head, size, "solid ") || begins(head, size, "ply\n");
 }

@@ -1,5 +1,6 @@
 #include "host/model_export.h"
 
+#include "export/gltf_write.h"
 #include "export/model_build.h"
 #include "export/print_check.h"
 #include "formats/model_format.h"
@@ -173,9 +174,86 @@ static bool build_model(struct model_work *work, struct export_model *model, str
     return ok;
 }
 
+/* --- glTF --- */
+
+static void warn(void *context, const char *text) {
+    const struct model_work *work = context;
+    render_process_say(work->process, LINE_WARNING, "%.400s: warning: %s", work->where, text);
+}
+
+/* A moment of the scene; request: of the picture, or NULL: the node alone. */
+static bool add_moment(struct model_work *work, struct gltf_scene *scene, const struct render_request *request,
+                       struct error *error) {
+    struct render_process *process = work->process;
+    struct world_input input = {.scene = work->scene,
+                                .root = work->node,
+                                .sky = &(struct sky){.kind = SKY_CONSTANT},
+                                .accel = process->options->settings.accel,
+                                .linear_colours = work->linear};
+    struct gltf_moment moment = {.root = work->node, .scene = work->scene};
+    struct camera camera;
+    struct world world;
+    if (request) {
+        camera = request->camera;
+        if (request->settings.view_is_target)
+            camera.view = vec3_sub(camera.view, camera.eye);
+        moment.camera = &camera;
+        moment.lens = &request->settings.lens;
+        moment.aspect = request->width / request->height;
+        moment.is_frame = request->frame.number > 0;
+        moment.time = moment.is_frame ? work->time : 0;
+        input.lights = request->lights;
+        input.light_count = request->light_count;
+    }
+    scene_set_time(work->scene, work->time);
+    if (!world_build(&world, &input, &process->job, process->pool, error))
+        return false;
+    moment.world = &world;
+    bool ok = gltf_scene_add(scene, &moment, error);
+    world_destroy(&world);
+    arena_reset(&process->job);
+    return ok;
+}
+
+static struct gltf_scene *begin_scene(struct model_work *work, struct error *error) {
+    const struct gltf_options options = {
+        .tolerance = work->tolerance, .linear = work->linear, .pool = work->process->pool};
+    struct gltf_scene *scene = gltf_scene_create(&options);
+    if (!scene)
+        error_no_memory(error, "a model");
+    return scene;
+}
+
+static bool write_scene(struct model_work *work, struct gltf_scene *scene, struct error *error) {
+    gltf_scene_report(scene, warn, work);
+    return gltf_scene_write(scene, work->write.format == FORMAT_GLB, &work->made.files.model, error);
+}
+
+static bool make_scene(struct model_work *work, struct error *error) {
+    struct gltf_scene *scene = begin_scene(work, error);
+    bool ok = scene && add_moment(work, scene, NULL, error) &&
+              (work->process->options->check || write_scene(work, scene, error));
+    gltf_scene_destroy(scene);
+    return ok;
+}
+
+/* What else a file lacks of a picture. */
+static void warn_of_picture(struct model_work *work, const struct render_request *request) {
+    if (request->sky_chosen)
+        warn(work, "the sky is left out");
+    if (colour_max_abs(request->ambient) > 0)
+        warn(work, "the ambient light is left out");
+    if (request->outside.affects)
+        warn(work, "the medium around the scene is left out");
+}
+
+/* --- files --- */
+
 static bool make_files(struct model_work *work, struct error *error) {
     struct render_process *process = work->process;
     struct export_model model = {0};
+    if (model_format_is_scene(work->write.format))
+        return make_scene(work, error);
     bool ok = build_model(work, &model, error);
     if (ok && !process->options->check) {
         detail(work, &model);
@@ -336,6 +414,27 @@ static const struct node *find_node(const struct node *root, const char *name, s
     return found;
 }
 
+/* Adds the scene of a picture to the file, which is written when no other frame comes. */
+static bool keep_moment(struct model_work *work, const struct render_request *request, struct error *error) {
+    struct render_process *process = work->process;
+    const struct host_services *services = process->services;
+    const struct model_request file = request_of(work);
+    const bool is_first = !process->gltf_scene;
+    if (!render_process_need_pool(process, error) || !services->model(services->context, &file, NULL, error))
+        return false;
+    struct mem_account *script = render_process_charge_picture(process);
+    if (is_first)
+        process->gltf_scene = begin_scene(work, error);
+    process->gltf_frame = request->frame.number;
+    bool ok = process->gltf_scene && add_moment(work, process->gltf_scene, request, error);
+    (void)mem_charge(script);
+    services->model_end(services->context);
+    if (ok && is_first)
+        warn_of_picture(work, request);
+    process->kept_model.ready = ok;
+    return ok;
+}
+
 bool model_export_picture(struct render_process *process, const struct render_request *request, struct error *error) {
     const struct options *options = process->options;
     const struct camera *camera = &request->camera;
@@ -352,18 +451,25 @@ bool model_export_picture(struct render_process *process, const struct render_re
                               .up = camera->up,
                               .by_user = true,
                               .linear = settings_linear(&request->settings)};
-    uint32_t number = ++process->model_pictures;
+    const bool is_scene = model_format_is_scene(model_format_written(work.file));
+    /* The frames of an animation are one file. */
+    const bool goes_on = is_scene && process->gltf_scene && request->frame.number > process->gltf_frame;
+    uint32_t number = goes_on ? process->model_pictures : ++process->model_pictures;
     process->kept_model.shows_next = false;
+    if (goes_on) {
+        return keep_moment(&work, request, error);
+    }
     size_t length = strlen(process->picture_names);
     (void)snprintf(process->picture_names + length, sizeof process->picture_names - length, "%s%u %.80s",
                    number > 1 ? ", " : "", number, request->file);
     if (options->picture > 0 ? number != (uint32_t)options->picture : number > 1)
         return true;
-    if (request->frame.number > 0 && options->script.frames.selection.step == 0)
+    if (request->frame.number > 0 && options->script.frames.selection.step == 0 && !is_scene)
         return error_set(error, ERROR_SCENE, "a model shows one frame: --frames N-N chooses it");
     if (options->node && !(work.node = find_node(request->root, options->node, error)))
         return false;
-    return run(&work, options->picture > 0 && !options->output ? NULL : &process->kept_model, error);
+    return is_scene ? keep_moment(&work, request, error)
+                    : run(&work, options->picture > 0 && !options->output ? NULL : &process->kept_model, error);
 }
 
 bool model_export_show(struct render_process *process, const struct film *film, const struct tone *tone,
@@ -378,10 +484,16 @@ bool model_export_show(struct render_process *process, const struct film *film, 
 bool model_export_finish(struct render_process *process, struct error *error) {
     const struct options *options = process->options;
     const struct host_services *services = process->services;
-    struct model_work work = {.process = process, .file = options->model, .by_user = true, .made = process->kept_model};
+    struct model_work work = {.process = process,
+                              .file = options->model,
+                              .where = options->model,
+                              .by_user = true,
+                              .made = process->kept_model};
+    struct gltf_scene *scene = process->gltf_scene;
     const char *option = options->model ? options->model : "--check-print";
     bool ok = true;
     process->kept_model = (struct kept_model){0};
+    process->gltf_scene = NULL;
     if (options->picture == 0 && process->model_pictures > 1)
         ok = error_set(error, ERROR_USAGE,
                        "%.200s: the script renders several pictures, %.600s; --picture N chooses one", option,
@@ -393,14 +505,18 @@ bool model_export_finish(struct render_process *process, struct error *error) {
         ok = error_set(error, ERROR_USAGE, "%.200s: the script renders no picture whose scene could be the model",
                        option);
     else if (work.made.ready) {
-        ok = finish(&work, error);
+        work.write.format = options->model ? model_format_written(options->model) : FORMAT_OTHER;
+        ok = (!scene || options->check || write_scene(&work, scene, error)) && finish(&work, error);
         if (options->model)
             services->model_end(services->context);
     }
+    gltf_scene_destroy(scene);
     forget(&work.made);
     return ok;
 }
 
 void model_export_forget(struct render_process *process) {
+    gltf_scene_destroy(process->gltf_scene);
+    process->gltf_scene = NULL;
     forget(&process->kept_model);
 }

@@ -72,6 +72,8 @@ struct render_process {
     uint32_t model_pictures;  /* under -o MODEL */
     char picture_names[1024]; /* theirs, for a message */
     struct kept_model kept_model;
+    struct gltf_scene *gltf_scene; /* of -o FILE.glb, while its frames are added */
+    uint32_t gltf_frame;           /* the last one */
     struct list scene; /* its text, of the only picture */
     uint32_t scenes;   /* that were written as text */
     unsigned faults; /* the notices of scene_check that this script has caused */

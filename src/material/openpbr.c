@@ -115,8 +115,8 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
 
 /* --- inputs --- */
 
-static void read_textures(const struct surface_tables *tables, const struct surface_material *material,
-                          const struct hit *hit, struct openpbr *values) {
+void openpbr_read(const struct surface_tables *tables, const struct surface_material *material, const struct hit *hit,
+                  struct openpbr *values) {
     static const struct {
         enum material_input input;
         bool is_colour;
@@ -551,7 +551,7 @@ void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, co
     static const struct medium_stack air = {.count = 0};
     const struct surface_material *material = &tables->materials[hit->material];
     struct openpbr values = material->openpbr;
-    read_textures(tables, material, hit, &values);
+    openpbr_read(tables, material, hit, &values);
     values.thin_walled = values.thin_walled || context->thin;
     media = media ? media : &air;
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */

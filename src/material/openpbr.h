@@ -44,6 +44,9 @@ void openpbr_classic(struct surface_material *material, const struct texture *te
 struct material_context;
 struct surface_inputs;
 struct surface_tables;
+/* Reads the inputs that have a texture into a copy of the material's numbers. */
+void openpbr_read(const struct surface_tables *tables, const struct surface_material *material, const struct hit *hit,
+                  struct openpbr *values);
 /* Fills the lobes, the emission and the boundary of a BSDF whose frame is set, by the material of the hit. media: of
  * the ray. */
 void openpbr_eval(const struct surface_tables *tables, const struct hit *hit, const struct medium_stack *media,

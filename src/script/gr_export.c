@@ -42,6 +42,6 @@ static bool gr_export(struct script_context *context, const struct script_value 
 
 static const struct script_function export_rows[] = {
     NODE("export", export_parameters, RESULT_NOTHING, gr_export,
-         "Writes the solids of the node as a closed mesh, for printers and other programs.", "file"),
+         "Writes the solids of the node as a closed mesh, or as glTF the whole node, for printers and other programs.", "file"),
 };
 const struct function_rows export_functions = {export_rows, COUNT(export_rows)};

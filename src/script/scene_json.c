@@ -50,6 +50,7 @@ struct scene_reader {
     json_t *defined;
     const struct position *position;
     int depth, made, calls[2];
+    const struct script_function *add_child;
 };
 
 /* --- messages --- */
@@ -129,13 +130,6 @@ _Noreturn static void fail_unknown(struct scene_reader *r, const char *what, con
 
 static void push_value(struct scene_reader *r, const json_t *json);
 
-static void push_member(struct scene_reader *r, const char *key, const json_t *json) {
-    const struct position position = {r->position, key, 0};
-    r->position = &position;
-    push_value(r, json);
-    r->position = position.outer;
-}
-
 static void push_entry(struct scene_reader *r, size_t index, const json_t *json) {
     const struct position position = {r->position, NULL, index};
     r->position = &position;
@@ -152,8 +146,26 @@ static void push_list(struct scene_reader *r, const json_t *list) {
     }
 }
 
-/* A table of the members, without those of that list, which ends with NULL. */
-static void push_fields(struct scene_reader *r, const json_t *object, const char *const *without) {
+static bool is_call(const json_t *value) {
+    return json_is_object(value) &&
+           (json_is_string(json_object_get(value, "type")) || json_is_string(json_object_get(value, "ref")));
+}
+
+/* An object of a kind that only functions make; its position is set. */
+static void check_type(struct scene_reader *r, const struct script_function *function, const json_t *value) {
+    const char *key = r->position->key;
+    for (int k = 0; json_is_object(value) && !is_call(value) && k < function->parameter_count; k++) {
+        const struct script_parameter *p = &function->parameters[k];
+        bool is_node = p->kind == KIND_NODE;
+        if ((is_node || p->kind == KIND_MATERIAL) && strcmp(p->name, key) == 0)
+            sandbox_raise(sandbox_enter(r->L), "it must have a type, as in {\"type\": \"%s\"}",
+                          is_node ? "sphere" : "material");
+    }
+}
+
+/* A table of the members, without those of that list, which ends with NULL: the fields of a function, or NULL. */
+static void push_fields(struct scene_reader *r, const struct script_function *function, const json_t *object,
+                        const char *const *without) {
     lua_createtable(r->L, 0, (int)json_object_size(object));
     for (void *at = json_object_iter((json_t *)(uintptr_t)object); at;
          at = json_object_iter_next((json_t *)(uintptr_t)object, at)) {
@@ -163,7 +175,12 @@ static void push_fields(struct scene_reader *r, const json_t *object, const char
             other++;
         if (*other)
             continue;
-        push_member(r, key, json_object_iter_value(at));
+        const struct position position = {r->position, key, 0};
+        r->position = &position;
+        if (function)
+            check_type(r, function, json_object_iter_value(at));
+        push_value(r, json_object_iter_value(at));
+        r->position = position.outer;
         lua_setfield(r->L, -2, key);
     }
 }
@@ -209,11 +226,6 @@ static const struct script_function *find_function(struct scene_reader *r, enum 
     fail_unknown(r, owner == OWNER_GR ? "the type" : "the method", name, &suggestion);
 }
 
-static bool is_call(const json_t *value) {
-    return json_is_object(value) &&
-           (json_is_string(json_object_get(value, "type")) || json_is_string(json_object_get(value, "ref")));
-}
-
 /* Calls a method of the node on top: a list has its arguments, a table its fields, and else it is the argument. */
 static void call_method(struct scene_reader *r, const char *name, const json_t *value) {
     static const char *const none[] = {NULL};
@@ -233,7 +245,7 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
         for (int i = 0; i < count; i++)
             push_entry(r, (size_t)i, json_array_get(value, (size_t)i));
     } else if (json_is_object(value) && !is_call(value)) {
-        push_fields(r, value, none);
+        push_fields(r, function, value, none);
     } else {
         push_value(r, value);
     }
@@ -241,16 +253,31 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
     r->position = position.outer;
 }
 
-static void add_children(struct scene_reader *r, const json_t *children) {
+static void push_node(struct scene_reader *r, const json_t *list, size_t index) {
+    const struct position position = {r->position, NULL, index};
+    const json_t *json = json_array_get(list, index);
+    r->position = &position;
+    push_value(r, json);
+    const struct handle *handle = handle_at(r->L, -1);
+    if (!handle || handle->type != HANDLE_NODE)
+        sandbox_raise(sandbox_enter(r->L), "it must be a node, such as {\"type\": \"sphere\"}, not %s",
+                      json_is_array(json)               ? "a list"
+                      : json_is_object(json) && !handle ? "an object without a type"
+                                                        : value_words(r->L, -1));
+    r->position = position.outer;
+}
+
+/* To the node on top. */
+static void add_children(struct scene_reader *r, const char *key, const json_t *children) {
     lua_State *L = r->L;
-    const struct position position = {r->position, "children", 0};
+    const struct position position = {r->position, key, 0};
     r->position = &position;
     if (!json_is_array(children))
         sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
     for (size_t i = 0; i < json_array_size(children); i++) {
-        dispatch_push(L, find_function(r, OWNER_NODE, "add_child"));
+        dispatch_push(L, r->add_child);
         lua_pushvalue(L, -2);
-        push_entry(r, i, json_array_get(children, i));
+        push_node(r, children, i);
         lua_call(L, 2, 0);
     }
     r->position = position.outer;
@@ -283,10 +310,10 @@ static void push_object(struct scene_reader *r, const json_t *object) {
     bool is_node = function->result == RESULT_NODE, is_group = has_parameter(function, "children", 8);
     const json_t *children = json_object_get(object, "children"), *calls = json_object_get(object, "transform");
     dispatch_push(L, function);
-    push_fields(r, object, !is_node ? type_only : is_group ? of_group : own);
+    push_fields(r, function, object, !is_node ? type_only : is_group ? of_group : own);
     lua_call(L, 1, 1);
     if (is_node && !is_group && children)
-        add_children(r, children);
+        add_children(r, "children", children);
     if (is_node && calls)
         transform(r, calls);
 }
@@ -337,8 +364,10 @@ static void push_value(struct scene_reader *r, const json_t *json) {
             push_reference(r, json_string_value(json_object_get(json, "ref")));
         } else if (is_call(json)) {
             push_object(r, json);
+        } else if (json_object_get(json, "type") || json_object_get(json, "ref")) {
+            sandbox_raise(sandbox_enter(L), "type and ref must be words, as in {\"type\": \"sphere\"}");
         } else {
-            push_fields(r, json, none);
+            push_fields(r, NULL, json, none);
         }
         break;
     case JSON_ARRAY:
@@ -385,13 +414,15 @@ static void check_top(struct scene_reader *r, const json_t *root) {
             known |= strcmp(top_names[i], key) == 0;
             suggest_offer(&suggestion, top_names[i]);
         }
+        if (!known && has_parameter(function_find(OWNER_GR, "render"), key, strlen(key)))
+            sandbox_raise(sandbox, "the field '%s' belongs in picture", key);
         if (!known)
             fail_unknown(r, "the field", key, &suggestion);
     }
     if (define && !json_is_object(define))
         sandbox_raise(sandbox, "define: it must be an object, {\"NAME\": {\"type\": ...}}");
-    if (!json_is_array(json_object_get(root, "nodes")) || json_array_size(json_object_get(root, "nodes")) == 0)
-        sandbox_raise(sandbox, "nodes is missing, a list of nodes");
+    if (json_array_size(json_object_get(root, "nodes")) == 0) /* of anything else, too */
+        sandbox_raise(sandbox, "nodes must be a list of at least one node, as in \"nodes\": [{\"type\": \"sphere\"}]");
     value = json_object_get(root, "picture");
     if (value && !json_is_object(value))
         sandbox_raise(sandbox, "picture: it must be an object with the fields of gr.render");
@@ -401,6 +432,7 @@ static void check_top(struct scene_reader *r, const json_t *root) {
 
 /* What the fields of gr.render do not say. */
 static void set_state(struct scene_reader *r, const json_t *root) {
+    static const char *const orders[] = {TRANSFORM_ORDERS(LIST_WORD)};
     struct sandbox *sandbox = sandbox_enter(r->L);
     const json_t *order = json_object_get(root, "transform_order"), *defaults = json_object_get(root, "defaults"),
                  *time = json_object_get(root, "time");
@@ -411,15 +443,19 @@ static void set_state(struct scene_reader *r, const json_t *root) {
     if (time && (!json_is_number(time) || !(json_number_value(time) >= 0) || !number_in_range(json_number_value(time))))
         sandbox_raise(sandbox, "time must be a number of seconds, from 0 to %g", NUMBER_LIMIT);
     r->script->time = json_number_value(time);
-    if (!order)
-        return;
-    dispatch_push(r->L, function_find(OWNER_GR, "transform_order"));
-    push_member(r, "transform_order", order);
-    lua_call(r->L, 1, 0);
+    for (int k = 0; order && (word = json_string_value(order)) && k < (int)(sizeof orders / sizeof *orders); k++)
+        if (strcmp(orders[k], word) == 0) {
+            r->script->context.scene.order = (enum transform_order)k;
+            order = NULL;
+        }
+    if (order)
+        sandbox_raise(sandbox, "transform_order must be \"new\", \"old\" or \"separate\"");
 }
 
 /* The node of the picture: several are the children of one. */
 static void push_root(struct scene_reader *r, const json_t *nodes) {
+    const char *name;
+    json_t *value;
     const struct position position = {NULL, "nodes", 0};
     r->position = &position;
     bool several = json_array_size(nodes) > 1;
@@ -427,16 +463,16 @@ static void push_root(struct scene_reader *r, const json_t *nodes) {
         dispatch_push(r->L, function_find(OWNER_GR, "node"));
         lua_pushliteral(r->L, "scene");
         lua_call(r->L, 1, 1);
-        for (size_t i = 0; i < json_array_size(nodes); i++) {
-            dispatch_push(r->L, find_function(r, OWNER_NODE, "add_child"));
-            lua_pushvalue(r->L, -2);
-            push_entry(r, i, json_array_get(nodes, i));
-            lua_call(r->L, 2, 0);
-        }
+        r->position = NULL;
+        add_children(r, "nodes", nodes);
     } else {
-        push_entry(r, 0, json_array_get(nodes, 0));
+        push_node(r, nodes, 0);
     }
     r->position = NULL;
+    json_object_foreach(r->defined, name, value) { /* those that nothing uses, for their errors */
+        push_reference(r, name);
+        lua_pop(r->L, 1);
+    }
 }
 
 static void render(struct scene_reader *r, const json_t *root) {
@@ -451,7 +487,7 @@ static void render(struct scene_reader *r, const json_t *root) {
     if (!function || !function_renders(function))
         sandbox_raise(sandbox_enter(L), "the type must be \"render\", \"render_skybox\" or \"light_field\"");
     if (picture)
-        push_fields(r, picture, own);
+        push_fields(r, function, picture, own);
     else
         lua_newtable(L);
     lua_insert(L, -2);
@@ -462,32 +498,19 @@ static void render(struct scene_reader *r, const json_t *root) {
     r->position = NULL;
 }
 
-/* The text of the file ends its life with the Lua state, whatever happens. */
-static int release(lua_State *L) {
-    json_t **root = lua_touserdata(L, 1);
-    json_decref(*root);
-    *root = NULL;
-    return 0;
-}
-
 static json_t *read_file(lua_State *L, const char *path) {
     struct sandbox *sandbox = sandbox_enter(L);
     struct error error = {0};
     struct file_bytes bytes;
-    json_t **root = lua_newuserdatauv(L, sizeof *root, 0);
-    *root = NULL;
-    lua_createtable(L, 0, 1);
-    lua_pushcfunction(L, release);
-    lua_setfield(L, -2, "__gc");
-    lua_setmetatable(L, -2);
+    json_t *root = NULL;
     if (file_map(path, FILE_LIMIT, &bytes, &error)) {
         const char *text = (const char *)bytes.data;
         size_t mark = bytes.size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-        *root = json_text_parse(path, text + mark, bytes.size - mark, true, &error);
+        root = json_text_parse(path, text + mark, bytes.size - mark, true, &sandbox->keep, &error);
         file_unmap(&bytes);
     }
-    if (*root)
-        return *root;
+    if (root)
+        return root;
     if (error.kind == ERROR_SCENE)
         (void)error_elsewhere(&error);
     sandbox_raise_error(sandbox, &error);
@@ -510,6 +533,7 @@ void scene_json_run(lua_State *L) {
         }
     }
     reader.defined = json_object_get(root, "define");
+    reader.add_child = function_find(OWNER_NODE, "add_child");
     script->reader = &reader;
     script->context.sandbox.locate = locate;
     check_top(&reader, root);

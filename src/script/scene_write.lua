@@ -5,7 +5,7 @@
 local type, next, rawget, rawlen, setmetatable, getmetatable = type, next, rawget, rawlen, setmetatable, getmetatable
 local sort, concat = table.sort, table.concat
 local format, gmatch, gsub, match, rep, sub, find = string.format, string.gmatch, string.gsub, string.match, string.rep, string.sub, string.find
-local math_type, floor, tostring, tonumber, raise = math.type, math.floor, tostring, tonumber, raise
+local tostring, raise = tostring, raise
 local WIDTH, JSON_NESTED, LUA_NESTED, LOCALS = 120, 150, 20, 100
 
 local OBJECT = {} -- the metatable of records
@@ -21,7 +21,10 @@ local function copy(value)
         return value
     end
     local out, count = {}, rawlen(value)
-    for k = 1, count do out[k] = copy(rawget(value, k)) end
+    for k = 1, count do
+        local entry = rawget(value, k)
+        out[k] = type(entry) == 'number' and entry or copy(entry)
+    end
     if count == 0 then
         for key, entry in next, value do
             if type(key) == 'string' then out[key] = copy(entry) end
@@ -57,10 +60,24 @@ local function drop(calls, names)
     end
 end
 
+-- node:displace moves what is below a node at that time: in the text that is all that stands there.
+local function mark_below(record)
+    for _, list in ipairs {record.children, record.fields.children or {}} do
+        for _, child in ipairs(list) do
+            if not child.below then
+                child.below = true
+                mark_below(child)
+            end
+        end
+    end
+end
+
 local function add_call(record, name, order)
     local calls = record.calls
     record.changes = record.changes + 1
     if name == 'reset' or name == 'pose' then drop(calls, TRANSFORMS) end
+    if name == 'displace' then mark_below(record) end
+    record.late = record.late or record.below and (name == 'displace' or name == 'add_child')
     if SETTERS[name] then drop(calls, {[name] = true}) end
     if name == 'add_child' and not record.displaced then
         record.children[#record.children + 1] = given.node
@@ -71,18 +88,6 @@ local function add_call(record, name, order)
 end
 
 -- --- texts ---
-
-local function number_text(x)
-    if math_type(x) == 'integer' then return format('%d', x) end
-    if x == floor(x) and x > -1e15 and x < 1e15 then
-        return x == 0 and 1 / x < 0 and '-0.0' or format('%.0f', x)
-    end
-    for digits = 15, 16 do
-        local text = format('%.' .. digits .. 'g', x)
-        if tonumber(text) == x then return text end
-    end
-    return format('%.17g', x)
-end
 
 -- The positional forms of a method: lists of its arguments, with the number of those that must be there.
 local parsed = {}
@@ -115,11 +120,21 @@ local function in_form(call)
     end
 end
 
-local function sorted_keys(t)
-    local keys = {}
-    for key in next, t do keys[#keys + 1] = key end
-    sort(keys)
-    return keys
+-- The keys of a table by their ranks and names: one list for all tables with these keys.
+local known_keys = {}
+local function sorted_keys(t, ranks)
+    local keys, count = {}, 0
+    for key in next, t do
+        count = count + 1
+        keys[count] = key
+    end
+    if count < 2 then return keys end
+    local signature = concat(keys, ' ')
+    if not known_keys[signature] then
+        sort(keys, ranks and function(a, b) return (ranks[a] or ' ') .. a < (ranks[b] or ' ') .. b end)
+        known_keys[signature] = keys
+    end
+    return known_keys[signature]
 end
 
 local function is_list(value)
@@ -130,6 +145,7 @@ end
 local shown
 local function members(record)
     if shown[record] then return shown[record] end
+    if record.late then raise('a node below a displaced one was displaced, or has got a child, after it; write the scene with displace last') end
     local out = {type = record.kind}
     shown[record] = out
     for key, value in next, record.fields do out[key] = value end
@@ -152,7 +168,6 @@ end
 local function survey(roots, nested)
     local uses, depths, list, orders = {}, {}, {}, {}
     local function visit(value)
-        if type(value) ~= 'table' then return 0 end
         local deepest, record = 0, getmetatable(value) == OBJECT and value
         if record then
             uses[record] = (uses[record] or 0) + 1
@@ -163,7 +178,7 @@ local function survey(roots, nested)
             value = members(record)
         end
         for _, entry in next, value do
-            local depth = visit(entry)
+            local depth = type(entry) == 'table' and visit(entry) or 0
             deepest = deepest < depth and depth or deepest
         end
         if not record then return deepest + 1 end
@@ -178,53 +193,32 @@ end
 
 -- Names of the records that are used more than once.
 local function name_records(uses, list, pattern, reserved)
-    local names, taken = {}, {}
+    local names, taken, numbers = {}, {}, {}
     for _, record in ipairs(list) do
         if uses[record] > 1 then
             local own = type(record.fields.name) == 'string' and gsub(record.fields.name, pattern, '_') or record.kind
             if own == '' or find(own, '^%d') then own = '_' .. own end
-            local name, number = own, 1
+            local name, number = own, numbers[own] or 1
             while taken[name] or reserved[name] do
                 number = number + 1
                 name = own .. '_' .. number
             end
-            taken[name], names[record] = true, name
+            taken[name], names[record], numbers[own] = true, name, number
         end
     end
     return names
 end
 
--- One line if it is short, else a line for each part, and for numbers as many as fit.
-local function join(parts, open, close, indent, step)
-    local width, lines = #open + #close, false
-    for _, part in ipairs(parts) do
-        width, lines = width + #part + 2, lines or find(part, '\n', 1, true)
-    end
-    if not lines and width + #indent <= WIDTH then return open .. concat(parts, ', ') .. close end
-    local out, line, inner = {}, '', indent .. (step or ' ')
-    for k, part in ipairs(parts) do
-        local text = k < #parts and part .. ',' or part
-        local short = #part < 30 and not find(part, '[\n{]')
-        if line ~= '' and (not short or #line + #text + #inner >= WIDTH) then
-            out[#out + 1] = line
-            line = ''
-        end
-        line = line == '' and text or line .. ' ' .. text
-        if not short then
-            out[#out + 1] = line
-            line = ''
-        end
-    end
-    if line ~= '' then out[#out + 1] = line end
-    return open .. '\n' .. inner .. concat(out, '\n' .. inner) .. '\n' .. indent .. close
-end
-
 local function json_of(names)
     local text_of
+    local labels = setmetatable({}, {__index = function(labels, key)
+        labels[key] = quote(key) .. ': '
+        return labels[key]
+    end})
     local function object(t, indent)
-        local parts = {}
-        for k, key in ipairs(sorted_keys(t)) do parts[k] = quote(key) .. ': ' .. text_of(t[key], indent .. ' ') end
-        return join(parts, '{', '}', indent)
+        local parts, inner = {}, indent .. ' '
+        for k, key in ipairs(sorted_keys(t)) do parts[k] = labels[key] .. text_of(t[key], inner) end
+        return join(parts, '{', '}', indent, ' ', WIDTH)
     end
     function text_of(value, indent, defines)
         local kind = type(value)
@@ -236,11 +230,11 @@ local function json_of(names)
             return object(members(value), indent)
         end
         if not is_list(value) then return object(value, indent) end
-        local parts = {}
-        for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. ' ') end
-        return join(parts, '[', ']', indent)
+        local parts, inner = {}, indent .. ' '
+        for k, entry in ipairs(value) do parts[k] = type(entry) == 'number' and number_text(entry) or text_of(entry, inner) end
+        return join(parts, '[', ']', indent, ' ', WIDTH)
     end
-    return text_of
+    return text_of, object
 end
 
 local function one_order(orders)
@@ -252,7 +246,7 @@ end
 local function write_json(root, picture, state)
     local uses, list, orders = survey({root, picture}, JSON_NESTED)
     local names = name_records(uses, list, '[%c"\\]', {})
-    local text_of = json_of(names)
+    local text_of, object = json_of(names)
     local define, by_name = {}, {}
     for record, name in next, names do by_name[name] = record end
     for k, name in ipairs(sorted_keys(by_name)) do define[k] = '  ' .. quote(name) .. ': ' .. text_of(by_name[name], '  ', true) end
@@ -261,7 +255,7 @@ local function write_json(root, picture, state)
     if #define > 0 then out[#out + 1] = '"define": {\n' .. concat(define, ',\n') .. '\n }' end
     out[#out + 1] = '"gray": ' .. state.version
     out[#out + 1] = '"nodes": [\n  ' .. text_of(root, '  ') .. '\n ]'
-    out[#out + 1] = '"picture": ' .. text_of(picture, ' ')
+    out[#out + 1] = '"picture": ' .. object(picture, ' ')
     if state.time > 0 then out[#out + 1] = '"time": ' .. number_text(state.time) end
     if order and order ~= 'new' then out[#out + 1] = '"transform_order": ' .. quote(order) end
     return '{' .. concat(out, ',\n ') .. '\n}\n'
@@ -299,14 +293,12 @@ end
 local function lua_of(names)
     local text_of
     local function fields_text(t, indent)
-        local parts, keys = {}, {}
-        for key in next, t do keys[#keys + 1] = key end
-        sort(keys, function(a, b) return (RANK[a] or ' ') .. a < (RANK[b] or ' ') .. b end)
-        for k, key in ipairs(keys) do
+        local parts, inner = {}, indent .. '  '
+        for k, key in ipairs(sorted_keys(t, RANK)) do
             local name = find(key, '^[%a_][%w_]*$') and (key == 'scene' or not KEYWORDS[key]) and key or '[' .. lua_string(key) .. ']'
-            parts[k] = name .. ' = ' .. (key == 'code' and code_text(t[key]) or text_of(t[key], indent .. '  '))
+            parts[k] = name .. ' = ' .. (key == 'code' and code_text(t[key]) or text_of(t[key], inner))
         end
-        return join(parts, '{', '}', indent, '  ')
+        return join(parts, '{', '}', indent, '  ', WIDTH)
     end
     local function record_text(record, indent)
         local fields, calls = {}, {}
@@ -331,7 +323,7 @@ local function lua_of(names)
         if not is_list(value) then return fields_text(value, indent) end
         local parts = {}
         for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. '  ') end
-        return join(parts, '{', '}', indent, '  ')
+        return join(parts, '{', '}', indent, '  ', WIDTH)
     end
     return text_of
 end
@@ -371,6 +363,10 @@ local function write_lua(root, picture, state)
     end
     out[#out + 1] = 'local scene = ' .. text_of(root, '') .. '\n'
     local call, kind = state.classic and not picture.type and positional(picture, text_of), picture.type or 'render'
+    if state.classic and not call and picture.sky == nil then -- what such a script shows behind its scene
+        if picture.background == 'transparent' then raise('the background of calls by position is not that of tables, so it cannot be written as a script') end
+        picture.background = picture.background or 'gradient'
+    end
     picture.node, picture.type = setmetatable({}, OBJECT), nil
     names[picture.node] = 'scene'
     out[#out + 1] = (call or 'gr.' .. kind .. text_of(picture, '')) .. '\n'

@@ -138,7 +138,7 @@ static void run_file(lua_State *L, const char *path) {
     lua_call(L, 0, 0);
 }
 
-static int run_scene(lua_State *L) {
+void script_open(lua_State *L) {
     const struct script *script = script_of(context_of(L));
     sandbox_open(L);
     traverse_open(L);
@@ -159,11 +159,16 @@ static int run_scene(lua_State *L) {
         run_file(L, script->context.sandbox.options->edits);
     if (script->context.sandbox.options->edits_text) {
         if (luaL_loadstring(L, script->context.sandbox.options->edits_text) != LUA_OK)
-            return lua_error(L);
+            (void)lua_error(L);
         lua_call(L, 0, 0);
     }
     if (script->host->write_scene)
         scene_write_open(L);
+}
+
+static int run_scene(lua_State *L) {
+    const struct script *script = script_of(context_of(L));
+    script_open(L);
     if (script->context.scene.is_model)
         model_scene_run(L);
     else if (script->is_json)

@@ -30,4 +30,7 @@ static inline struct script *script_of(const struct script_context *context) {
     return (struct script *)(uintptr_t)context;
 }
 
+/* Opens a fresh Lua state for a scene. May raise. */
+void script_open(lua_State *L);
+
 #endif

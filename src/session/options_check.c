@@ -84,6 +84,7 @@ static bool check_bake(const struct options *options, struct error *error) {
 /* -o MODEL and --check-print: no picture is rendered, unless another -o names one. */
 static bool check_model(const struct options *options, struct error *error) {
     bool model = options->model || options->check_print;
+    bool is_scene = options->model && model_format_is_scene(model_format_written(options->model));
     const struct frame_selection *frames = &options->script.frames.selection;
     const char *only = options->tolerance > 0 ? "--tolerance"
                        : options->node        ? "--node"
@@ -99,7 +100,7 @@ static bool check_model(const struct options *options, struct error *error) {
     if (options->window || options->shards || options->shards_of_pictures || options->mpi || options->watch)
         return error_set(error, ERROR_USAGE,
                          "-o MODEL and --check-print cannot be combined with -gui, --shard, --mpi or --watch");
-    return frames->step == 0 || frames->first == frames->last ||
+    return frames->step == 0 || frames->first == frames->last || is_scene ||
            error_set(error, ERROR_USAGE, "a model shows one frame: --frames N-N chooses it");
 }
 

@@ -182,6 +182,15 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
     return true;
 }
 
+const double (*planar_outline(const struct planar *polygon, uint32_t outline, uint32_t *count))[2] {
+    const struct polygon *p = polygon->polygon;
+    if (outline >= p->outlines)
+        return NULL;
+    uint32_t first = outline > 0 ? p->ends[outline - 1] : 0;
+    *count = p->ends[outline] - first;
+    return p->points + first;
+}
+
 static bool polygon_holds(const struct polygon *polygon, double a, double b) {
     bool inside = false;
     if (!(a > 0 && a < 1 && b > 0 && b < 1))

@@ -65,5 +65,7 @@ struct planar planar_triangle(struct vec3 a, struct vec3 b, struct vec3 c);
  * memory. */
 bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32_t *ends, uint32_t outlines,
                     struct planar *out, const char **why);
+/* An outline of a polygon, in (a, b); NULL: it has fewer. */
+const double (*planar_outline(const struct planar *polygon, uint32_t outline, uint32_t *count))[2];
 
 #endif

@@ -346,7 +346,8 @@ TEST(what_is_no_solid_is_an_error_that_names_the_node_and_writes_nothing) {
 TEST(models_follow_the_rules_of_pictures_for_names_and_replaced_files) {
     expect(part_and("part:export('../x.stl')\n"), "scene.lua", 1,
            "models of scripts must be below the working directory");
-    expect(part_and("part:export('x.png')\n"), "scene.lua", 1, "the name of a model ends in .stl .obj .ply .3mf");
+    expect(part_and("part:export('x.png')\n"), "scene.lua", 1,
+           "the name of a model ends in .stl .obj .ply .gltf .glb .3mf");
     test_write_text(test_path("mine.stl"), "my notes\n");
     expect(part_and("part:export('mine.stl')\n"), "scene.lua", 1, "exists already and is not a model");
     expect(part_and("gr.render{node = part, width = 8}\n"), "-o mine.stl scene.lua", 1, "--force replaces it");
@@ -454,8 +455,8 @@ static bool may_change_files(const struct ptrace_syscall_info *info) {
     }
 }
 
-/* Runs scene.lua, which writes itself to x.json if `json` is set, and kills the supervisor before the call `at` of those
- * that may change files. The number of these calls, or -1: it was killed. */
+/* Runs scene.lua, which writes itself to x.json if `json` is set, and kills the supervisor before the call `at` of
+ * those that may change files. The number of these calls, or -1: it was killed. */
 static int run_until(bool json, int at) {
     int status = 0, calls = 0;
     pid_t child = fork();
@@ -499,12 +500,13 @@ static void check_files(const char *const *names, int count, int at) {
 
 /* step: of how many calls one is tried. */
 static void kill_writer(const char *kind, int step) {
-    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}, {"x.json"}};
-    int which = strcmp(kind, "obj") == 0 ? 1 : strcmp(kind, "ply") == 0 ? 2 : strcmp(kind, "3mf") == 0 ? 3 : 0;
+    static const char *const files[][2] = {{"x.stl"}, {"x.obj", "x.mtl"}, {"x.ply"}, {"x.3mf"}, {"x.json"}, {"x.glb"}};
+    int which = 0;
+    while (strcmp(files[which][0] + 2, kind) != 0)
+        which++;
     int count = which == 1 ? 2 : 1;
     bool json = strcmp(kind, "json") == 0;
     const char *arguments = json ? "scene.lua -o x.json" : "scene.lua";
-    which = json ? 4 : which;
     expect(sphere_as(kind, 2), arguments, 0, NULL);
     CHECK_EQ_INT(test_run_shell("for f in x.*; do mv $f new-$f; done", ""), 0);
     expect(sphere_as(kind, 1), arguments, 0, NULL);
@@ -520,8 +522,8 @@ static void kill_writer(const char *kind, int step) {
 }
 
 TEST_TIMES(a_killed_writer_leaves_the_old_model_or_the_new_one, 9) {
-    static const char *const kinds[] = {"stl", "obj", "ply", "3mf", "json"};
-    for (int i = 0; i < 5; i++) {
+    static const char *const kinds[] = {"stl", "obj", "ply", "3mf", "json", "glb"};
+    for (int i = 0; i < 6; i++) {
         kill_writer(kinds[i], times > 1 ? 1 : 9);
         CHECK_EQ_INT(test_run_shell("rm -f x.* old-* new-*", ""), 0);
     }

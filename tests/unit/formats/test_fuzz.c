@@ -16,7 +16,9 @@
     X(gltf)                                                                                                            \
     X(gz)                                                                                                              \
     X(jpeg)                                                                                                            \
-    X(light) X(light_field) X(merge) X(mtl) X(obj) X(options) X(order) X(ply) X(png) X(resume) X(script) X(stl) X(tiles) X(voxels)
+    X(light)                                                                                                           \
+    X(light_field) X(merge) X(mtl) X(obj) X(options) X(order) X(ply) X(png) X(resume) X(scene_json) X(script) X(stl)   \
+        X(tiles) X(voxels)
 
 /* The total size of the inputs of a target. */
 struct inputs {

@@ -393,7 +393,7 @@ TEST(gltf_errors_name_the_element) {
     static const struct {
         const char *text, *message;
     } cases[] = {
-        {"{\n\"asset\":{]", "t.gltf:2: broken JSON: string or '}' expected near ']'"},
+        {"{\n\"asset\":{]", "t.gltf:2: broken JSON: string or '}' expected near ']' (column 10); a comma may be too many"},
         {"[]", "t.gltf: its JSON: an object must be at the top"},
         {"{}", "t.gltf: asset: glTF of version 2 is read, this file is of version 'none'"},
         {"{\"asset\":{\"version\":\"1.0\"}}",

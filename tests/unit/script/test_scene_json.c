@@ -77,12 +77,32 @@ TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
         {"{\"gray\": 1, \"nodes\": [" SPHERE "], \"picture\": {\"eye\": [0, 0, null]}}",
          "x.json: picture.eye[2]: null is no value; leave the field out\n"},
         {"{\"gray\": 1,\n\"nodes\": [" SPHERE "], \"picture\": {\"eye\": [0, 0, NaN]}}",
-         "x.json:2: broken JSON: invalid token near 'NaN'\n"},
+         "x.json:2: broken JSON: invalid token near 'NaN' (column 60); words are only true, false and null, and "
+         "numbers are finite\n"},
         {"{\"gray\": 1, \"nodes\": [" SPHERE "], \"picture\": {\"eye\": [0, 0, 1e400]}}",
-         "x.json:1: broken JSON: real number overflow near '1e400'\n"},
+         "x.json:1: broken JSON: real number overflow near '1e400' (column 74)\n"},
         {"{\"gray\": 1, \"gray\": 1, \"nodes\": [" SPHERE "]}",
-         "x.json:1: broken JSON: duplicate object key near '\"gray\"'\n"},
+         "x.json:1: broken JSON: duplicate object key near '\"gray\"' (column 18)\n"},
         {"[1]", "x.json: its JSON: an object must be at the top\n"},
+        {"{\n// a scene\n\"gray\": 1}",
+         "x.json:2: broken JSON: string or '}' expected near '/' (column 1); JSON has no comments\n"},
+        {NODES(SPHERE ","), "x.json:1: broken JSON: unexpected token near ']' (column 42); a comma may be too many\n"},
+        {"\xff\xfe{", "x.json:1: broken JSON: unable to decode byte 0xff (column 0); the text must be UTF-8\n"},
+        {"", "x.json:1: broken JSON: '[' or '{' expected near end of file (column 0)\n"},
+        {NODES("{\"radius\": 2}"),
+         "x.json: nodes[0]: it must be a node, such as {\"type\": \"sphere\"}, not an object without a type\n"},
+        {NODES(SPHERE ", {\"type\": \"light\", \"position\": [1, 2, 3], \"colour\": [1, 1, 1]}"),
+         "x.json: nodes[1]: it must be a node, such as {\"type\": \"sphere\"}, not a light\n"},
+        {NODES("{\"type\": 3}"), "x.json: nodes[0]: type and ref must be words, as in {\"type\": \"sphere\"}\n"},
+        {NODES("{\"type\": \"sphere\", \"material\": {\"kd\": [1, 0, 0]}}"),
+         "x.json: nodes[0].material: it must have a type, as in {\"type\": \"material\"}\n"},
+        {"{\"gray\": 1, \"nodes\": " SPHERE "}",
+         "x.json: nodes must be a list of at least one node, as in \"nodes\": [{\"type\": \"sphere\"}]\n"},
+        {"{\"gray\": 1, \"nodes\": [" SPHERE "], \"eye\": [0, 0, 5]}", "x.json: the field 'eye' belongs in picture\n"},
+        {"{\"gray\": 1, \"nodes\": [" SPHERE "], \"define\": {\"a\": {\"type\": \"spher\"}}}",
+         "x.json: define.a: the type 'spher' does not exist; did you mean 'sphere'?\n"},
+        {"{\"gray\": 1, \"nodes\": [" SPHERE "], \"transform_order\": \"newest\"}",
+         "x.json: transform_order must be \"new\", \"old\" or \"separate\"\n"},
         {NODES("{\"type\": \"mesh\", \"file\": \"/etc/passwd\"}"),
          "x.json: nodes[0]: gr.mesh: '/etc/passwd' lies outside the folders that scenes may read (--allow-read DIR "
          "adds "
@@ -103,20 +123,22 @@ TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
 
 TEST(json_that_is_nested_without_end_or_too_large_is_refused) {
     need_json();
-    test_write_text(test_path("make.sh"),
-                    "r() { printf \"$1%.0s\" $(seq $2); }\n"
-                    "(printf '{\"gray\": 1, \"nodes\": ['; r '[' 3000; r ']' 3000; echo ']}') >deep.json\n"
-                    "(printf '{\"gray\": 1, \"nodes\": ['; r '{\"type\": \"node\", \"children\": [' 600; "
-                    "r ']}' 600; echo ']}') >nodes.json\n"
-                    "(printf '{\"gray\": 1, \"define\": {\"n0\": " SPHERE "'; for i in $(seq 2000); do printf "
-                    "',\\n\"n%d\": {\"type\": \"node\", \"children\": [{\"ref\": \"n%d\"}]}' $i $((i - 1)); done; "
-                    "echo '}, \"nodes\": [{\"ref\": \"n2000\"}]}') >chain.json\n"
-                    "(printf '{\"gray\": 1, \"nodes\": [['; r '[],' 1100000; echo '[]]]}') >wide.json\n");
+    test_write_text(
+        test_path("make.sh"),
+        "r() { printf \"$1%.0s\" $(seq $2); }\n"
+        "(printf '{\"gray\": 1, \"nodes\": ['; r '[' 3000; r ']' 3000; echo ']}') >deep.json\n"
+        "(printf '{\"gray\": 1, \"nodes\": ['; r '{\"type\": \"node\", \"children\": [' 600; "
+        "r ']}' 600; echo ']}') >nodes.json\n"
+        "(printf '{\"gray\": 1, \"define\": {\"n0\": " SPHERE "'; for i in $(seq 2000); do printf "
+        "',\\n\"n%d\": {\"type\": \"node\", \"children\": [{\"ref\": \"n%d\"}]}' $i $((i - 1)); done; "
+        "echo '}, \"nodes\": [{\"ref\": \"n2000\"}]}') >chain.json\n"
+        "(printf '{\"gray\": 1, \"nodes\": [['; yes '[],' | head -8400000 | tr -d '\\n'; echo '[]]]}') >wide.json\n");
     CHECK_EQ_INT(test_run_shell("sh make.sh", ""), 0);
     test_shell_errors("$gray -q deep.json", 1, "deep.json:1: broken JSON: maximum parsing depth reached near '['");
     test_shell_errors("$gray -q nodes.json", 1, ": more than 1000 values are in each other");
     test_shell_errors("$gray -q chain.json", 1, ": more than 1000 values are in each other");
-    test_shell_errors("$gray -q wide.json", 1, "wide.json: its JSON: more than 1048576 objects or 16777216 values");
+    test_shell_errors("$gray -q wide.json", 1,
+                      "wide.json: its JSON: more than 8388608 lists and objects or 16777216 values");
 }
 
 static void copy_demos(void) {
@@ -151,6 +173,32 @@ TEST(a_written_scene_is_the_same_picture_and_is_written_again_with_the_same_byte
         compare(scene, "");
     }
     compare("data/animation/walker.lua", "--frames 2-2");
+}
+
+/* Scenes that were once written wrongly. */
+TEST(scenes_of_other_programs_and_empty_pictures_are_written_with_the_same_picture) {
+    static const char *const scenes[] = {
+        "gr.render{node = gr.sphere{}}",
+        "gr.render(gr.sphere('s'), 't.png', 33 / 2, 9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})",
+        "gr.render{node = gr.sphere{}} gr.render(gr.sphere('b'), 'x.png', 9, 9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
+    };
+    need_json();
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        test_write_text(test_path("s.lua"), scenes[i]);
+        compare("s.lua", "");
+    }
+}
+
+TEST_LONG(two_hundred_scenes_of_the_tests_are_written_with_the_same_picture) {
+    char line[1024], *text;
+    int count = 0;
+    need_json();
+    (void)snprintf(line, sizeof line, "mkdir '%s/trip' && tools/scene_round_trip.py '%s' '%s/trip' >'%s/list'",
+                   test_folder(), test_program(), test_folder(), test_folder());
+    CHECK_EQ_INT(system(line), 0);
+    text = test_read_file(test_path("list"), NULL);
+    CHECK(sscanf(text, "%d scenes are the same", &count) == 1 && count >= 200);
+    free(text);
 }
 
 TEST_LONG(every_demo_that_is_written_as_json_and_as_a_script_is_the_same_picture) {
@@ -228,6 +276,13 @@ TEST(what_json_cannot_have_is_an_error_that_names_it_and_writes_nothing) {
         {"gr.render{node = gr.sphere{}, tone = function(x) return x end}",
          "gr.render: tone is a function that is not recorded, so it cannot be written"},
         {"gr.render{node = gr.sphere{name = '\\xff'}}", "a text is not UTF-8, so JSON cannot have it"},
+        {"gr.change_exposure{picture = 'x.png', stops = 1}\ngr.render{node = gr.sphere{}, file = 'x.png'}",
+         "a scene with saved edits cannot be written"},
+        {"local m = gr.mesh{verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces = {{0, 1, 2}}}\nlocal n = "
+         "gr.node{children "
+         "= {m}}:displace{f = function(p) return p.x end, level = 1}\nm:displace{f = function(p) return p.y end, level "
+         "= 1}\ngr.render{node = n}",
+         "a node below a displaced one was displaced, or has got a child, after it"},
         {"gr.change_material(1, {1, 0, 0})\nlocal m = gr.material{kd = {0, 0, 1}}\ngr.render{node = gr.sphere{material "
          "= m}}",
          "a scene with saved edits cannot be written"},

@@ -1,0 +1,781 @@
+/* The layers of OpenPBR are those of glTF with its extensions; classic materials are taken for the layers that
+ * openpbr_classic makes them of. Colours are linear light; those of a scene with classic colours are what a screen
+ * shows.
+ *
+ * A picture over the coordinates of the shape is copied. Other textures are baked: evaluated at the points of the
+ * surface that the texels of a picture have by the surface's u and v. A surface that has no u and v of its own, or the
+ * same ones at several places, is unfolded first: each of its triangles gets a place in the picture. */
+#include "export/gltf_paint_internal.h"
+
+#include "image/png_write.h"
+#include "material/dispersion.h"
+#include "material/material_eval.h"
+#include "math/elementary.h"
+#include "world/world_describe.h"
+
+#include <math.h>
+
+/* --- numbers --- */
+
+/* A material at a place. */
+struct values {
+    struct colour base, specular, emission, sheen, attenuation;
+    double alpha, metallic, roughness, ior, specular_weight, transmission, distance, coat, coat_roughness,
+        sheen_roughness, film, film_ior, film_thickness, dispersion;
+    bool unlit, is_solid;
+    struct vec3 normal;
+};
+
+static struct colour mix(struct colour a, struct colour b, double share) {
+    return colour_add_scaled(colour_scale(a, 1 - share), b, share);
+}
+
+/* 20 over Abbe's number. */
+static double dispersion_of(const struct phong *phong, double ior) {
+    const double blue = 0.4861327, red = 0.6562725; /* the lines F and C */
+    struct dispersion d = phong->dispersion;
+    double spread = dispersion_ior(d, ior, blue) - dispersion_ior(d, ior, red);
+    return d.amount > 0 && ior > 1 ? math_max(20 * spread / (ior - 1), 0) : 0;
+}
+
+/* White light has the colour after the distance. */
+static void set_volume(struct colour absorption, struct values *out) {
+    double largest = colour_max_abs(absorption);
+    out->distance = largest > 0 ? 1 / largest : 0;
+    out->attenuation = colour_make(el_exp(-absorption.r * out->distance), el_exp(-absorption.g * out->distance),
+                                   el_exp(-absorption.b * out->distance));
+}
+
+static double index_of_reflectance(double reflectance) {
+    double root = sqrt(math_min(math_max(reflectance, 0), 0.98));
+    return (1 + root) / (1 - root);
+}
+
+/* The inverse of openpbr_classic. */
+static void set_classic(const struct surface_material *material, const struct surface_inputs *in, struct values *out) {
+    double ks = colour_max_abs(in->ks), mirrored = in->reflect * ks;
+    double exponent = 4 * in->shininess, width = sqrt(2 / (exponent + 2));
+    double gloss = math_min(8 * ks / (exponent + 8), 1);
+    struct colour tint = ks > 0 ? colour_scale(in->ks, 1 / ks) : colour_all(1);
+    bool is_clear = in->refract > 0 || in->fresnel;
+    out->base = in->kd;
+    out->roughness = mirrored > 0 || is_clear ? in->roughness : sqrt(width);
+    out->specular = tint;
+    out->ior = index_of_reflectance(mirrored > 0 ? mirrored : gloss);
+    out->specular_weight = ks > 0;
+    if (is_clear) {
+        out->transmission = in->fresnel ? 1 : math_min(in->refract, 1);
+        out->base = mix(in->kd, in->ks, out->transmission);
+        out->is_solid = in->has_ior;
+        out->specular = colour_all(1);
+        out->ior = in->has_ior ? in->ior : out->ior;
+        out->dispersion = dispersion_of(&material->phong, in->ior);
+        set_volume(in->absorption, out);
+    } else if (mirrored > 0 && (colour_is_black(in->kd) || mirrored > 0.5)) {
+        out->metallic = 1;
+        out->base = colour_min(colour_add_scaled(in->kd, in->ks, in->reflect), colour_all(1));
+        out->specular = colour_all(1);
+        out->ior = 1.5;
+        out->specular_weight = 1;
+    }
+}
+
+static void set_layers(const struct surface_material *material, const struct surface_inputs *in,
+                       const struct openpbr *v, struct values *out) {
+    struct colour base = mix(colour_scale(in->kd, v->base_weight), v->subsurface_colour, v->subsurface_weight);
+    if (in->refract > 0)
+        base = mix(base, v->deep ? colour_all(1) : v->transmission_colour, in->refract);
+    if (v->coat_weight > 0)
+        base = colour_mul(base, mix(colour_all(1), v->coat_colour, v->coat_weight));
+    out->base = base;
+    out->metallic = v->base_metalness;
+    out->roughness = in->roughness;
+    out->specular = in->ks;
+    out->specular_weight = v->specular_weight;
+    out->ior = math_max(v->specular_ior, 1);
+    out->transmission = in->refract;
+    out->is_solid = !v->thin_walled && in->refract > 0;
+    out->dispersion = dispersion_of(&material->phong, out->ior);
+    set_volume(colour_add(in->absorption, v->transmission_scattering), out);
+    out->coat = v->coat_weight;
+    out->coat_roughness = v->coat_roughness;
+    out->sheen = colour_scale(v->fuzz_colour, v->fuzz_weight);
+    out->sheen_roughness = v->fuzz_roughness;
+    out->film = v->film_weight;
+    out->film_ior = v->film_ior;
+    out->film_thickness = 1000 * v->film_thickness;
+}
+
+static const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
+
+struct colour gltf_light_of(const struct gltf_painter *p, struct colour colour) {
+    colour = colour_max(colour, colour_all(0));
+    return p->linear ? colour : transfer_decode_colour(srgb, colour);
+}
+
+static struct values values_at(const struct gltf_painter *p, uint32_t index, const struct hit *hit) {
+    const struct world *world = p->world;
+    const struct surface_material *material = &world->surfaces.materials[index];
+    struct values out = {.specular = {1, 1, 1}, .specular_weight = 1, .ior = 1.5};
+    struct surface_inputs in;
+    material_inputs_at(&world->surfaces, material, hit, &in);
+    if (material->has_layers) {
+        struct openpbr layers = material->openpbr;
+        openpbr_read(&world->surfaces, material, hit, &layers);
+        set_layers(material, &in, &layers, &out);
+    } else {
+        set_classic(material, &in, &out);
+    }
+    out.base = gltf_light_of(p, colour_min(out.base, colour_all(1)));
+    out.specular = gltf_light_of(p, out.specular);
+    out.sheen = gltf_light_of(p, out.sheen);
+    double brightest = math_max(colour_max_abs(in.emission), 1);
+    out.emission = colour_scale(gltf_light_of(p, colour_scale(in.emission, 1 / brightest)), brightest);
+    out.alpha = math_min(math_max(in.opacity, 0), 1);
+    out.unlit = in.unlit;
+    out.normal = in.normal;
+    return out;
+}
+
+/* --- what varies --- */
+
+enum { BY_VERTEX = 1 << TEXTURE_VERTEX_COLOUR, BY_IMAGE = 1 << TEXTURE_IMAGE };
+enum { VARIES = BY_IMAGE | 1 << TEXTURE_MARBLE | 1 << TEXTURE_WOOD | 1 << TEXTURE_FUNCTION };
+
+/* The kinds of the textures of an input, as bits. */
+static unsigned kinds_of(const struct world *world, uint32_t program) {
+    const struct texture_tables *tables = &world->surfaces.textures;
+    unsigned kinds = 0;
+    if (program == TEXTURE_NONE)
+        return 0;
+    for (uint32_t i = 0; i < tables->programs[program].count; i++)
+        kinds |= 1U << tables->instructions[tables->programs[program].first + i].kind;
+    return kinds;
+}
+
+static unsigned kinds_of_inputs(const struct world *world, uint32_t material, const enum material_input *inputs,
+                                size_t count) {
+    unsigned kinds = 0;
+    for (size_t i = 0; i < count; i++)
+        kinds |= kinds_of(world, world->surfaces.materials[material].inputs[inputs[i]]);
+    return kinds;
+}
+
+/* The inputs of each picture of a material. */
+static const enum material_input of_base[] = {
+    INPUT_KD, INPUT_OPACITY, INPUT_BASE_WEIGHT, INPUT_REFRACT, INPUT_SUBSURFACE_COLOUR, INPUT_TRANSMISSION_COLOUR,
+    INPUT_KS, INPUT_REFLECT};
+static const enum material_input of_rough[] = {INPUT_ROUGHNESS, INPUT_METALNESS, INPUT_SHININESS};
+static const enum material_input of_emission[] = {INPUT_EMISSION};
+#define KINDS(world, material, inputs) kinds_of_inputs(world, material, inputs, sizeof(inputs) / sizeof *(inputs))
+
+static unsigned kinds_of_bumps(const struct world *world, uint32_t material) {
+    const struct surface_material *m = &world->surfaces.materials[material];
+    unsigned kinds = 0;
+    for (uint32_t i = 0; i < m->bump_count; i++)
+        kinds |= kinds_of(world, world->surfaces.bumps[m->first_bump + i].program);
+    return kinds;
+}
+
+static unsigned kinds_of_material(const struct world *world, uint32_t material) {
+    return KINDS(world, material, of_base) | KINDS(world, material, of_rough) | KINDS(world, material, of_emission) |
+           kinds_of_bumps(world, material);
+}
+
+/* A product of numbers and of at most one image, which is *image. False: something else. */
+static bool find_image(const struct gltf_painter *p, const struct texture *t, const struct phong *numbers,
+                       const struct texture_image **image, struct colour *factor) {
+    switch (t->operation.kind) {
+    case TEXTURE_CONSTANT: {
+        struct colour colour = t->operation.constant.colour;
+        *factor = colour_mul(*factor, p->linear && t->operation.constant.display ? transfer_decode_colour(srgb, colour)
+                                                                                 : colour);
+        return true;
+    }
+    case TEXTURE_PARAMETER:
+        *factor = colour_mul(*factor, texture_parameter_colour(t->operation.parameter, numbers));
+        return true;
+    case TEXTURE_VERTEX_COLOUR:
+        return true;
+    case TEXTURE_IMAGE: {
+        const struct texture_image *own = &t->operation.image;
+        bool is_opaque = own->alpha == ALPHA_IGNORED || own->alpha == ALPHA_STRAIGHT ||
+                         image_largest(own->image).a >= 1; /* of alpha that is the smallest one */
+        bool fits = (own->mapping == MAPPING_UV || own->mapping == MAPPING_BY_SHAPE) && !own->flip_u && !own->second &&
+                    own->alpha != ALPHA_ONLY && image_bits(own->image) <= 16;
+        if (*image || !is_opaque || !fits)
+            return false;
+        *image = own;
+        *factor = colour_mul(*factor, own->tint);
+        return true;
+    }
+    case TEXTURE_MULTIPLY:
+        return t->size < 64 && find_image(p, t->parts[PART_A], numbers, image, factor) &&
+               find_image(p, t->parts[PART_B], numbers, image, factor);
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+    case TEXTURE_MIX:
+    case TEXTURE_MAP:
+    case TEXTURE_FUNCTION:
+        break;
+    }
+    return false;
+}
+
+/* Pictures that a file has as they are. */
+struct copies {
+    const struct texture_image *base, *normal;
+    struct colour factor;
+    double height;
+};
+
+static bool find_copies(const struct gltf_painter *p, uint32_t index, struct copies *out) {
+    const struct world *world = p->world;
+    const struct surface_material *m = &world->surfaces.materials[index];
+    const struct material *authored = world->authored.materials[index];
+    const struct texture *kd = authored->inputs[INPUT_KD];
+    const struct bump *bump = authored->bump;
+    unsigned others = KINDS(world, index, of_rough) | KINDS(world, index, of_emission);
+    *out = (struct copies){.factor = {1, 1, 1}};
+    for (size_t i = 1; i < sizeof of_base / sizeof *of_base; i++)
+        others |= kinds_of(world, m->inputs[of_base[i]]);
+    if (others & VARIES)
+        return false;
+    if (bump) {
+        struct colour unused = colour_all(1);
+        out->height = bump->height;
+        if (bump->below || bump->kind != MATERIAL_NORMAL || bump->of_coat || bump->from_above ||
+            !find_image(p, bump->texture, &m->phong, &out->normal, &unused) || !out->normal)
+            return false;
+    }
+    return !kd || !(kinds_of(world, m->inputs[INPUT_KD]) & VARIES) ||
+           find_image(p, kd, &m->phong, &out->base, &out->factor);
+}
+
+/* --- pictures --- */
+
+struct pixels {
+    uint32_t width;
+    uint8_t *bytes; /* four to a pixel */
+};
+
+static void row_of_pixels(void *context, uint32_t y, uint8_t *line) {
+    const struct pixels *pixels = context;
+    memcpy(line, pixels->bytes + (size_t)4 * pixels->width * y, (size_t)4 * pixels->width);
+}
+
+static bool put_into_list(void *list, const void *bytes, size_t size, struct error *error) {
+    return list_add_bytes(list, bytes, size) || error_no_memory(error, "a picture");
+}
+
+static uint8_t encode(double light) {
+    const struct tone tone = {.srgb = true};
+    return png_write_byte(tone_apply(&tone, light));
+}
+
+/* The texture of a PNG file with these pixels. */
+static uint32_t add_picture(struct gltf_file *file, const struct pixels *pixels, uint32_t height, bool is_colour,
+                            const struct texture_image *how) {
+    static const double wraps[] = {[IMAGE_CLAMP] = 33071, [IMAGE_REPEAT] = 10497, [IMAGE_MIRROR] = 33648};
+    const struct png_source source = {.width = pixels->width,
+                                      .height = height,
+                                      .bytes = row_of_pixels,
+                                      .context = (void *)(uintptr_t)pixels,
+                                      .alpha = true,
+                                      .srgb = is_colour};
+    struct gltf_text text = {0};
+    struct list png = {0};
+    struct error error = {0};
+    file->failed = !png_encode(&source, NULL, put_into_list, &png, &error) || file->failed;
+    uint32_t view = gltf_add_view(file, png.items, png.count, GLTF_NO_TARGET);
+    list_destroy(&png);
+    gltf_open(&text, NULL, '{');
+    gltf_number(&text, "bufferView", view);
+    gltf_string(&text, "mimeType", "image/png");
+    gltf_close(&text, '}');
+    uint32_t image = gltf_add(file, GLTF_IMAGES, &text);
+    bool nearest = how && how->filter == IMAGE_NEAREST;
+    gltf_open(&text, NULL, '{');
+    gltf_number(&text, "magFilter", nearest ? 9728 : 9729);
+    gltf_number(&text, "minFilter", nearest ? 9728 : how ? 9987 : 9729); /* texels beside a place are of others */
+    gltf_number(&text, "wrapS", wraps[how ? how->wrap : IMAGE_CLAMP]);
+    gltf_number(&text, "wrapT", wraps[how ? (how->apart ? how->wrap_v : how->wrap) : IMAGE_CLAMP]);
+    gltf_close(&text, '}');
+    uint32_t sampler = gltf_add(file, GLTF_TEXTURE_SAMPLERS, &text);
+    gltf_open(&text, NULL, '{');
+    gltf_number(&text, "source", image);
+    gltf_number(&text, "sampler", sampler);
+    gltf_close(&text, '}');
+    uint32_t texture = gltf_add(file, GLTF_TEXTURES, &text);
+    list_destroy(&text.bytes);
+    return texture;
+}
+
+/* What the numbers of a picture mean. */
+static struct transfer_function transfer_of(const struct gltf_painter *p, const struct texture_image *image) {
+    const struct transfer_function light = {.kind = TRANSFER_POWER, .exponent = 1};
+    if (!p->linear)
+        return srgb;
+    if (image->gamma > 0)
+        return (struct transfer_function){.kind = TRANSFER_POWER, .exponent = image->gamma};
+    switch (image->encoding) {
+    case ENCODING_AUTO:
+        return image_colour_transfer(image->image);
+    case ENCODING_SRGB:
+        return srgb;
+    case ENCODING_LINEAR:
+        break;
+    }
+    return light;
+}
+
+static uint32_t copy_image(const struct gltf_painter *p, const struct texture_image *image, bool is_colour) {
+    const uint32_t width = image_width(image->image), height = image_height(image->image);
+    const uint64_t key =
+        ((uint64_t)(uintptr_t)image->image << 1 | is_colour) * 16 + (uint64_t)image->wrap * 4 + (uint64_t)image->wrap_v;
+    const struct transfer_function transfer = transfer_of(p, image);
+    const bool same = !is_colour || (transfer.kind == TRANSFER_SRGB && image_bits(image->image) == 8);
+    const uint32_t *known = key_map_find(p->images, key);
+    if (known)
+        return *known;
+    struct pixels pixels = {width, mem_alloc((size_t)4 * width * height)};
+    for (size_t i = 0; pixels.bytes && i < (size_t)width * height; i++) {
+        struct rgba texel = image_texel(image->image, (uint32_t)(i % width), (uint32_t)(i / width));
+        const double colour[3] = {texel.r, texel.g, texel.b};
+        for (int k = 0; k < 3; k++)
+            pixels.bytes[4 * i + (size_t)k] =
+                same ? png_write_byte(colour[k]) : encode(transfer_decode(transfer, colour[k]));
+        pixels.bytes[4 * i + 3] = 255;
+    }
+    p->file->failed = p->file->failed || !pixels.bytes;
+    uint32_t texture = pixels.bytes ? add_picture(p->file, &pixels, height, is_colour, image) : GLTF_NONE;
+    mem_free(pixels.bytes);
+    p->file->failed = !key_map_add(p->images, key, texture) || p->file->failed;
+    return texture;
+}
+
+/* --- baking --- */
+
+struct texel {
+    float base[4], rough, metal, emission[3], normal[3];
+};
+
+struct baking {
+    const struct gltf_painter *painter;
+    const struct gltf_surface *surface;
+    uint32_t primitive, size; /* of the picture */
+    uint32_t *owners;         /* by texel: the triangle and 1, or 0 */
+    struct texel *texels;
+    struct world_scratch *scratches;
+};
+
+/* The weights of the corners at a place in the unit square. */
+static void weights_at(const struct baking *b, const struct gltf_triangle *t, double u, double v, double out[3]) {
+    const struct gltf_vertex *all = gltf_vertices(b->surface);
+    const float *o = all[t->vertex[0]].uv, *p = all[t->vertex[1]].uv, *q = all[t->vertex[2]].uv;
+    double px = (double)p[0] - (double)o[0], py = (double)p[1] - (double)o[1], qx = (double)q[0] - (double)o[0],
+           qy = (double)q[1] - (double)o[1], x = u - (double)o[0], y = v - (double)o[1];
+    double area = px * qy - py * qx;
+    out[1] = area != 0 ? (x * qy - y * qx) / area : 0;
+    out[2] = area != 0 ? (px * y - py * x) / area : 0;
+    out[0] = 1 - out[1] - out[2];
+}
+
+/* Texels whose middle is on a triangle, then those around it, which filters read. */
+static void find_owners(const struct baking *b, bool rim) {
+    const double size = b->size;
+    for (size_t i = 0; i < b->surface->triangles.count; i++) {
+        const struct gltf_triangle *t = &gltf_triangles(b->surface)[i];
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int k = 0; k < 6; k++) {
+            double x = size * (double)gltf_vertices(b->surface)[t->vertex[k / 2]].uv[k % 2];
+            low[k % 2] = math_min(low[k % 2], x);
+            high[k % 2] = math_max(high[k % 2], x);
+        }
+        double margin = rim ? 1.5 : 0,
+               slack = 1e-6 + margin / math_max(math_max(high[0] - low[0], high[1] - low[1]), 1);
+        uint32_t x1 = (uint32_t)math_min(math_max(high[0] + margin + 0.5, 0), size),
+                 y1 = (uint32_t)math_min(math_max(high[1] + margin + 0.5, 0), size);
+        for (uint32_t y = (uint32_t)math_max(low[1] - margin - 0.5, 0); y < y1; y++)
+            for (uint32_t x = (uint32_t)math_max(low[0] - margin - 0.5, 0); x < x1; x++) {
+                uint32_t *owner = &b->owners[y * b->size + x];
+                double w[3];
+                weights_at(b, t, (x + 0.5) / size, (y + 0.5) / size, w);
+                if (*owner == 0 && w[0] >= -slack && w[1] >= -slack && w[2] >= -slack)
+                    *owner = (uint32_t)i + 1;
+            }
+    }
+}
+
+/* The hit of the exact surface near a place on a triangle. */
+static bool find_hit(const struct baking *b, const struct gltf_triangle *t, const double w[3],
+                     struct world_scratch *scratch, struct hit *hit) {
+    const struct world *world = b->painter->world;
+    const struct gltf_vertex *all = gltf_vertices(b->surface);
+    struct transform map = world_placement(world, b->primitive, 0);
+    struct vec3 c[3], point = vec3_all(0);
+    if (b->surface->is_unit)
+        map = transform_compose(&map, &b->surface->object_from_surface);
+    for (int k = 0; k < 3; k++) {
+        c[k] = gltf_point(all[t->vertex[k]].point);
+        point = vec3_add_scaled(point, c[k], w[k]);
+    }
+    struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(c[1], c[0]), vec3_sub(c[2], c[0])));
+    for (double height = 2 * b->surface->tolerance; height < 100 * b->surface->tolerance; height *= 8) {
+        struct vec3 from = affine_point(&map.forward, vec3_add_scaled(point, normal, height));
+        struct vec3 to = affine_point(&map.forward, vec3_add_scaled(point, normal, -height));
+        struct ray ray = {.origin = from, .direction = vec3_sub(to, from), .t_max = 1};
+        struct crossing crossing;
+        if (world_nearest_of(world, b->primitive, &ray, scratch, &crossing)) {
+            world_describe(world, &ray, b->primitive, &crossing, hit);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The turned normal in the frame of u and v. */
+static void frame_normal(const struct baking *b, const struct gltf_triangle *t, const struct hit *hit,
+                         struct vec3 turned, float out[3]) {
+    struct transform map = world_placement(b->painter->world, b->primitive, 0);
+    struct vec3 directions[2];
+    if (b->surface->is_unit)
+        map = transform_compose(&map, &b->surface->object_from_surface);
+    gltf_directions(b->surface, t, &map.forward, directions);
+    struct vec3 along = directions[0], up = directions[1];
+    along = vec3_normalize(vec3_add_scaled(along, hit->normal, -vec3_dot(along, hit->normal)));
+    struct vec3 across = vec3_cross(hit->normal, along);
+    across = vec3_dot(across, up) < 0 ? vec3_negate(across) : across;
+    out[0] = (float)vec3_dot(turned, along);
+    out[1] = (float)vec3_dot(turned, across);
+    out[2] = (float)vec3_dot(turned, hit->normal);
+}
+
+static void set_colour(float out[3], struct colour colour) {
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)colour_get(colour, k);
+}
+
+static bool bake_at(const struct baking *b, const struct gltf_triangle *t, const double w[3],
+                    struct world_scratch *scratch, struct texel *out) {
+    struct hit hit;
+    if (!find_hit(b, t, w, scratch, &hit))
+        return false;
+    const struct values at = values_at(b->painter, hit.material, &hit);
+    set_colour(out->base, at.base);
+    out->base[3] = (float)at.alpha;
+    out->rough = (float)math_min(math_max(at.roughness, 0), 1);
+    out->metal = (float)math_min(math_max(at.metallic, 0), 1);
+    set_colour(out->emission, at.emission);
+    frame_normal(b, t, &hit, at.normal, out->normal);
+    return true;
+}
+
+static void bake_row(void *context, uint32_t y, int worker) {
+    const struct baking *b = context;
+    for (uint32_t x = 0; x < b->size; x++) {
+        uint32_t owner = b->owners[y * b->size + x];
+        double w[3], sum = 0;
+        if (owner == 0)
+            continue;
+        const struct gltf_triangle *t = &gltf_triangles(b->surface)[owner - 1];
+        weights_at(b, t, (x + 0.5) / b->size, (y + 0.5) / b->size, w);
+        for (int k = 0; k < 3; k++)
+            sum += w[k] = math_max(w[k], 1e-4);
+        for (int k = 0; k < 3; k++)
+            w[k] /= sum;
+        if (!bake_at(b, t, w, &b->scratches[worker], &b->texels[y * b->size + x]))
+            b->owners[y * b->size + x] = 0;
+    }
+}
+
+enum baked { BAKED_BASE, BAKED_ROUGH, BAKED_EMISSION, BAKED_NORMAL };
+
+static uint32_t add_baked(const struct baking *b, enum baked which, double strongest) {
+    const uint32_t size = b->size;
+    struct pixels pixels = {size, mem_alloc_zero((size_t)size * size, 4)};
+    for (size_t i = 0; pixels.bytes && i < (size_t)size * size; i++) {
+        const struct texel *at = &b->texels[i];
+        /* The first row of a picture is the upper one. */
+        uint8_t *out = pixels.bytes + 4 * ((size - 1 - i / size) * size + i % size);
+        const double numbers[4][3] = {[BAKED_ROUGH] = {1, (double)at->rough, (double)at->metal},
+                                      [BAKED_NORMAL] = {(double)at->normal[0] / 2 + 0.5,
+                                                        (double)at->normal[1] / 2 + 0.5,
+                                                        (double)at->normal[2] / 2 + 0.5}};
+        for (int k = 0; k < 3; k++)
+            out[k] = which == BAKED_BASE       ? encode((double)at->base[k])
+                     : which == BAKED_EMISSION ? encode((double)at->emission[k] / strongest)
+                                               : png_write_byte(numbers[which][k]);
+        out[3] = which == BAKED_BASE && b->owners[i] ? png_write_byte((double)at->base[3]) : 255;
+    }
+    b->painter->file->failed = b->painter->file->failed || !pixels.bytes;
+    uint32_t texture = pixels.bytes ? add_picture(b->painter->file, &pixels, size,
+                                                  which == BAKED_BASE || which == BAKED_EMISSION, NULL)
+                                    : GLTF_NONE;
+    mem_free(pixels.bytes);
+    return texture;
+}
+
+static void add_all_baked(const struct baking *b, unsigned maps, struct gltf_paint *out) {
+    for (size_t i = 0; i < (size_t)b->size * b->size; i++) {
+        double alpha = (double)b->texels[i].base[3];
+        for (int k = 0; k < 3; k++)
+            out->strongest = math_max(out->strongest, (double)b->texels[i].emission[k]);
+        out->has_holes = out->has_holes || (b->owners[i] && alpha < 1);
+        out->has_veils = out->has_veils || (b->owners[i] && alpha > 0.02 && alpha < 0.98);
+    }
+    out->base = maps & 1U << BAKED_BASE ? add_baked(b, BAKED_BASE, 1) : GLTF_NONE;
+    out->rough = maps & 1U << BAKED_ROUGH ? add_baked(b, BAKED_ROUGH, 1) : GLTF_NONE;
+    out->emission =
+        maps & 1U << BAKED_EMISSION && out->strongest > 0 ? add_baked(b, BAKED_EMISSION, out->strongest) : GLTF_NONE;
+    out->normal = maps & 1U << BAKED_NORMAL ? add_baked(b, BAKED_NORMAL, 1) : GLTF_NONE;
+}
+
+/* Too many triangles for a picture: each vertex has its colour. */
+static bool bake_vertices(const struct baking *b, struct gltf_surface *surface, struct gltf_paint *out) {
+    uint8_t *done = mem_alloc_zero(surface->vertices.count, 1);
+    for (size_t i = 0; done && i < 3 * surface->triangles.count; i++) {
+        const struct gltf_triangle *t = &gltf_triangles(surface)[i / 3];
+        double w[3] = {0.005, 0.005, 0.005};
+        struct texel texel;
+        w[i % 3] = 0.99;
+        if (!done[t->vertex[i % 3]] && bake_at(b, t, w, &b->scratches[0], &texel)) {
+            memcpy(gltf_vertices(surface)[t->vertex[i % 3]].colour, texel.base, sizeof(float[3]));
+            done[t->vertex[i % 3]] = 1;
+        }
+    }
+    surface->has_colours = out->by_vertex = true;
+    mem_free(done);
+    return done != NULL;
+}
+
+static bool bake(struct baking *b, struct gltf_surface *surface, unsigned maps, struct gltf_paint *out,
+                 struct error *error) {
+    const size_t texels = (size_t)b->size * b->size;
+    struct pool *pool = b->painter->pool;
+    const int workers = pool_workers(pool);
+    b->owners = mem_alloc_zero(texels, sizeof *b->owners);
+    b->texels = mem_alloc_zero(texels, sizeof *b->texels);
+    b->scratches = mem_alloc_zero((size_t)workers, sizeof *b->scratches);
+    bool ok = b->owners && b->texels && b->scratches;
+    for (int i = 0; ok && i < workers; i++)
+        ok = world_scratch_init(&b->scratches[i], b->painter->world);
+    out->baked = true;
+    if (ok && !surface->is_unfolded && !gltf_surface_unfold(surface, b->size, GLTF_BAKED_CELL)) {
+        ok = bake_vertices(b, surface, out);
+    } else if (ok) {
+        find_owners(b, false);
+        find_owners(b, true);
+        if (!pool_run(pool, b->size, bake_row, b))
+            (void)error_set(error, ERROR_CANCELLED, "stopped while textures were baked");
+        add_all_baked(b, maps, out);
+    }
+    for (int i = 0; b->scratches && i < workers; i++)
+        world_scratch_destroy(&b->scratches[i]);
+    mem_free(b->owners);
+    mem_free(b->texels);
+    mem_free(b->scratches);
+    return (ok && error->kind == ERROR_NONE) || (error->kind == ERROR_NONE && error_no_memory(error, "a picture"));
+}
+
+static bool is_in_square(const struct gltf_surface *surface) {
+    bool fits = surface->has_uv;
+    for (size_t i = 0; fits && i < 2 * surface->vertices.count; i++) {
+        float x = gltf_vertices(surface)[i / 2].uv[i % 2];
+        fits = x >= 0 && x <= 1;
+    }
+    return fits;
+}
+
+bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, struct gltf_surface *surface,
+                     struct gltf_paint *out, struct error *error) {
+    const struct world *world = painter->world;
+    unsigned maps = 0, kinds = 0;
+    bool bakes = false;
+    uint32_t last = GLTF_NONE;
+    *out = (struct gltf_paint){.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
+    for (size_t i = 0; surface->has_colours && i < surface->vertices.count; i++) {
+        float *c = gltf_vertices(surface)[i].colour;
+        set_colour(c, gltf_light_of(painter, colour_make((double)c[0], (double)c[1], (double)c[2])));
+    }
+    for (size_t i = 0; i < surface->triangles.count; i++) {
+        uint32_t m = gltf_triangles(surface)[i].material;
+        struct copies copies;
+        if (m == last)
+            continue;
+        last = m;
+        bakes =
+            bakes || ((kinds_of_material(world, m) & VARIES) && !(surface->has_uv && find_copies(painter, m, &copies)));
+        kinds |= kinds_of_material(world, m);
+        maps |= KINDS(world, m, of_base) & VARIES ? 1U << BAKED_BASE | 1U << BAKED_ROUGH : 0;
+        maps |= KINDS(world, m, of_rough) & VARIES ? 1U << BAKED_ROUGH | 1U << BAKED_BASE : 0;
+        maps |= KINDS(world, m, of_emission) & VARIES ? 1U << BAKED_EMISSION : 0;
+        maps |= kinds_of_bumps(world, m) ? 1U << BAKED_NORMAL : 0;
+    }
+    /* Images follow u and v, also where several places have the same. */
+    surface->is_unfolded = surface->is_unfolded || ((kinds & VARIES) == BY_IMAGE && is_in_square(surface));
+    struct baking baking = {
+        .painter = painter, .surface = surface, .primitive = primitive, .size = gltf_baked_size(world)};
+    return !bakes || bake(&baking, surface, maps, out, error);
+}
+
+/* --- materials --- */
+
+static void put_texture(const struct gltf_painter *p, struct gltf_text *text, const char *key, uint32_t texture,
+                        const struct texture_image *how, double strength) {
+    gltf_open(text, key, '{');
+    gltf_number(text, "index", texture);
+    if (strength != 1)
+        gltf_number(text, "scale", strength);
+    if (how && how->apart) {
+        /* The inverse of read_map of formats/gltf_material.c. */
+        double a = how->scale[0], d = how->scale[1], b = -how->cross[0], c = -how->cross[1];
+        const double scale[2] = {sqrt(a * a + c * c), sqrt(b * b + d * d)};
+        const double offset[2] = {how->offset[0] - b, 1 - d - how->offset[1]};
+        double turn = scale[0] > 0 ? el_atan2(-c, a) : 0;
+        if (scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0 || turn != 0) {
+            gltf_open(text, "extensions", '{');
+            gltf_open_extension(p->file, text, GLTF_TEXTURE_TRANSFORM);
+            gltf_tuple(text, "offset", offset, 2);
+            gltf_number(text, "rotation", turn);
+            gltf_tuple(text, "scale", scale, 2);
+            gltf_close(text, '}');
+            gltf_close(text, '}');
+        }
+    }
+    gltf_close(text, '}');
+}
+
+static void put_colour(struct gltf_text *text, const char *key, struct colour colour) {
+    gltf_tuple(text, key, (const double[3]){colour.r, colour.g, colour.b}, 3);
+}
+
+/* An extension with its numbers, in their order; those with the default value are left out. */
+struct number_row {
+    enum gltf_extension extension;
+    const char *key;
+    double value, otherwise;
+};
+
+static void put_extensions(struct gltf_file *file, struct gltf_text *text, const struct values *v) {
+    const double strength = math_max(colour_max_abs(v->emission), 1);
+    const bool clear = v->transmission > 0 && !v->unlit, lit = !v->unlit;
+    const struct number_row rows[] = {
+        {GLTF_IOR, "ior", lit ? v->ior : 1.5, 1.5},
+        {GLTF_SPECULAR, "specularFactor", lit ? v->specular_weight : 1, 1},
+        {GLTF_TRANSMISSION, "transmissionFactor", clear ? v->transmission : 0, 0},
+        {GLTF_VOLUME, "thicknessFactor", clear && v->is_solid, 0},
+        {GLTF_VOLUME, "attenuationDistance", clear && v->is_solid ? v->distance : 0, 0},
+        {GLTF_COAT, "clearcoatFactor", lit ? v->coat : 0, 0},
+        {GLTF_COAT, "clearcoatRoughnessFactor", lit && v->coat > 0 ? v->coat_roughness : 0, 0},
+        {GLTF_SHEEN, "sheenRoughnessFactor", lit && colour_max_abs(v->sheen) > 0 ? v->sheen_roughness : 0, 0},
+        {GLTF_FILM, "iridescenceFactor", lit ? v->film : 0, 0},
+        {GLTF_FILM, "iridescenceIor", lit && v->film > 0 ? v->film_ior : 1.3, 1.3},
+        {GLTF_FILM, "iridescenceThicknessMinimum", lit && v->film > 0 ? v->film_thickness : 100, 100},
+        {GLTF_FILM, "iridescenceThicknessMaximum", lit && v->film > 0 ? v->film_thickness : 400, 400},
+        {GLTF_DISPERSION, "dispersion", clear && v->is_solid ? v->dispersion : 0, 0},
+        {GLTF_STRENGTH, "emissiveStrength", strength, 1},
+    };
+    const struct {
+        const char *key;
+        struct colour value, otherwise;
+    } colours[GLTF_PUNCTUAL] = {
+        [GLTF_SPECULAR] = {"specularColorFactor", lit ? v->specular : colour_all(1), {1, 1, 1}},
+        [GLTF_VOLUME] = {"attenuationColor",
+                         clear && v->is_solid && v->distance > 0 ? v->attenuation : colour_all(1),
+                         {1, 1, 1}},
+        [GLTF_SHEEN] = {"sheenColorFactor", lit ? v->sheen : colour_all(0), {0, 0, 0}}};
+    bool any = false;
+    for (int e = 0; e < GLTF_TEXTURE_TRANSFORM; e++) {
+        bool opened = false;
+        for (size_t i = 0; i <= sizeof rows / sizeof *rows; i++) {
+            bool is_colour = i == sizeof rows / sizeof *rows, is_unlit = is_colour && e == GLTF_UNLIT && v->unlit;
+            bool differs = is_colour ? colours[e].key && !colour_equal(colours[e].value, colours[e].otherwise)
+                                     : (int)rows[i].extension == e && rows[i].value != rows[i].otherwise;
+            if (!differs && !is_unlit)
+                continue;
+            if (!any)
+                gltf_open(text, "extensions", '{');
+            if (!opened)
+                gltf_open_extension(file, text, (enum gltf_extension)e);
+            any = opened = true;
+            if (is_colour && !is_unlit)
+                put_colour(text, colours[e].key, colours[e].value);
+            else if (!is_unlit)
+                gltf_number(text, rows[i].key, rows[i].value);
+        }
+        if (opened)
+            gltf_close(text, '}');
+    }
+    if (any)
+        gltf_close(text, '}');
+}
+
+static void note_losses(const struct gltf_painter *p, uint32_t index, const char *name) {
+    const struct surface_material *m = &p->world->surfaces.materials[index];
+    const struct openpbr *v = &m->openpbr;
+    if (m->has_layers && (v->subsurface_weight > 0 || colour_max_abs(v->transmission_scattering) > 0))
+        p->note(p->context, "light that is scattered under the surface is a colour of the surface", name);
+    if (m->has_layers && (v->specular_anisotropy > 0 || v->coat_anisotropy > 0))
+        p->note(p->context, "the highlight has no direction", name);
+    if (m->holds_medium || m->filled)
+        p->note(p->context, "the medium inside is left out", name);
+}
+
+uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t material, const struct gltf_surface *surface,
+                             const struct gltf_paint *paint, struct gltf_attributes *uses) {
+    const struct world *world = painter->world;
+    const struct material *authored = world->authored.materials[material];
+    const struct hit nowhere = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .view = {0, 1, 0}, .front = true};
+    const unsigned kinds = kinds_of_material(world, material);
+    struct values v = values_at(painter, material, &nowhere);
+    struct copies copies = {.factor = {1, 1, 1}};
+    struct gltf_paint own = {.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
+    struct gltf_text text = {0};
+    const char *name = authored->name ? authored->name : "";
+    bool baked = paint->baked && (kinds & VARIES);
+    note_losses(painter, material, name);
+    if (baked) {
+        own = *paint;
+        v.base = own.base != GLTF_NONE || own.by_vertex ? colour_all(1) : v.base;
+        v.emission = own.emission != GLTF_NONE ? colour_all(own.strongest) : v.emission;
+        v.metallic = v.roughness = own.rough != GLTF_NONE ? 1 : v.roughness;
+        v.alpha = own.base != GLTF_NONE ? 1 : v.alpha;
+    } else if ((kinds & VARIES) && find_copies(painter, material, &copies)) {
+        v.base = copies.base ? gltf_light_of(painter, colour_min(copies.factor, colour_all(1))) : v.base;
+        own.base = copies.base ? copy_image(painter, copies.base, true) : GLTF_NONE;
+        own.normal = copies.normal ? copy_image(painter, copies.normal, false) : GLTF_NONE;
+    }
+    bool blends = baked && own.base != GLTF_NONE ? own.has_veils : v.alpha < 1;
+    bool masks = baked && own.base != GLTF_NONE && own.has_holes && !blends;
+    uses->tangents = own.normal != GLTF_NONE;
+    uses->uv = uses->tangents || own.base != GLTF_NONE || own.rough != GLTF_NONE || own.emission != GLTF_NONE;
+    uses->colours = own.by_vertex || (!baked && (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
+    gltf_open(&text, NULL, '{');
+    if (*name)
+        gltf_string(&text, "name", name);
+    gltf_open(&text, "pbrMetallicRoughness", '{');
+    gltf_tuple(&text, "baseColorFactor", (const double[4]){v.base.r, v.base.g, v.base.b, v.alpha}, 4);
+    gltf_number(&text, "metallicFactor", math_min(math_max(v.metallic, 0), 1));
+    gltf_number(&text, "roughnessFactor", math_min(math_max(v.roughness, 0), 1));
+    if (own.base != GLTF_NONE)
+        put_texture(painter, &text, "baseColorTexture", own.base, copies.base, 1);
+    if (own.rough != GLTF_NONE)
+        put_texture(painter, &text, "metallicRoughnessTexture", own.rough, NULL, 1);
+    gltf_close(&text, '}');
+    if (own.normal != GLTF_NONE)
+        put_texture(painter, &text, "normalTexture", own.normal, copies.normal, copies.normal ? copies.height : 1);
+    if (colour_max_abs(v.emission) > 0)
+        put_colour(&text, "emissiveFactor", colour_scale(v.emission, 1 / math_max(colour_max_abs(v.emission), 1)));
+    if (own.emission != GLTF_NONE)
+        put_texture(painter, &text, "emissiveTexture", own.emission, NULL, 1);
+    if (blends || masks)
+        gltf_string(&text, "alphaMode", blends ? "BLEND" : "MASK");
+    if (!v.is_solid && (surface->is_open || world->surfaces.materials[material].phong.two_sided))
+        gltf_true(&text, "doubleSided");
+    put_extensions(painter->file, &text, &v);
+    gltf_close(&text, '}');
+    uint32_t number = gltf_add(painter->file, GLTF_MATERIALS, &text);
+    list_destroy(&text.bytes);
+    return number;
+}

@@ -1,0 +1,48 @@
+/* The materials of a glTF file: the inverse of formats/gltf_material.c. */
+#ifndef GRAY_EXPORT_GLTF_PAINT_INTERNAL_H
+#define GRAY_EXPORT_GLTF_PAINT_INTERNAL_H
+
+#include "export/gltf_file_internal.h"
+#include "export/gltf_surface_internal.h"
+
+enum { GLTF_BAKED_CELL = 6 }; /* texels of a triangle in a baked picture at least */
+/* The side of a baked picture, texels: smaller where many may be baked. */
+static inline uint32_t gltf_baked_size(const struct world *world) {
+    return world->prototype_count <= 32 ? 1024 : world->prototype_count <= 256 ? 512 : 256;
+}
+
+/* What a file lacks. */
+typedef void gltf_note(void *context, const char *what, const char *name);
+
+struct gltf_painter {
+    struct gltf_file *file;
+    const struct world *world;
+    struct pool *pool;
+    bool linear;            /* colours of the world are linear light */
+    struct key_map *images; /* by address: their textures in the file */
+    gltf_note *note;
+    void *context;
+};
+
+/* Linear light, not below 0, for a colour of the world. */
+struct colour gltf_light_of(const struct gltf_painter *painter, struct colour colour);
+
+/* What is the same for all triangles of a surface. */
+struct gltf_paint {
+    uint32_t base, rough, emission, normal; /* textures that are baked, or GLTF_NONE */
+    double strongest;                       /* of the emission */
+    bool baked, has_holes, has_veils;       /* opacities of 0, and between 0 and 1 */
+    bool by_vertex;                         /* colours are those of the vertices */
+};
+/* Bakes what no material of glTF states; the surface may be unfolded for it. Errors: no memory, cancelled. */
+bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, struct gltf_surface *surface,
+                     struct gltf_paint *out, struct error *error);
+/* The attributes of vertices that a material needs. */
+struct gltf_attributes {
+    bool uv, tangents, colours;
+};
+/* The number in the file of a material of the world on the surface. */
+uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t material, const struct gltf_surface *surface,
+                             const struct gltf_paint *paint, struct gltf_attributes *uses);
+
+#endif
