@@ -148,7 +148,7 @@ local function members(record)
     if record.late then raise('a node below a displaced one was displaced, or has got a child, after it; write the scene with displace last') end
     local out = {type = record.kind}
     shown[record] = out
-    for key, value in next, record.fields do out[key] = value end
+    for key, value in next, record.fields do out[key == 'type' and 'field_type' or key] = value end
     if record.children and #record.children > 0 then
         local all = {}
         for k, child in ipairs(record.fields.children or {}) do all[k] = child end
@@ -305,7 +305,7 @@ local function lua_of(names)
         for key, value in next, members(record) do fields[key] = value end
         local is_group = record.kind == 'node' or record.kind == 'joint'
         local children = not is_group and fields.children or {}
-        fields.type, fields.transform, fields.children = nil, nil, is_group and fields.children or nil
+        fields.type, fields.field_type, fields.transform, fields.children = fields.field_type, nil, nil, is_group and fields.children or nil
         for _, child in ipairs(children) do calls[#calls + 1] = ':add_child(' .. text_of(child, indent .. '  ') .. ')' end
         for _, call in ipairs(record.calls or {}) do
             local list, parts = in_form(call), {}
