@@ -268,7 +268,8 @@ for word in gmatch('and break do else elseif end false for function goto if in l
     KEYWORDS[word] = true
 end
 -- Where fields stand among the others, which are in the order of their names.
-local RANK = {name = '\1', file = '\1', node = '\1', children = '~', operands = '~'}
+local RANK = {name = '\1', file = '\1', node = '\1', from = '\4', to = '\5', width = '\2', height = '\3', eye = '\4', target = '\5', view = '\5', corner = '\5', along = '\5',
+              up = '\6', fov = '\7', children = '~', operands = '~'}
 
 local function lua_string(text)
     if find(text, "[%c'\\\128-\255]") then return (gsub(format('%q', text), '\\\n', '\\n')) end

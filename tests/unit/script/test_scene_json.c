@@ -329,7 +329,7 @@ TEST(a_scene_in_json_becomes_a_script_that_a_reader_can_follow) {
                "    gr.sphere{}:add_child(gr.cube{material = material})\n"
                "  }\n"
                "}\n"
-               "gr.render{file = 'a.png', node = scene, eye = {0, 2, 8}, height = 24, width = 32}\n");
+               "gr.render{file = 'a.png', node = scene, width = 32, height = 24, eye = {0, 2, 8}}\n");
 }
 
 TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
