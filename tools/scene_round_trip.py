@@ -15,9 +15,9 @@ GRAY, FOLDER, WORDS = sys.argv[1], sys.argv[2], sys.argv[3:]
 LITERALS = re.compile(r'(?:"(?:[^"\\\n]|\\.)*"\s*)+')
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 SMALL = ['-q', '--size', '32x24', '-ss', '1', '--spp', '1', '--script-time', '20']
-# What JSON cannot have (docs/json.md), and what depends on the time.
+# What JSON cannot have (docs/json.md), and scenes that are too large for a test.
 LACKS = ('not UTF-8', 'not recorded', 'saved edits', 'gr.transform_order changes', 'after it; write the scene',
-         'as a script')
+         'as a script', 'too slow')
 
 
 def texts():
