@@ -280,7 +280,7 @@ HAVE_EMBREE := $(shell $(CC) -fsyntax-only -include embree3/rtcore.h -x c /dev/n
 $(BUILD)/bench/rays: $(BUILD)/bench/rays.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(if $(HAVE_EMBREE),-lembree3) $(LDLIBS)
-$(BUILD)/bench/rays.o: override CPPFLAGS += $(if $(HAVE_EMBREE),-DHAVE_EMBREE)
+$(BUILD)/bench/rays.o: private override CPPFLAGS += $(if $(HAVE_EMBREE),-DHAVE_EMBREE)
 
 $(BUILD)/bench/growth: $(BUILD)/bench/growth.o $(BUILD)/bench/rays_scenes.o $(OBJECTS)
 	$(call say,LINK,$@)

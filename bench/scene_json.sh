@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 
 make_scene() {
     awk -v kind="$1" -v nodes="$2" '
-    function place(i) {
+    function transform(i) {
         return sprintf("\"transform\": [{\"rotate\": [\"y\", %d]}, {\"translate\": [%.3f, %.3f, %.3f]}]}", i * 7 % 360,
                        i * 37 % 1009 / 10 - 50, i * 61 % 997 / 10 - 50, i * 89 % 991 / 10 - 50)
     }
@@ -25,7 +25,7 @@ make_scene() {
             if (kind == "meshes" && i % 2) printf "{\"name\": \"mesh%d\", " mesh ", ", i, i % 20
             else if (i % 3 == 0) printf "{\"type\": \"node\", \"name\": \"copy%d\", \"children\": [{\"ref\": \"part\"}], ", i
             else printf "{\"type\": \"sphere\", \"name\": \"ball%d\", \"radius\": 0.4, \"material\": {\"ref\": \"m%d\"}, ", i, i % 20
-            printf "%s", place(i)
+            printf "%s", transform(i)
         }
         print kind == "nested" ? "]}]}" : "]}"
     }'

@@ -339,15 +339,36 @@ static bool store_top(struct builder *builder, uint32_t number, uint32_t *result
     return true;
 }
 
+/* Small leaves of one node share blocks: block_of[i], of the node's own, for each child that is a leaf. A ray that
+ * meets one of them tests triangles of the others too, which changes no result. Returns the number of blocks. */
+static uint32_t share_blocks(const struct tree *tree, const uint32_t *children, uint32_t count,
+                             uint32_t block_of[WIDTH]) {
+    uint32_t used[WIDTH] = {0}, blocks = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct branch *branch = &tree->branches[children[i]];
+        if (is_node(branch))
+            continue;
+        uint32_t j = 0;
+        while (used[j] + branch->count > WIDTH)
+            j++;
+        used[j] += branch->count;
+        block_of[i] = j;
+        blocks = j < blocks ? blocks : j + 1;
+    }
+    return blocks;
+}
+
 static void count_parts(const struct tree *tree, uint32_t number, struct piece *piece) {
     if (!is_node(&tree->branches[number])) {
         piece->block_count++;
         return;
     }
-    uint32_t children[WIDTH], count = tree_children(tree, number, children);
+    uint32_t children[WIDTH], block_of[WIDTH], count = tree_children(tree, number, children);
     piece->node_count++;
+    piece->block_count += share_blocks(tree, children, count, block_of);
     for (uint32_t i = 0; i < count; i++)
-        count_parts(tree, children[i], piece);
+        if (is_node(&tree->branches[children[i]]))
+            count_parts(tree, children[i], piece);
 }
 
 static void count_job(void *context, uint32_t item, int worker) {
@@ -420,15 +441,17 @@ static void set_lane(const struct triangle_index *index, const struct triangle_s
         block->vertices[j][lane] = corner[j];
 }
 
-static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
-    for (int k = 0; k < 3; k++) {
-        block->corner[k][lane] = UNUSED_AT;
-        block->edge1[k][lane] = k == 0 ? 0x1p-4f : 0;
-        block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
+static void set_unused_lanes(struct triangle_block *block, uint32_t first) {
+    for (uint32_t lane = first; lane < WIDTH; lane++) {
+        for (int k = 0; k < 3; k++) {
+            block->corner[k][lane] = UNUSED_AT;
+            block->edge1[k][lane] = k == 0 ? 0x1p-4f : 0;
+            block->edge2[k][lane] = k == 1 ? 0x1p-4f : 0;
+        }
+        block->ids[lane] = 0;
+        for (int j = 0; j < 3; j++)
+            block->vertices[j][lane] = 0;
     }
-    block->ids[lane] = 0;
-    for (int j = 0; j < 3; j++)
-        block->vertices[j][lane] = 0;
 }
 
 /* Nodes and blocks are in one table: a search accesses both at random, and with large pages, if the system has them,
@@ -461,18 +484,30 @@ static uint32_t fill_lanes(const struct builder *builder, uint32_t number, struc
 /* Writes the nodes and blocks below a branch after those that its piece has written so far; returns the reference. */
 static uint32_t write_branch(const struct builder *builder, struct piece *piece, uint32_t number) {
     struct triangle_index *index = builder->index;
-    if (!is_node(&builder->tree.branches[number])) {
-        uint32_t slot = piece->block_base + piece->block_count++;
-        struct triangle_block *block = &index->blocks[slot];
-        for (uint32_t lane = fill_lanes(builder, number, block, 0); lane < WIDTH; lane++)
-            set_unused_lane(block, lane);
-        return REF_LEAF | slot;
+    const struct tree *tree = &builder->tree;
+    uint32_t base = piece->block_base + piece->block_count, used[WIDTH] = {0};
+    if (!is_node(&tree->branches[number])) {
+        piece->block_count++;
+        used[0] = fill_lanes(builder, number, &index->blocks[base], 0);
+        set_unused_lanes(&index->blocks[base], used[0]);
+        return REF_LEAF | base;
     }
-    uint32_t children[WIDTH], count = tree_children(&builder->tree, number, children);
-    uint32_t slot = piece->node_base + piece->node_count++;
-    node_set(&index->nodes[slot], &builder->tree, number, children, count);
-    for (uint32_t i = 0; i < count; i++)
-        index->nodes[slot].child[i] = write_branch(builder, piece, children[i]);
+    uint32_t children[WIDTH], block_of[WIDTH], count = tree_children(tree, number, children);
+    uint32_t slot = piece->node_base + piece->node_count++, blocks = share_blocks(tree, children, count, block_of);
+    struct wide_node *node = &index->nodes[slot];
+    piece->block_count += blocks;
+    node_set(node, tree, number, children, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (is_node(&tree->branches[children[i]])) {
+            node->child[i] = write_branch(builder, piece, children[i]);
+            continue;
+        }
+        uint32_t j = block_of[i];
+        used[j] = fill_lanes(builder, children[i], &index->blocks[base + j], used[j]);
+        node->child[i] = REF_LEAF | (base + j);
+    }
+    for (uint32_t j = 0; j < blocks; j++)
+        set_unused_lanes(&index->blocks[base + j], used[j]);
     return slot;
 }
 

@@ -363,8 +363,8 @@ struct texel {
 struct baking {
     const struct gltf_painter *painter;
     const struct gltf_surface *surface;
-    uint32_t primitive;
-    uint32_t *owners; /* by texel: the triangle and 1, or 0 */
+    uint32_t primitive, size; /* of the picture */
+    uint32_t *owners;         /* by texel: the triangle and 1, or 0 */
     struct texel *texels;
     struct world_scratch *scratches;
 };
@@ -383,7 +383,7 @@ static void weights_at(const struct baking *b, const struct gltf_triangle *t, do
 
 /* Texels whose middle is on a triangle, then those around it, which filters read. */
 static void find_owners(const struct baking *b, bool rim) {
-    const double size = GLTF_BAKED_SIZE;
+    const double size = b->size;
     for (size_t i = 0; i < b->surface->triangles.count; i++) {
         const struct gltf_triangle *t = &gltf_triangles(b->surface)[i];
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -398,7 +398,7 @@ static void find_owners(const struct baking *b, bool rim) {
                  y1 = (uint32_t)math_min(math_max(high[1] + margin + 0.5, 0), size);
         for (uint32_t y = (uint32_t)math_max(low[1] - margin - 0.5, 0); y < y1; y++)
             for (uint32_t x = (uint32_t)math_max(low[0] - margin - 0.5, 0); x < x1; x++) {
-                uint32_t *owner = &b->owners[y * GLTF_BAKED_SIZE + x];
+                uint32_t *owner = &b->owners[y * b->size + x];
                 double w[3];
                 weights_at(b, t, (x + 0.5) / size, (y + 0.5) / size, w);
                 if (*owner == 0 && w[0] >= -slack && w[1] >= -slack && w[2] >= -slack)
@@ -473,26 +473,26 @@ static bool bake_at(const struct baking *b, const struct gltf_triangle *t, const
 
 static void bake_row(void *context, uint32_t y, int worker) {
     const struct baking *b = context;
-    for (uint32_t x = 0; x < GLTF_BAKED_SIZE; x++) {
-        uint32_t owner = b->owners[y * GLTF_BAKED_SIZE + x];
+    for (uint32_t x = 0; x < b->size; x++) {
+        uint32_t owner = b->owners[y * b->size + x];
         double w[3], sum = 0;
         if (owner == 0)
             continue;
         const struct gltf_triangle *t = &gltf_triangles(b->surface)[owner - 1];
-        weights_at(b, t, (x + 0.5) / GLTF_BAKED_SIZE, (y + 0.5) / GLTF_BAKED_SIZE, w);
+        weights_at(b, t, (x + 0.5) / b->size, (y + 0.5) / b->size, w);
         for (int k = 0; k < 3; k++)
             sum += w[k] = math_max(w[k], 1e-4);
         for (int k = 0; k < 3; k++)
             w[k] /= sum;
-        if (!bake_at(b, t, w, &b->scratches[worker], &b->texels[y * GLTF_BAKED_SIZE + x]))
-            b->owners[y * GLTF_BAKED_SIZE + x] = 0;
+        if (!bake_at(b, t, w, &b->scratches[worker], &b->texels[y * b->size + x]))
+            b->owners[y * b->size + x] = 0;
     }
 }
 
 enum baked { BAKED_BASE, BAKED_ROUGH, BAKED_EMISSION, BAKED_NORMAL };
 
 static uint32_t add_baked(const struct baking *b, enum baked which, double strongest) {
-    const uint32_t size = GLTF_BAKED_SIZE;
+    const uint32_t size = b->size;
     struct pixels pixels = {size, mem_alloc_zero((size_t)size * size, 4)};
     for (size_t i = 0; pixels.bytes && i < (size_t)size * size; i++) {
         const struct texel *at = &b->texels[i];
@@ -517,7 +517,7 @@ static uint32_t add_baked(const struct baking *b, enum baked which, double stron
 }
 
 static void add_all_baked(const struct baking *b, unsigned maps, struct gltf_paint *out) {
-    for (size_t i = 0; i < (size_t)GLTF_BAKED_SIZE * GLTF_BAKED_SIZE; i++) {
+    for (size_t i = 0; i < (size_t)b->size * b->size; i++) {
         double alpha = (double)b->texels[i].base[3];
         for (int k = 0; k < 3; k++)
             out->strongest = math_max(out->strongest, (double)b->texels[i].emission[k]);
@@ -551,7 +551,7 @@ static bool bake_vertices(const struct baking *b, struct gltf_surface *surface, 
 
 static bool bake(struct baking *b, struct gltf_surface *surface, unsigned maps, struct gltf_paint *out,
                  struct error *error) {
-    const size_t texels = (size_t)GLTF_BAKED_SIZE * GLTF_BAKED_SIZE;
+    const size_t texels = (size_t)b->size * b->size;
     struct pool *pool = b->painter->pool;
     const int workers = pool_workers(pool);
     b->owners = mem_alloc_zero(texels, sizeof *b->owners);
@@ -561,12 +561,12 @@ static bool bake(struct baking *b, struct gltf_surface *surface, unsigned maps, 
     for (int i = 0; ok && i < workers; i++)
         ok = world_scratch_init(&b->scratches[i], b->painter->world);
     out->baked = true;
-    if (ok && !surface->is_unfolded && !gltf_surface_unfold(surface, GLTF_BAKED_SIZE, GLTF_BAKED_CELL)) {
+    if (ok && !surface->is_unfolded && !gltf_surface_unfold(surface, b->size, GLTF_BAKED_CELL)) {
         ok = bake_vertices(b, surface, out);
     } else if (ok) {
         find_owners(b, false);
         find_owners(b, true);
-        if (!pool_run(pool, GLTF_BAKED_SIZE, bake_row, b))
+        if (!pool_run(pool, b->size, bake_row, b))
             (void)error_set(error, ERROR_CANCELLED, "stopped while textures were baked");
         add_all_baked(b, maps, out);
     }
@@ -614,7 +614,8 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
     }
     /* Images follow u and v, also where several places have the same. */
     surface->is_unfolded = surface->is_unfolded || ((kinds & VARIES) == BY_IMAGE && is_in_square(surface));
-    struct baking baking = {.painter = painter, .surface = surface, .primitive = primitive};
+    struct baking baking = {
+        .painter = painter, .surface = surface, .primitive = primitive, .size = gltf_baked_size(world)};
     return !bakes || bake(&baking, surface, maps, out, error);
 }
 

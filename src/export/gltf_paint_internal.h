@@ -5,7 +5,11 @@
 #include "export/gltf_file_internal.h"
 #include "export/gltf_surface_internal.h"
 
-enum { GLTF_BAKED_SIZE = 1024, GLTF_BAKED_CELL = 6 }; /* texels: of a baked picture, and of a triangle at min_square */
+enum { GLTF_BAKED_CELL = 6 }; /* texels of a triangle in a baked picture at least */
+/* The side of a baked picture, texels: smaller where many may be baked. */
+static inline uint32_t gltf_baked_size(const struct world *world) {
+    return world->prototype_count <= 32 ? 1024 : world->prototype_count <= 256 ? 512 : 256;
+}
 
 /* What a file lacks. */
 typedef void gltf_note(void *context, const char *what, const char *name);

@@ -459,17 +459,20 @@ static bool add_curve(struct gltf_surface *s, const struct curve *curve, uint32_
     return ok;
 }
 
-/* The normal of a vertex for a triangle: that of its piece of the surface which is nearest to the triangle's own. */
+/* The normal of a vertex for a triangle: of those of its piece of the surface, else of all, the one that is nearest to
+ * the triangle's own. */
 static struct vec3 normal_for(const struct solid_vertex *vertex, uint32_t surface, struct vec3 facet) {
+    const double smooth = 0.5; /* cosine of the largest angle to the triangle */
     struct vec3 best = facet;
-    bool found = false;
+    double nearest = smooth;
     for (int i = 0; i <= vertex->sharp; i++) {
-        if (vertex->surface[i] != surface || (found && vec3_dot(vertex->normal[i], facet) <= vec3_dot(best, facet)))
+        double cosine = vec3_dot(vec3_normalize(vertex->normal[i]), facet), own = vertex->surface[i] == surface;
+        if (cosine <= smooth || cosine + own <= nearest)
             continue;
         best = vertex->normal[i];
-        found = true;
+        nearest = cosine + own;
     }
-    return vec3_dot(best, facet) > 0 ? best : facet;
+    return best;
 }
 
 static bool add_solid_mesh(struct gltf_surface *s, const struct solid_mesh *mesh, const struct csg *csg) {
@@ -506,7 +509,7 @@ static bool add_solid(struct gltf_surface *s, const struct gltf_source *source, 
         return false;
     struct box box = csg->bounds;
     struct solid_input input = {csg, primitive_node(source->world, source->primitive)->name,
-                                source->share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool};
+                                source->solid_share * vec3_max_abs(vec3_sub(box.max, box.min)), source->pool};
     struct solid_mesh mesh = {0};
     struct solid_findings findings;
     bool ok = solid_mesh_build(&input, &mesh, &findings, error);
@@ -638,7 +641,7 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
     arena_destroy(&arena);
     struct box box = geometry_bounds(&prototype->geometry);
     double stretch = out->is_unit ? transform_stretch(&out->object_from_surface) : 1;
-    out->tolerance = share * vec3_max_abs(vec3_sub(box.max, box.min)) / stretch;
+    out->tolerance = math_max(share, source->solid_share) * vec3_max_abs(vec3_sub(box.max, box.min)) / stretch;
     return ok;
 }
 

@@ -42,7 +42,8 @@ static inline struct vec3 gltf_point(const float numbers[3]) {
 struct gltf_source {
     const struct world *world;
     uint32_t primitive;
-    double share; /* the tolerance as a share of the size */
+    double share;       /* the tolerance as a share of the size */
+    double solid_share; /* likewise, of solids that are meshed */
     struct pool *pool;
 };
 /* The surface of a primitive in its own space. Errors: no memory, cancelled. */
@@ -52,7 +53,7 @@ void gltf_directions(const struct gltf_surface *surface, const struct gltf_trian
                      struct vec3 out[2]);
 /* Spheres and boxes: where the one of unit size is in the space of the primitive. */
 bool gltf_surface_is_unit(const struct geometry *geometry, struct transform *object_from_surface);
-/* Gives each triangle a place of its own in the unit square, of at min_square `smallest` of the `size` steps along each
+/* Gives each triangle a place of its own in the unit square, of at least `smallest` of the `size` steps along each
  * side. False: there are too many. */
 bool gltf_surface_unfold(struct gltf_surface *surface, uint32_t size, uint32_t smallest);
 

@@ -406,13 +406,15 @@ static uint32_t mesh_of(struct visit *visit, uint32_t primitive) {
     const uint32_t *known = key_map_find(&scene->meshes, key);
     const struct box *box = &world->boxes[primitive];
     double size = vec3_max_abs(vec3_sub(box->max, box->min)), wanted = scene->options.tolerance;
+    const struct box all = world_finite_bounds(world);
     double share = wanted > 0 && size > 0 ? math_min(math_max(wanted / size, 1e-6), 0.1) : 1e-3;
     struct gltf_surface surface = {0};
     struct gltf_paint paint;
     uint32_t mesh = GLTF_NONE;
     if (known)
         return *known;
-    const struct gltf_source source = {world, primitive, share, scene->options.pool};
+    double solid_share = math_max(share, math_min(1e-3 * vec3_max_abs(vec3_sub(all.max, all.min)) / size, 4e-3));
+    const struct gltf_source source = {world, primitive, share, wanted > 0 ? share : solid_share, scene->options.pool};
     visit->ok = visit->ok && gltf_surface_make(&source, &surface, visit->error);
     if (visit->ok && surface.why)
         lacks(scene, surface.why, name);

@@ -417,8 +417,10 @@ static const struct node *find_node(const struct node *root, const char *name, s
 /* Adds the scene of a picture to the file, which is written when no other frame comes. */
 static bool keep_moment(struct model_work *work, const struct render_request *request, struct error *error) {
     struct render_process *process = work->process;
+    const struct host_services *services = process->services;
+    const struct model_request file = request_of(work);
     const bool is_first = !process->gltf_scene;
-    if (!render_process_need_pool(process, error))
+    if (!render_process_need_pool(process, error) || !services->model(services->context, &file, NULL, error))
         return false;
     struct mem_account *script = render_process_charge_picture(process);
     if (is_first)
@@ -426,6 +428,7 @@ static bool keep_moment(struct model_work *work, const struct render_request *re
     process->gltf_frame = request->frame.number;
     bool ok = process->gltf_scene && add_moment(work, process->gltf_scene, request, error);
     (void)mem_charge(script);
+    services->model_end(services->context);
     if (ok && is_first)
         warn_of_picture(work, request);
     process->kept_model.ready = ok;

@@ -398,8 +398,10 @@ void bsdf_facets_see(struct bsdf_facets *facets, struct vec3 view) {
         }
         double cosine = fabs(vec3_dot(view, facets->distribution.normal));
         facets->reflected = albedo_reflection(cosine, facets->roughness, facets->eta);
-        if (!(facets->lack > 0))
+        if (!(facets->lack > 0)) {
+            facets->lack_seen = 0;
             return;
+        }
     }
     facets->lack_seen = lack_towards(facets, view, false);
 }

@@ -181,7 +181,8 @@ static void push_fields(struct scene_reader *r, const struct script_function *fu
             check_type(r, function, json_object_iter_value(at));
         push_value(r, json_object_iter_value(at));
         r->position = position.outer;
-        lua_setfield(r->L, -2, key);
+        bool is_type = function && strcmp(key, SCENE_JSON_FIELD_TYPE) == 0 && has_parameter(function, "type", 4);
+        lua_setfield(r->L, -2, is_type ? "type" : key);
     }
 }
 

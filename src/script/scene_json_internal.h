@@ -7,6 +7,8 @@
 
 /* Of the files. */
 enum { SCENE_JSON_VERSION = 1 };
+/* The member for a field `type` of a function. */
+#define SCENE_JSON_FIELD_TYPE "field_type"
 
 /* Whether it is the name of one: it ends in .json. */
 bool scene_json_is_named(const char *path);

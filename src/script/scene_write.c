@@ -212,6 +212,8 @@ static void note(struct script_context *context, int index, const struct script_
         push_file(context, value->text);
     else if (p->kind == KIND_WHOLE && value->given) /* without the fraction that gr dropped */
         lua_pushnumber(L, value->number);
+    else if (p->kind == KIND_NUMBER && lua_isnumber(L, index)) /* not as a string */
+        lua_pushnumber(L, lua_tonumber(L, index));
     else
         lua_pushvalue(L, index);
     lua_call(L, 2, 0);

@@ -148,7 +148,7 @@ local function members(record)
     if record.late then raise('a node below a displaced one was displaced, or has got a child, after it; write the scene with displace last') end
     local out = {type = record.kind}
     shown[record] = out
-    for key, value in next, record.fields do out[key] = value end
+    for key, value in next, record.fields do out[key == 'type' and 'field_type' or key] = value end
     if record.children and #record.children > 0 then
         local all = {}
         for k, child in ipairs(record.fields.children or {}) do all[k] = child end
@@ -268,7 +268,8 @@ for word in gmatch('and break do else elseif end false for function goto if in l
     KEYWORDS[word] = true
 end
 -- Where fields stand among the others, which are in the order of their names.
-local RANK = {name = '\1', file = '\1', node = '\1', children = '~', operands = '~'}
+local RANK = {name = '\1', file = '\1', node = '\1', from = '\4', to = '\5', width = '\2', height = '\3', eye = '\4', target = '\5', view = '\5', corner = '\5', along = '\5',
+              up = '\6', fov = '\7', children = '~', operands = '~'}
 
 local function lua_string(text)
     if find(text, "[%c'\\\128-\255]") then return (gsub(format('%q', text), '\\\n', '\\n')) end
@@ -305,7 +306,7 @@ local function lua_of(names)
         for key, value in next, members(record) do fields[key] = value end
         local is_group = record.kind == 'node' or record.kind == 'joint'
         local children = not is_group and fields.children or {}
-        fields.type, fields.transform, fields.children = nil, nil, is_group and fields.children or nil
+        fields.type, fields.field_type, fields.transform, fields.children = fields.field_type, nil, nil, is_group and fields.children or nil
         for _, child in ipairs(children) do calls[#calls + 1] = ':add_child(' .. text_of(child, indent .. '  ') .. ')' end
         for _, call in ipairs(record.calls or {}) do
             local list, parts = in_form(call), {}

@@ -78,7 +78,7 @@ static const char *schema_of_kind(enum argument_kind kind) {
     case KIND_STOPS:
         return LIST_OF(TUPLE("4"));
     case KIND_FACES:
-        return LIST_OF(LIST_OF("{\"type\": \"integer\", \"minimum\": 0}"));
+        return LIST_OF(LIST_OF("{\"type\": \"number\", \"minimum\": 0}"));
     case KIND_NUMBERS:
         return ANY_OF(NUMBER ", " NUMBERS);
     case KIND_ROWS:
@@ -130,7 +130,7 @@ static void add_parameter(struct document *document, const struct script_paramet
                   {OR_SKY, REF("sky")}};
     const char *schema = schema_of_kind(p->kind);
     bool has_words = p->choices && p->choices[0];
-    document_add(document, "\"%s\": {\"anyOf\": [", p->name);
+    document_add(document, "\"%s\": {\"anyOf\": [", strcmp(p->name, "type") == 0 ? SCENE_JSON_FIELD_TYPE : p->name);
     if (schema)
         document_add(document, "%s", schema);
     else if (p->kind == KIND_NUMBER || p->kind == KIND_WHOLE)

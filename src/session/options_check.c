@@ -100,6 +100,9 @@ static bool check_model(const struct options *options, struct error *error) {
     if (options->window || options->shards || options->shards_of_pictures || options->mpi || options->watch)
         return error_set(error, ERROR_USAGE,
                          "-o MODEL and --check-print cannot be combined with -gui, --shard, --mpi or --watch");
+    if (is_scene && options->check_print)
+        return error_set(error, ERROR_USAGE, "--check-print is for solids, not for scenes such as %.400s",
+                         options->model);
     return frames->step == 0 || frames->first == frames->last || is_scene ||
            error_set(error, ERROR_USAGE, "a model shows one frame: --frames N-N chooses it");
 }

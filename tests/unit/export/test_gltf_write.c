@@ -1,4 +1,5 @@
 /* Scenes as glTF: what gray reads back from the files that it writes. Tests with jansson, which reads them. */
+#include "base/file.h"
 #include "formats/model.h"
 #include "math/elementary.h"
 #include "tests/harness.h"
@@ -280,7 +281,10 @@ TEST(what_gltf_lacks_is_left_out_with_one_warning_each) {
     expect("gr.render{node = gr.sphere{}, width = 8, height = 8, ambient = {0.1, 0.1, 0.1}}\n", "-o y.glb scene.lua", 0,
            "gr.render: warning: the ambient light is left out");
     expect("gr.node('nothing'):export('z.glb')\n", "scene.lua", 0, NULL);
+    CHECK(file_is_regular(test_path("z.glb")));
     expect("gr.sphere{}:export('../x.glb')\n", "scene.lua", 1, "models of scripts must be below the working directory");
+    expect("gr.render{node = gr.sphere{}, width = 8, height = 8}\n", "--check-print -o x.glb scene.lua", 2,
+           "--check-print is for solids");
     test_write_text(test_path("mine.glb"), "my notes\n");
     expect("gr.sphere{}:export('mine.glb')\n", "scene.lua", 1, "exists already and is not a model");
 }
@@ -296,6 +300,28 @@ TEST(the_bytes_of_a_glb_depend_on_no_number_of_threads) {
     (void)snprintf(text, sizeof text, scene, "three");
     expect(text, "-j 3 scene.lua", 0, NULL);
     CHECK(test_same_files("one.glb", "three.glb"));
+}
+
+/* What other programs say (docs/export.md); a program that is not installed is left out. */
+static void check_by(const char *program) {
+    char line[8192];
+    (void)snprintf(line, sizeof line, "GRAY='%s' tools/check_gltf.sh %s >'%s' 2>&1", test_program(), program,
+                   test_path("said.txt"));
+    int status = system(line);
+    char *said = test_read_file(test_path("said.txt"), NULL);
+    if (said && strstr(said, "is not installed"))
+        test_skip("%s is not installed", program);
+    if (status != 0)
+        test_fail(__FILE__, __LINE__, "%s", said ? said : program);
+    free(said);
+}
+
+TEST_LONG(the_khronos_validator_finds_nothing_in_the_demos_as_gltf) {
+    check_by("validator");
+}
+
+TEST_LONG(blender_draws_gltf_files_with_the_outlines_and_the_colours_of_gray) {
+    check_by("blender");
 }
 
 #endif

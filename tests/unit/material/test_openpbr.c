@@ -184,6 +184,21 @@ TEST(metals_reflect_what_they_were_measured_to_reflect_head_on_and_at_82_degrees
     CHECK_NEAR(average.b, sum.b, 1e-7);
 }
 
+TEST(facets_that_lose_nothing_are_seen_to_lose_nothing_whatever_the_memory_held) {
+    int lossless = 0;
+    for (int i = 0; i < 20; i++)
+        for (int k = 0; k < 30; k++) {
+            struct bsdf_facets facets;
+            memset(&facets, 0xff, sizeof facets);
+            bsdf_facets_shape(&facets, vec3_make(0, 0, 1), vec3_all(0), exp(-i / 3.0), 0);
+            bsdf_facets_glass(&facets, exp((k - 14.5) / 16));
+            bsdf_facets_see(&facets, vec3_make(0.6, 0, 0.8));
+            CHECK(facets.lack > 0 ? facets.lack_seen >= 0 && facets.lack_seen < 1 : facets.lack_seen == 0);
+            lossless += !(facets.lack > 0);
+        }
+    CHECK(lossless > 0);
+}
+
 /* Silver at 549 nm has n = 0.06 + 3.586 i (Johnson and Christy 1972); gold and copper lack blue, in this order. */
 TEST(the_table_of_metals_has_the_colours_of_metals) {
     struct metal {

@@ -180,9 +180,13 @@ TEST(scenes_of_other_programs_and_empty_pictures_are_written_with_the_same_pictu
     static const char *const scenes[] = {
         "gr.render{node = gr.sphere{}}",
         "gr.render(gr.sphere('s'), 't.png', 33 / 2, 9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})",
+        "gr.render{node = gr.sphere{medium = gr.medium{scattering = {2, 2, 2}, corner = {-1, -1, -1}, size = 2, cells "
+        "= {2, "
+        "1, 3}, type = 'uint8', density = 'plain.raw'}}, eye = {0, 0, 4}, background = {1, 1, 1}, integrator = 'path'}",
         "gr.render{node = gr.sphere{}} gr.render(gr.sphere('b'), 'x.png', 9, 9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
     };
     need_json();
+    test_write_file(test_path("plain.raw"), "\1\2\3\4\5\6", 6);
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         test_write_text(test_path("s.lua"), scenes[i]);
         compare("s.lua", "");
@@ -325,7 +329,7 @@ TEST(a_scene_in_json_becomes_a_script_that_a_reader_can_follow) {
                "    gr.sphere{}:add_child(gr.cube{material = material})\n"
                "  }\n"
                "}\n"
-               "gr.render{file = 'a.png', node = scene, eye = {0, 2, 8}, height = 24, width = 32}\n");
+               "gr.render{file = 'a.png', node = scene, width = 32, height = 24, eye = {0, 2, 8}}\n");
 }
 
 TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
