@@ -1,5 +1,6 @@
 -- TITLE: The town at the blue hour
 -- OPTIONS: --size 400x250 --spp 8
+-- LARGE: --spp 64
 -- A wet street after rain: lit windows, lamps and the last light of the sky in the puddles. Houses are boxes whose windows
 -- are functions of the point; ledges, roofs, lamps and cars are geometry. Fog is thicker near the ground.
 local random = require 'random'
@@ -105,5 +106,5 @@ car(2.55, -4.2, {.25, .02, .02}) car(2.6, -10.2, {.03, .05, .12}) car(2.55, -21,
 
 local sky = gr.sky_gradient{{-1, .01, .012, .03}, {-.02, .40, .20, .15}, {.05, .46, .26, .20}, {.16, .20, .21, .34}, {.4, .055, .10, .25}, {1, .018, .035, .11}}
 gr.render{node = scene, file = 'bluehour.png', width = 1600, height = 1000, eye = {-.75, 1.55, 7}, target = {-.2, 3.35, -30}, fov = 42, background = sky,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = .5, clamp = 8, max_depth = 5, bloom = .08, vignette = .2,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .5, clamp = 8, max_depth = 5, bloom = .08, vignette = .2,
     fog = gr.height_fog{density = .010, base = 0, scale = 8, colour = {.16, .13, .17}}, lights = {gr.sky_light{sky = sky}}}

@@ -1,5 +1,6 @@
 -- TITLE: The end game
 -- OPTIONS: --size 400x250 --spp 12
+-- LARGE: --spp 64
 -- Turned pieces of box and rosewood late in a game: white has a rook and two pawns, black a bishop and hope. Grain follows the
 -- axis of the lathe, edges are worn pale or dark, felt is below; evening sun comes through a window with bars.
 local patterns, random = require 'patterns', require 'random'
@@ -99,5 +100,5 @@ end
 scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {5, 2.6, .9}}, centre = {5.0, 2.2, -15}, radius = .6})
 scene:add_child(gr.box{material = gr.openpbr_material{base_color = {.10, .085, .07}}, min = {-17, -1, -16.2}, max = {40, 30, -16}})
 gr.render{node = scene, file = 'endgame.png', width = 1600, height = 1000, eye = {.9, 2.75, 8.6}, target = {.05, .55, 0}, fov = 29, aperture = .09, focus_point = {-.2, .8, .2}, blades = 9,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = .35, clamp = 12, max_depth = 6, vignette = .2, background = {.03, .035, .05},
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .35, clamp = 12, max_depth = 6, vignette = .2, background = {.03, .035, .05},
     lights = {gr.spherical_light{position = sun * 60, radius = .7, emission = {16000, 9600, 4400}}, gr.sky_light{sky = {.10, .12, .17}}}}

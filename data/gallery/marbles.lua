@@ -1,5 +1,6 @@
 -- TITLE: Marbles in the morning
--- OPTIONS: --size 400x250 --spp 8 --caustics 400000
+-- OPTIONS: --size 400x250 --spp 6 --caustics 400000
+-- LARGE: --spp 128 --caustics 4000000
 -- Glass with coloured vanes and bubbles on an old table, before a garden that is out of focus. Photons carry the light of the
 -- low sun through the glass; the glass has the dispersion of flint, so the rims of the bright spots have colours.
 local patterns, random = require 'patterns', require 'random'
@@ -82,6 +83,6 @@ for _ = 1, 420 do
 end
 local sun = gr.vec(-.60, .62, -.72):normalize()
 gr.render{node = scene, file = 'marbles.png', width = 1600, height = 1000, eye = {.5, 3.6, 8.6}, target = {.25, .5, -.4}, fov = 31, aperture = .14, focus_point = {0, 1, .8}, blades = 7,
-    integrator = 'path', spp = 128, denoise = true, tone = 'filmic', exposure = .3, clamp = 16, max_depth = 14, caustics = {photons = 4000000},
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .3, clamp = 16, max_depth = 14,
     background = gr.sky_gradient{{-1, .01, .025, .006}, {-.1, .015, .035, .01}, {.3, .05, .10, .03}, {1, .5, .6, .7}},
     lights = {gr.spherical_light{position = sun * 16, radius = 1.3, emission = {170, 122, 66}}, gr.sky_light{sky = {.16, .20, .26}}}}

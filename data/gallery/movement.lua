@@ -1,5 +1,6 @@
 -- TITLE: The movement of a watch
--- OPTIONS: --size 400x250 --spp 8
+-- OPTIONS: --size 400x250 --spp 6
+-- LARGE: --spp 64
 -- Going train, balance and hairspring over a plate with stripes. Bridges and wheels are prisms with bevelled edges, whose
 -- polished bevels catch the strips of light; jewels of ruby sit in gold; screws are blued. One unit is two millimetres.
 local gear = require 'gear'
@@ -106,7 +107,7 @@ scene:add_child(gr.cylinder{material = nickel, from = {5.0, -.1, -.15}, to = {5.
 screw(4.9, .0, 3.9, .22, 15) screw(3.6, .0, -3.6, .22, 75) jewel(4.4, .03, -2.4, .16)
 
 gr.render{node = scene, file = 'movement.png', width = 1600, height = 1000, eye = {4.6, 6.6, 8.4}, target = {.35, .35, .15}, fov = 31, aperture = .10, focus_point = {1.9, 1, 1.4}, blades = 8,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = -.35, clamp = 12, max_depth = 8, background = {.012, .014, .018}, vignette = .2,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = -.35, clamp = 12, max_depth = 8, background = {.012, .014, .018}, vignette = .2,
     lights = {gr.area_light{corner = {-8, 7.5, -6}, v1 = {13, 0, 0}, v2 = {0, 1.4, 2.2}, emission = {9, 8.2, 7}, visible = true},
         gr.area_light{corner = {7.5, 4, -4}, v1 = {0, 0, 8}, v2 = {1, 1.5, 0}, emission = {4, 5, 7}, visible = true},
         gr.area_light{corner = {-9, 5, 2}, v1 = {0, 0, 5}, v2 = {0, 2, 0}, emission = {3, 2.6, 2.0}, visible = true}, gr.sky_light{sky = {.05, .055, .065}}}}

@@ -1,5 +1,6 @@
 -- TITLE: An octopus at rest
--- OPTIONS: --size 400x300 --spp 3
+-- OPTIONS: --size 400x300 --spp 2
+-- LARGE: --spp 64
 -- The skin scatters light below its surface: arms glow where the lamp is behind them. The animal is one union of sweeps and a
 -- smooth head, so light walks from arm to arm; suckers, eyes, sand and corals are around it. -D seed=3 makes another one;
 -- --frames 72 --loop moves the arms.
@@ -109,7 +110,7 @@ for k = 1, 26 do
 end
 local deep = gr.sky_gradient{{-1, .004, .012, .018}, {0, .012, .055, .075}, {.5, .03, .13, .16}, {1, .10, .34, .36}}
 gr.render{node = scene, file = 'octopus.png', width = 1600, height = 1200, eye = {.45, 1.05, 7.0}, target = {.1, .1, 0}, fov = 28, aperture = .035, focus_point = {0, .3, .5}, background = deep,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = .45, clamp = 8, max_depth = 8, vignette = .25,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .45, clamp = 8, max_depth = 8, vignette = .25,
     fog = gr.uniform_fog{density = .045, colour = {.012, .075, .095}},
     lights = {gr.disc_light{position = {-2.2, 5, -2.6}, normal = {.42, -1, .5}, radius = .9, emission = {34, 32, 25}},
         gr.disc_light{position = {3.4, 3.2, 4}, normal = {-.7, -.6, -.8}, radius = 1.2, emission = {2.6, 2.8, 2.6}}, gr.sky_light{sky = deep}}}

@@ -1,5 +1,6 @@
 -- TITLE: The pavilion
 -- OPTIONS: --size 400x250 --spp 8
+-- LARGE: --spp 64
 -- A dome cut from a gyroid, lit by one lamp inside, in new snow at night. Footprints lead to it; flakes fall between the birches.
 local sdf, random = require 'sdf', require 'random'
 local scene = gr.node 'garden'
@@ -98,5 +99,5 @@ scene:add_child(gr.cylinder{material = twig, from = {-.1, -.1, -.2}, to = {-.1, 
 
 local night = gr.sky_gradient{{-1, .006, .01, .022}, {0, .026, .042, .095}, {.25, .013, .024, .065}, {1, .004, .008, .03}}
 gr.render{node = scene, file = 'pavilion.png', width = 1600, height = 1000, eye = {1.9, 1.25, 10.2}, target = {.12, 1.5, 0}, fov = 30,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = .25, clamp = 10, max_depth = 6, background = night, bloom = .06, vignette = .25,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .25, clamp = 10, max_depth = 6, background = night, bloom = .06, vignette = .25,
     aperture = .025, focus_point = {0, 1, 1.8}, lights = {gr.sky_light{sky = night}, gr.directional_light{direction = {.55, -.5, -.45}, colour = {.028, .042, .085}}}}

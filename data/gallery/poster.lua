@@ -1,5 +1,6 @@
 -- TITLE: A poster in low sun
--- OPTIONS: --size 300x400 --spp 10
+-- OPTIONS: --size 300x400 --spp 9
+-- LARGE: --spp 96
 -- Letters as a relief on paper, seen straight on; the only lamp is a sun two hands above the wall, so every letter draws its
 -- own long shadow, and red letters tint the paper beside them. All lines have the same width.
 local text = require 'text'
@@ -48,5 +49,5 @@ scene:add_child(gr.box{material = red, min = {left + 2.05, 2.4, 0}, max = {left 
 scene:add_child(gr.torus(ink, .40, .13):rotate('x', 90):translate(left + 4.2, 2.85, .14))
 
 gr.render{node = scene, file = 'poster.png', width = 1200, height = 1600, eye = {0, -.16, 20}, view = {0, 0, -1}, projection = 'orthographic', view_height = 9.9,
-    integrator = 'path', spp = 96, denoise = true, tone = 'filmic', exposure = .55, background = {.2, .3, .5},
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .55, background = {.2, .3, .5},
     lights = {gr.spherical_light{position = {-24, 14, 8.5}, radius = .55, emission = {1900, 1240, 620}}, gr.sky_light{sky = {.12, .16, .25}}}}

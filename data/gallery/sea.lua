@@ -1,11 +1,13 @@
 -- TITLE: A buoy at sunset
 -- OPTIONS: --size 400x250 --spp 12
+-- LARGE: --spp 64
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
 -- crests; the buoy has rust, a cage, a lamp, and a gull.
 local random, sdf = require 'random', require 'sdf'
 local scene = gr.node 'sea'
 local dice = random.new(3)
 local function between(a, b) return a + (b - a) * dice:number() end
+local cells = quick and 200 or 1500               -- -D quick=true makes a draft
 local sun = gr.vec(.16, .075, -1):normalize()
 
 -- waves: a sum of crests along directions near that of the wind; the sharper ones are shorter
@@ -31,8 +33,8 @@ local function field(size, middle, columns, sink)
     scene:add_child(gr.height_field{material = water(size), columns = columns, smooth = true, open = true,
         f = function(p) return (height((p.x - .5) * size, p.z * size - middle) - sink) / size end}:scale(size, size, size):translate(-size / 2, 0, -middle))
 end
-field(26, 19, 1500, 0)
-field(220, 238, 1500, .02)
+field(26, 19, cells, 0)
+field(220, 238, cells, .02)
 scene:add_child(gr.plane{material = water(1), normal = {0, 1, 0}, distance = -.35})
 
 -- the buoy
@@ -86,5 +88,5 @@ local function dome(d)
 end
 local sky = gr.sky_function(dome)
 gr.render{node = scene, file = 'sea.png', width = 1600, height = 1000, eye = {0, 1.25, 4.4}, target = {-.15, 1.12, -4}, fov = 33,
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = -.25, clamp = 20, max_depth = 6, background = sky, bloom = .10, vignette = .15,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = -.25, clamp = 20, max_depth = 6, background = sky, bloom = .10, vignette = .15,
     lights = {gr.sky_light{sky = sky}, gr.sun_light{sun = sun, colour = {24, 11.5, 3.8}}}}

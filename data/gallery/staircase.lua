@@ -1,5 +1,6 @@
 -- TITLE: The red stairs
 -- OPTIONS: --size 320x400 --spp 4
+-- LARGE: --spp 48
 -- A spiral staircase from above: daylight falls from a skylight down the well, and a lamp waits on the marble at the bottom.
 -- 120 steps with rounded noses, a carpet that folds over them, brass rods, iron balusters and a handrail of oak.
 local materials = require 'materials'
@@ -66,5 +67,5 @@ scene:add_child(gr.lathe(brass, {{0, -.4}, {.34, -.4}, {.3, -.33}, {.1, -.28}, {
 scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {46, 25, 9}}, centre = {0, .68, 0}, radius = .25})
 
 gr.render{node = scene, file = 'staircase.png', width = 1280, height = 1600, eye = {.42, 20.1, .30}, target = {-.1, 0, -.15}, up = {.5, 0, -1}, fov = 66,
-    integrator = 'path', spp = 48, denoise = true, tone = 'filmic', exposure = .15, clamp = 12, max_depth = 8, vignette = .2,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .15, clamp = 12, max_depth = 8, vignette = .2,
     background = {.7, .8, 1}, lights = {gr.disc_light{position = {0, steps * rise + 1.9, 0}, normal = {0, -1, 0}, radius = 2.6, emission = {1.5, 1.75, 2.2}}}}

@@ -1,5 +1,6 @@
 -- TITLE: Still life with lemons
 -- OPTIONS: --size 400x250 --spp 10
+-- LARGE: --spp 64
 -- A window on the left, a dark wall, and what Dutch painters laid on a table: a white cloth with folds, pewter, a glass of
 -- wine, lemons, grapes and bread. Grapes and lemons scatter light inside.
 local random, patterns = require 'random', require 'patterns'
@@ -110,5 +111,5 @@ scene:add_child(knife:rotate('y', -32):translate(-2.75, .045, 1.15))
 
 local cool = {.032, .040, .052}
 gr.render{node = scene, file = 'stilllife.png', width = 1600, height = 1000, eye = {.35, 2.15, 9.6}, target = {.42, .72, 0}, fov = 26, aperture = .05, focus_point = {.4, .7, .8},
-    integrator = 'path', spp = 64, denoise = true, tone = 'filmic', exposure = .45, clamp = 10, max_depth = 12, vignette = .3, background = cool,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .45, clamp = 10, max_depth = 12, vignette = .3, background = cool,
     lights = {gr.area_light{corner = {-9, 1.6, -1.5}, v1 = {0, 0, 5}, v2 = {0, 4.2, 0}, emission = {12, 11, 9.4}}, gr.sky_light{sky = cool}}}
