@@ -15,7 +15,7 @@ failed=""
 # The plan: lines "[title]" and "SCRIPT SECONDS". Scenes that data/gallery.txt does not name come before its last part.
 plan() {
     unlisted=""
-    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua data/teaching/*.lua \
+    for script in data/*demo.lua data/gallery/*.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua data/teaching/*.lua \
         data/library/show_*.lua data/print/*.lua \
         data/classic/*.lua; do
         case $script in */make_*) continue ;; esac # writes models, is not a scene
@@ -134,6 +134,8 @@ describe() { # describe SCRIPT NAME SECONDS
         echo "<a class=\"picture\" href=\"$file\"><img src=\"$file\" width=\"${size% *}\" height=\"${size#* }\" alt=\"$title\" loading=\"lazy\"></a>"
     done
     [ $shown -lt 2 ] || echo "</div>"
+    large="${script%.lua}.png"
+    [ ! -f "$large" ] || echo "<p><a href=\"../$large\">finished, $(size_of "$large" | sed 's/ / x /')</a></p>"
     why=$(sed -e '/ left$/d' -e '/^ /d' "$gallery/$name.err" | head -n 9 | as_html)
     [ $shown -gt 0 ] || echo "<figure style=\"--shape: 1\"><p class=\"none\">no picture: ${why:-the script makes none}</p>"
     command="./gray $(printf '%s' "$options" | as_html)"
@@ -164,7 +166,7 @@ while read -r script cost <&3; do
     esac
     number=$((number + 1))
     base=$(basename "$script" .lua)
-    case $script in data/classic/*) base="classic-$base" ;; esac
+    case $script in data/classic/* | data/gallery/*) base="$(basename "$(dirname "$script")")-$base" ;; esac
     render "$script" "$base" "$cost"
     # The plan is for one kind of machine: after some seconds, what was taken so far corrects it.
     planned=$(awk "BEGIN { print $planned + $cost / $processors + 0.1 }")

@@ -153,6 +153,13 @@ TEST(smoke_path_traced_demos_render_in_small_from_any_folder_without_a_warning) 
     smoke("data/path", ".lua", false);
 }
 
+/* 13 seconds of processor time in the release build. */
+TEST(smoke_pictures_of_the_gallery_render_in_small) {
+    if (strcmp(GRAY_CONFIG, "release") != 0)
+        test_skip("too slow in this build; the release build renders them");
+    smoke("data/gallery", ".lua", false);
+}
+
 TEST(smoke_animations_and_drawn_pictures_render_in_small) {
     smoke_with("--frames 1-25/8", "data/animation", ".lua", false);
     smoke("data", "styles.lua", false);

@@ -1,0 +1,103 @@
+-- TITLE: The pavilion
+-- OPTIONS: --size 400x250 --spp 8
+-- LARGE: --spp 64
+-- A dome cut from a gyroid, lit by one lamp inside, in new snow at night. Footprints lead to it; flakes fall between the birches.
+local sdf, random = require 'sdf', require 'random'
+local scene = gr.node 'garden'
+local dice = random.new(12)
+local function between(a, b) return a + (b - a) * dice:number() end
+
+-- the dome: a wall of 14 cm along a gyroid, in a shell of a ball, on a ring
+local plaster = gr.openpbr_material{specular_roughness = .55, specular_weight = .4,
+    base_color = function(p) return gr.vec(.84, .81, .76) * (1 - .10 * gr.turbulence(p * 1.4, 3)) end}
+local gyroid = sdf.intersection(sdf.gyroid(1.5, .15), sdf.shell(sdf.sphere(2.4), .46))
+local dome = sdf.difference(gyroid, sdf.box{.48, 1.05, 4})
+scene:add_child(gr.implicit{material = plaster, f = dome, bounds = {{-2.7, 0, -2.7}, {2.7, 2.7, 2.7}}})
+scene:add_child(gr.difference(gr.cylinder{material = plaster, from = {0, -.2, 0}, to = {0, .09, 0}, radius = 2.72, edge = .03}, gr.cylinder{material = plaster, from = {0, .0, 0}, to = {0, 1, 0}, radius = 2.05},
+    gr.box(plaster, {-.48, -.1, 0}, {.48, 1, 4})))
+
+-- the snow: drifts, a bank around the dome, and a track of footprints that ends at the door
+local steps = {}
+for k = 7, 22 do steps[k - 6] = {.1 + 1.25 * (k / 20) ^ 1.4 + (k % 2 == 0 and .10 or -.10), 1.8 + .36 * k} end
+local function ground(x, z)
+    local d = (x * x + z * z) ^ .5
+    local h = .10 * gr.noise(x * .35, 0, z * .35) + .035 * gr.noise(x * 1.3, 3, z * 1.3) + .004 * gr.noise(x * 19, 0, z * 19)
+    h = h * gr.smoothstep(2.2, 4.5, d) + .10 * gr.smoothstep(.55, 0, gr.max(d - 2.75, 2.75 - d)) * gr.smoothstep(.3, .8, gr.max(x, -x, -z))
+    h = h + 2.3 * gr.smoothstep(7, 32, -z) * (.55 + .45 * gr.noise(x * .09 + 2, 5, z * .05))
+    for _, s in ipairs(steps) do
+        local q = ((x - s[1]) / .075) ^ 2 + ((z - s[2]) / .15) ^ 2
+        h = h - .07 * gr.smoothstep(1.6, .7, q) + .012 * gr.smoothstep(.9, 0, gr.max(q - 2.1, 2.1 - q))
+    end
+    return h
+end
+local snow = gr.openpbr_material{base_color = {.84, .86, .90}, specular_roughness = .5, specular_weight = .4}
+local near, far = 16, 80
+scene:add_child(gr.height_field{material = snow, f = function(p) return ground((p.x - .5) * near, (p.z - .35) * near) / near end, columns = 1100, smooth = true, open = true}
+    :translate(-.5, 0, -.35):scale(near, near, near))
+scene:add_child(gr.height_field{material = snow, f = function(p) return (ground((p.x - .5) * far, (p.z - .8) * far) - .03) / far end, columns = 400, smooth = true, open = true}
+    :translate(-.5, 0, -.8):scale(far, far, far))
+
+-- birches: white trunks with dark marks, and thin branches
+local bark = gr.openpbr_material{specular_roughness = .7, base_color = function(p)
+    local mark = gr.smoothstep(.28, .36, gr.noise(p.x * 4, p.y * 11, p.z * 4)) + gr.smoothstep(.5, .1, p.y) * .6
+    return gr.mix(gr.vec(.62, .60, .57), gr.vec(.03, .03, .03), gr.clamp(mark, 0, 1))
+end}
+local twig = gr.openpbr_material{base_color = {.07, .05, .05}, specular_roughness = .7}
+local function birch(x, z, height, lean)
+    local tree, points, radii = gr.node 'birch', {}, {}
+    for k = 0, 8 do
+        local t = k / 8
+        points[k + 1] = {lean * t ^ 1.5 + .06 * between(-1, 1) * t, height * t - .3, .08 * between(-1, 1) * t}
+        radii[k + 1] = .11 * (1 - t) ^ .8 + .008
+    end
+    tree:add_child(gr.sweep(bark, points, radii))
+    for _ = 1, 46 do
+        local t = between(.28, .97)
+        local base = points[math.floor(t * 8) + 1]
+        local a, length = between(0, 2 * math.pi), (1 - t) * height * .45 + .3
+        local dx, dz = math.cos(a), math.sin(a)
+        local branch, widths = {}, {}
+        for j = 0, 4 do
+            local s = j / 4
+            branch[j + 1] = {base[1] + dx * length * s ^ .8 * .55 + .09 * between(-1, 1) * s, base[2] + length * (1.05 * s - .18 * s * s), base[3] + dz * length * s ^ .8 * .55 + .09 * between(-1, 1) * s}
+            widths[j + 1] = .016 * (1 - s) * (1.2 - t) + .003
+        end
+        tree:add_child(gr.sweep(twig, branch, widths))
+        for j = 3, 5 do                            -- twigs that hang
+            local b, out = branch[j], between(-.25, .25) * length
+            tree:add_child(gr.sweep(twig, {b, {b[1] + dx * .12 * length + out * dz, b[2] + .10 * length, b[3] + dz * .12 * length - out * dx},
+                {b[1] + dx * .22 * length + 1.6 * out * dz, b[2] - between(.0, .22) * length, b[3] + dz * .22 * length - 1.6 * out * dx}}, {.006, .004, .0025}))
+        end
+    end
+    scene:add_child(tree:translate(x, ground(x, z), z))
+end
+birch(-3.6, -1.2, 7.5, .3) birch(-4.5, .4, 6.6, -.5) birch(3.9, -2.0, 7.8, -.2) birch(5.2, -4.5, 8, .4) birch(-2.2, -5.5, 8, .2)
+birch(-6.8, -4.5, 8, .3) birch(7.6, -7, 8.5, -.3) birch(1.6, -8.5, 8.5, .2) birch(-5.3, -9, 9, 0) birch(4.2, -11, 9, .3) birch(-9.5, -8, 9, .3) birch(10.5, -11, 9, 0)
+
+-- someone on the way to the door: a coat, a red scarf, a cap
+local wool = gr.openpbr_material{base_color = {.05, .045, .05}, fuzz_weight = .5, fuzz_color = {.3, .28, .3}, specular_weight = .1}
+local scarf = gr.openpbr_material{base_color = {.55, .03, .02}, fuzz_weight = .5, specular_weight = .1}
+local skin = gr.openpbr_material{base_color = {.55, .36, .27}}
+local walker = gr.node 'walker'
+walker:add_child(gr.implicit{material = wool, radius = .75, centre = {0, .52, 0}, f = sdf.smooth_union(.05,
+    sdf.capsule({.055, .02, .10}, {.05, .45, .02}, .042, .06), sdf.capsule({-.055, .05, -.14}, {-.05, .45, 0}, .042, .06),
+    sdf.capsule({0, .42, 0}, {0, .80, -.02}, .135, .10), sdf.capsule({.10, .80, -.02}, {.17, .52, .05}, .05, .04),
+    sdf.capsule({-.10, .80, -.02}, {-.17, .53, -.10}, .05, .04))})
+walker:add_child(gr.sphere{material = skin, centre = {0, .99, -.03}, radius = .075})
+walker:add_child(gr.ellipsoid{material = wool, centre = {0, 1.03, -.015}, radii = {.085, .062, .085}})
+walker:add_child(gr.torus(scarf, .065, .035):translate(0, .885, -.02))
+walker:add_child(gr.sweep(scarf, {{.05, .88, .05}, {.08, .78, .12}, {.07, .66, .14}}, {.03, .032, .028}))
+scene:add_child(walker:scale(1.2, 1.2, 1.2):translate(.42, ground(.42, 4.05) + .01, 4.05))
+
+-- falling snow, the lamp on its stand
+for _ = 1, 420 do
+    local z = between(-7, 7.4)
+    scene:add_child(gr.sphere{material = snow, centre = {between(-.42, .42) * (13 - z) + .6, between(.05, 4.4), z}, radius = between(.010, .02)})
+end
+scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {44, 23, 8.5}}, centre = {-.1, .92, -.2}, radius = .26})
+scene:add_child(gr.cylinder{material = twig, from = {-.1, -.1, -.2}, to = {-.1, .7, -.2}, radius = .03})
+
+local night = gr.sky_gradient{{-1, .006, .01, .022}, {0, .026, .042, .095}, {.25, .013, .024, .065}, {1, .004, .008, .03}}
+gr.render{node = scene, file = 'pavilion.png', width = 1600, height = 1000, eye = {1.9, 1.25, 10.2}, target = {.12, 1.5, 0}, fov = 30,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .25, clamp = 10, max_depth = 6, background = night, bloom = .06, vignette = .25,
+    aperture = .025, focus_point = {0, 1, 1.8}, lights = {gr.sky_light{sky = night}, gr.directional_light{direction = {.55, -.5, -.45}, colour = {.028, .042, .085}}}}
