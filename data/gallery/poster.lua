@@ -1,6 +1,6 @@
 -- TITLE: A poster in low sun
 -- OPTIONS: --size 300x400 --spp 9
--- LARGE: --spp 96
+-- LARGE: --spp 64
 -- Letters as a relief on paper, seen straight on; the only lamp is a sun two hands above the wall, so every letter draws its
 -- own long shadow, and red letters tint the paper beside them. All lines have the same width.
 local text = require 'text'
