@@ -6,7 +6,6 @@
 local random = require 'random'
 local scene = gr.node 'town'
 local dice = random.new(29)
-local function between(a, b) return a + (b - a) * dice:number() end
 local function glow(r, g, b) return gr.material{kd = {0, 0, 0}, emission = {r, g, b}} end
 
 -- a front: windows of .62 x 1.0 in cells of 1.1 x 1.7, two thirds of them dark; shop windows at the bottom
@@ -50,18 +49,18 @@ local function house(x0, x1, z0, z1, height, kind)
     for floor = 2, math.floor(height / 1.7) - 1 do ledge(1.7 * floor + .22, .05, .06) end
     if kind % 2 == 1 then                          -- a mansard roof with dormers, and chimneys
         local w = (x1 - x0) / 2
-        scene:add_child(gr.prism{material = slate, outline = {{-w, 0}, {w, 0}, {w - .9, 1.9}, {-w + .9, 1.9}}, from = -z1, to = -z0}:rotate('x', -90):scale(1, 1, -1):rotate('x', 0):translate((x0 + x1) / 2, height + .2, 0))
+        scene:add_child(gr.prism{material = slate, outline = {{-w, 0}, {w, 0}, {w - .9, 1.9}, {-w + .9, 1.9}}, from = -z1, to = -z0}:rotate('x', -90):scale(1, 1, -1):translate((x0 + x1) / 2, height + .2, 0))
     end
     for _ = 1, 2 do
-        local x, z = between(x0 + .6, x1 - .6), between(z0 + .5, z1 - .5)
-        scene:add_child(gr.box{material = stone, min = {x - .22, height, z - .3}, max = {x + .22, height + between(2.0, 2.9), z + .3}})
+        local x, z = dice:range(x0 + .6, x1 - .6), dice:range(z0 + .5, z1 - .5)
+        scene:add_child(gr.box{material = stone, min = {x - .22, height, z - .3}, max = {x + .22, height + dice:range(2.0, 2.9), z + .3}})
     end
 end
 for side = -1, 1, 2 do
     local z = 6
     while z > -95 do
-        local depth, height = 1.1 * math.floor(between(5, 9.5)), 1.7 * math.floor(between(5, 9.4))
-        if side > 0 then house(5.2, 5.2 + 8, z - depth, z - .04, height, math.ceil(between(0, 5))) else house(-5.2 - 8, -5.2, z - depth, z - .04, height, math.ceil(between(0, 5))) end
+        local depth, height = 1.1 * math.floor(dice:range(5, 9.5)), 1.7 * math.floor(dice:range(5, 9.4))
+        if side > 0 then house(5.2, 5.2 + 8, z - depth, z - .04, height, math.ceil(dice:range(0, 5))) else house(-5.2 - 8, -5.2, z - depth, z - .04, height, math.ceil(dice:range(0, 5))) end
         z = z - depth
     end
 end

@@ -44,7 +44,7 @@ local function piece(kind, side, seed)
         for k = 0, 2 do slots[#slots + 1] = gr.box(material, {-.5, 1.0, -.045}, {.5, 1.3, .045}):rotate('y', 60 * k + 12) end
         body = gr.difference(slots)
     elseif kind == 'bishop' then
-        body = gr.difference(body, gr.box(material, {-.3, 0, -.018}, {.3, .2, .018}):rotate('x', 0):rotate('z', 0):rotate('y', 20):rotate('x', -38):translate(0, 1.22, .10))
+        body = gr.difference(body, gr.box(material, {-.3, 0, -.018}, {.3, .2, .018}):rotate('y', 20):rotate('x', -38):translate(0, 1.22, .10))
     elseif kind == 'king' then
         node:add_child(gr.box{material = material, min = {-.038, 1.60, -.032}, max = {.038, 1.86, .032}, edge = .012})
         node:add_child(gr.box{material = material, min = {-.10, 1.70, -.03}, max = {.10, 1.775, .03}, edge = .012})
@@ -54,15 +54,14 @@ local function piece(kind, side, seed)
     return node
 end
 local function at(kind, side, column, row, turn)      -- columns and rows 1 to 8
-    scene:add_child(piece(kind, side, column + 9 * row):rotate('y', turn or dice:number() * 360):translate(column - 4.5 + .05 * (dice:number() - .5), 0, 4.5 - row + .05 * (dice:number() - .5)))
+    scene:add_child(piece(kind, side, column + 9 * row):rotate('y', turn or dice:range(0, 360)):translate(column - 4.5 + dice:range(-.025, .025), 0, 4.5 - row + dice:range(-.025, .025)))
 end
 local function lying(kind, side, x, z, turn, lean)    -- on its side, on the table
     local r = .385
-    scene:add_child(piece(kind, side, x + z):translate(0, 0, 0):rotate('z', -90 + lean):translate(0, r - .42, 0):rotate('y', turn):translate(x, 0, z))
+    scene:add_child(piece(kind, side, x + z):rotate('z', -90 + lean):translate(0, r - .42, 0):rotate('y', turn):translate(x, 0, z))
 end
 
 -- the board: squares with grain of their own, a frame with a line of brass
-local board_top = {}
 for i = 1, 8 do
     for k = 1, 8 do
         local c = (i + k) % 2 == 1 and {gr.vec(.46, .30, .14), gr.vec(.34, .20, .08)} or {gr.vec(.14, .058, .026), gr.vec(.075, .028, .014)}
@@ -85,17 +84,17 @@ lying('pawn', 'black', -5.9, 1.3, 30, 12) lying('rook', 'black', -6.3, -.6, 100,
 -- the window: bars between the sun and the board
 local dark = gr.material{kd = {.02, .02, .02}}
 local sun = gr.vec(-.80, .36, -.48):normalize()
-local side, up = sun:cross(gr.vec(0, 1, 0)):normalize(), nil
-up = side:cross(sun)
+local side = sun:cross(gr.vec(0, 1, 0)):normalize()
+local up = side:cross(sun)
 local function bar(u0, u1, v0, v1)
-    local c = sun * 30 + gr.vec(0, 0, 0)
+    local c = sun * 30
     scene:add_child(gr.rectangle{material = dark, corner = c + side * u0 + up * v0, along = side * (u1 - u0), up = up * (v1 - v0)})
 end
 bar(-30, -5.2, -30, 30) bar(6.2, 30, -30, 30) bar(-5.2, 6.2, 3.6, 30) bar(-5.2, 6.2, -30, -6) bar(.3, .75, -6, 3.6) bar(-5.2, 6.2, -1.1, -.75)
 -- a lamp and books far behind
 for k = 1, 60 do
-    local h = 1.6 + dice:number()
-    scene:add_child(gr.box{material = gr.openpbr_material{base_color = gr.vec(.25, .12, .06) * (.3 + dice:number()) + gr.vec(.02, .02, .05) * dice:number()}, min = {-13 + .42 * k, 0, -15}, max = {-13 + .42 * k + .38, h, -14}}:translate(0, k % 2 * 0 - .42, 0))
+    local h = dice:range(1.6, 2.6)
+    scene:add_child(gr.box{material = gr.openpbr_material{base_color = gr.vec(.25, .12, .06) * (.3 + dice:number()) + gr.vec(.02, .02, .05) * dice:number()}, min = {-13 + .42 * k, 0, -15}, max = {-13 + .42 * k + .38, h, -14}}:translate(0, -.42, 0))
 end
 scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {5, 2.6, .9}}, centre = {5.0, 2.2, -15}, radius = .6})
 scene:add_child(gr.box{material = gr.openpbr_material{base_color = {.10, .085, .07}}, min = {-17, -1, -16.2}, max = {40, 30, -16}})

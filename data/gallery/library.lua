@@ -6,29 +6,28 @@
 local random, patterns = require 'random', require 'patterns'
 local scene = gr.node 'library'
 local dice = random.new(21)
-local function between(a, b) return a + (b - a) * dice:number() end
 
 -- drops on the pane at z = 0: large ones keep their distance, small ones fill the space; tracks are clear
 local water = gr.openpbr_material{transmission_weight = 1, specular_roughness = 0, specular_ior = 1.33}
 local drops, tracks = {}, {}
-for _ = 1, 13 do tracks[#tracks + 1] = {between(-1.5, 1.5), between(-.5, 1.0), between(.016, .028), between(0, 9)} end
+for _ = 1, 13 do tracks[#tracks + 1] = {dice:range(-1.5, 1.5), dice:range(-.5, 1.0), dice:range(.016, .028), dice:range(0, 9)} end
 local function track_x(t, y) return t[1] + .016 * math.sin(9 * y + t[4]) + .010 * math.sin(23 * y + 2 * t[4]) end
 local function drop(x, y, r, tall)
     for _, d in ipairs(drops) do if (d[1] - x) ^ 2 + (d[2] - y) ^ 2 < (d[3] + r) ^ 2 * 1.08 then return end end
     drops[#drops + 1] = {x, y, r}
     local cap = gr.sphere{material = water, radius = 1, centre = {0, 0, -.28}}
-    scene:add_child(gr.intersection(cap, gr.box(water, {-2, -2, 0}, {2, 2, 2})):scale(r, r * tall, r * .62):rotate('z', between(-12, 12)):translate(x, y, .0008))
+    scene:add_child(gr.intersection(cap, gr.box(water, {-2, -2, 0}, {2, 2, 2})):scale(r, r * tall, r * .62):rotate('z', dice:range(-12, 12)):translate(x, y, .0008))
 end
 for _, t in ipairs(tracks) do
     drop(track_x(t, t[2]), t[2], t[3] * 1.25, 1.35)
-    for _ = 1, 34 do local y = t[2] + between(.03, 1.5) drop(track_x(t, y), y, between(.003, .009), between(1, 1.3)) end
+    for _ = 1, 34 do local y = t[2] + dice:range(.03, 1.5) drop(track_x(t, y), y, dice:range(.003, .009), dice:range(1, 1.3)) end
 end
 for _ = 1, 5200 do
-    local x, y = between(-1.55, 1.55), between(-.95, .95)
-    local r = .0045 + .026 * between(0, 1) ^ 4.5
+    local x, y = dice:range(-1.55, 1.55), dice:range(-.95, .95)
+    local r = .0045 + .026 * dice:range(0, 1) ^ 4.5
     local free = true
     for _, t in ipairs(tracks) do free = free and not (y > t[2] and math.abs(x - track_x(t, y)) < t[3] * .9 + r) end
-    if free then drop(x, y, r, between(.95, 1.2)) end
+    if free then drop(x, y, r, dice:range(.95, 1.2)) end
 end
 scene:add_child(gr.rectangle{material = gr.openpbr_material{transmission_weight = 1, specular_roughness = 0, specular_ior = 1.5, geometry_thin_walled = true}, corner = {-3, -2, 0}, along = {6, 0, 0}, up = {0, 4, 0}})
 local paint = gr.openpbr_material{base_color = function(p) return gr.vec(.16, .17, .16) * (1 - .3 * gr.turbulence(p * 3, 4)) end, specular_roughness = .45, coat_weight = .6, coat_roughness = .1}
@@ -61,11 +60,11 @@ local function shelves(length, height)             -- along x from 0, books look
     for k = 0, rows - 1 do
         local x = .04
         while x < length - .08 do
-            local w, h = between(.022, .062), step * between(.62, .88)
-            if dice:number() < .04 then x = x + between(.05, .25) end
+            local w, h = dice:range(.022, .062), step * dice:range(.62, .88)
+            if dice:chance(.04) then x = x + dice:range(.05, .25) end
             if x % 1.05 > .03 and x % 1.05 + w < 1.02 and x + w < length then
-                local book = gr.box{material = bindings[math.ceil(between(0, 8))], min = {0, 0, -.30}, max = {w, h, between(-.07, -.01)}, edge = .004}
-                node:add_child(gr.node{children = {book}}:rotate('z', dice:number() < .08 and -9 or 0):translate(x, k * step + .018, 0))
+                local book = gr.box{material = bindings[math.ceil(dice:range(0, 8))], min = {0, 0, -.30}, max = {w, h, dice:range(-.07, -.01)}, edge = .004}
+                node:add_child(gr.node{children = {book}}:rotate('z', dice:chance(.08) and -9 or 0):translate(x, k * step + .018, 0))
             end
             x = x + w + .002
         end

@@ -6,7 +6,6 @@
 local random = require 'random'
 local scene = gr.node 'coast'
 local dice = random.new(6)
-local function between(a, b) return a + (b - a) * dice:number() end
 local function glow(r, g, b) return gr.material{kd = {0, 0, 0}, emission = {r, g, b}} end
 
 -- the rock: a height field with ledges, wet near the water
@@ -25,9 +24,9 @@ local rock = gr.openpbr_material{
 scene:add_child(gr.height_field{material = rock, columns = 700, smooth = true, open = true, f = function(p) return ground((p.x - .5) * 26, (p.z - .5) * 26) / 26 end}
     :translate(-.5, 0, -.5):scale(26, 26, 26))
 for _ = 1, 26 do                                   -- skerries
-    local a, d = between(0, 2 * math.pi), between(8, 13)
-    local r = between(.25, .9)
-    scene:add_child(gr.ellipsoid{material = rock, centre = {d * math.cos(a), -.25 * r, d * math.sin(a)}, radii = {r * between(.8, 1.5), r * between(.4, .8), r}})
+    local a, d = dice:range(0, 2 * math.pi), dice:range(8, 13)
+    local r = dice:range(.25, .9)
+    scene:add_child(gr.ellipsoid{material = rock, centre = {d * math.cos(a), -.25 * r, d * math.sin(a)}, radii = {r * dice:range(.8, 1.5), r * dice:range(.4, .8), r}})
 end
 -- the sea: swell and ripples as a bump, foam around the rock
 local sea = gr.openpbr_material{specular_ior = 1.333,

@@ -6,7 +6,6 @@
 local patterns, random = require 'patterns', require 'random'
 local scene = gr.node 'marbles'
 local dice = random.new(5)
-local function between(a, b) return a + (b - a) * dice:number() end
 
 -- the table: boards along x, each from another part of the trunk, with worn finish and dark joints
 local width = 3.1
@@ -47,10 +46,10 @@ local function marble(x, z, r, tint, vanes, count)
         end
     end
     for _ = 1, 5 do                                -- bubbles
-        local d = gr.vec(between(-.6, .6), between(-.6, .6), between(-.6, .6))
-        node:add_child(gr.sphere{material = glass({1, 1, 1}, 0), centre = d, radius = between(.012, .03)})
+        local d = gr.vec(dice:range(-.6, .6), dice:range(-.6, .6), dice:range(-.6, .6))
+        node:add_child(gr.sphere{material = glass({1, 1, 1}, 0), centre = d, radius = dice:range(.012, .03)})
     end
-    scene:add_child(node:rotate('x', between(-75, 75)):rotate('y', between(0, 360)):rotate('z', between(-60, 60)):scale(r, r, r):translate(x, r, z))
+    scene:add_child(node:rotate('x', dice:range(-75, 75)):rotate('y', dice:range(0, 360)):rotate('z', dice:range(-60, 60)):scale(r, r, r):translate(x, r, z))
 end
 local function swirl(x, z, r, one, two)
     local material = gr.openpbr_material{specular_roughness = .03, base_color = function(p)
@@ -76,10 +75,10 @@ scene:add_child(gr.sphere{centre = {.75, .3, 2.3}, radius = .3, material = gr.me
 
 -- the garden, out of focus
 for _ = 1, 420 do
-    local far = between(40, 80)
-    local y, bright = between(-.30, .42) * far, between(0, 1) ^ 3
-    local leaf = gr.mix(gr.vec(.03, .10, .012), gr.vec(1.2, .85, .22), bright) * between(.3, 1.6)
-    scene:add_child(gr.sphere{centre = {between(-.75, .75) * far, y, -far}, radius = between(.3, 1), material = gr.material{kd = {0, 0, 0}, emission = leaf}})
+    local far = dice:range(40, 80)
+    local y, bright = dice:range(-.30, .42) * far, dice:range(0, 1) ^ 3
+    local leaf = gr.mix(gr.vec(.03, .10, .012), gr.vec(1.2, .85, .22), bright) * dice:range(.3, 1.6)
+    scene:add_child(gr.sphere{centre = {dice:range(-.75, .75) * far, y, -far}, radius = dice:range(.3, 1), material = gr.material{kd = {0, 0, 0}, emission = leaf}})
 end
 local sun = gr.vec(-.60, .62, -.72):normalize()
 gr.render{node = scene, file = 'marbles.png', width = 1600, height = 1000, eye = {.5, 3.6, 8.6}, target = {.25, .5, -.4}, fov = 31, aperture = .14, focus_point = {0, 1, .8}, blades = 7,

@@ -28,11 +28,6 @@ local polished = gr.metal_material{metal = 'chromium', roughness = .05}
 local blued = gr.openpbr_material{base_color = {.035, .075, .42}, base_metalness = 1, specular_color = {.5, .6, 1}, specular_roughness = .14}
 local ruby = gr.openpbr_material{base_color = {.55, .01, .06}, transmission_weight = .75, transmission_color = {.80, .02, .12}, transmission_depth = .22, specular_ior = 1.76, specular_roughness = 0}
 
-local function ring(radius, x, z, points)
-    local out = {}
-    for k = 0, (points or 48) - 1 do local a = 2 * math.pi * k / (points or 48) out[k + 1] = {x + radius * math.cos(a), z + radius * math.sin(a)} end
-    return out
-end
 -- an arbor with its jewel in a chaton
 local function jewel(x, y, z, r)
     scene:add_child(gr.difference(gr.cylinder{material = gold, from = {x, y - .1, z}, to = {x, y + .035, z}, radius = 1.55 * r, edge = .018},

@@ -7,7 +7,6 @@
 local sdf, random = require 'sdf', require 'random'
 seed = seed or 1
 local dice = random.new(seed)
-local function between(a, b) return a + (b - a) * dice:number() end
 local phase = 2 * math.pi * (gr.clock or 0)
 local scene = gr.node 'reef'
 
@@ -63,8 +62,8 @@ local function arm(a, length, bend, curl)
     end
 end
 for i = 0, 7 do
-    local a = 2 * math.pi * (i + .5) / 8 + between(-.12, .12)
-    arm(a, between(2.2, 2.8), between(-.4, .4), (i % 2 == 0 and 1 or -1) * between(1.0, 1.5))
+    local a = 2 * math.pi * (i + .5) / 8 + dice:range(-.12, .12)
+    arm(a, dice:range(2.2, 2.8), dice:range(-.4, .4), (i % 2 == 0 and 1 or -1) * dice:range(1.0, 1.5))
 end
 scene:add_child(gr.union(parts))
 
@@ -90,23 +89,23 @@ local function coral(x, z, size, colour)
     local material = gr.openpbr_material{base_color = colour, specular_roughness = .5, subsurface_weight = .3, subsurface_color = colour, subsurface_radius = .03}
     local function branch(p, d, r, depth)
         local q = p + d * (r * 7)
-        scene:add_child(gr.sweep(material, {p, (p + q) * .5 + gr.vec(between(-.3, .3), 0, between(-.3, .3)) * r, q}, {r, r * .85, r * .75}))
+        scene:add_child(gr.sweep(material, {p, (p + q) * .5 + gr.vec(dice:range(-.3, .3), 0, dice:range(-.3, .3)) * r, q}, {r, r * .85, r * .75}))
         if depth > 0 then
-            for _ = 1, 2 + (dice:number() < .4 and 1 or 0) do branch(q, (d + gr.vec(between(-.9, .9), between(.1, .5), between(-.9, .9))):normalize(), r * .72, depth - 1) end
+            for _ = 1, 2 + (dice:chance(.4) and 1 or 0) do branch(q, (d + gr.vec(dice:range(-.9, .9), dice:range(.1, .5), dice:range(-.9, .9))):normalize(), r * .72, depth - 1) end
         end
     end
-    for _ = 1, 3 do branch(gr.vec(x + between(-.2, .2) * size, -1.1, z + between(-.2, .2) * size), gr.vec(between(-.5, .5), 1, between(-.5, .5)):normalize(), .075 * size, 4) end
+    for _ = 1, 3 do branch(gr.vec(x + dice:range(-.2, .2) * size, -1.1, z + dice:range(-.2, .2) * size), gr.vec(dice:range(-.5, .5), 1, dice:range(-.5, .5)):normalize(), .075 * size, 4) end
 end
 coral(-2.2, -2.6, 1.5, {.75, .12, .20}) coral(2.4, -3.2, 1.7, {.80, .38, .08}) coral(.4, -4.6, 1.5, {.45, .18, .55}) coral(-4.2, -5.2, 2, {.8, .45, .15}) coral(4.6, -6, 2, {.7, .12, .25})
 for _ = 1, 110 do
-    local x, z = between(-3.6, 3.6), between(-4, 2.6)
-    local r = between(.02, .09)
-    scene:add_child(gr.ellipsoid{material = sand, centre = {x, -1.0 + .3 * r, z}, radii = {r * between(.8, 1.4), r * .7, r}})
+    local x, z = dice:range(-3.6, 3.6), dice:range(-4, 2.6)
+    local r = dice:range(.02, .09)
+    scene:add_child(gr.ellipsoid{material = sand, centre = {x, -1.0 + .3 * r, z}, radii = {r * dice:range(.8, 1.4), r * .7, r}})
 end
 local air = gr.openpbr_material{transmission_weight = 1, specular_roughness = 0, specular_ior = 1 / 1.33}
 for k = 1, 26 do
-    local t = between(0, 1)
-    scene:add_child(gr.sphere{material = air, centre = {.95 + .16 * math.sin(9 * t) + between(-.1, .1), -.6 + 3.4 * t, -.9 + between(-.15, .15)}, radius = between(.014, .05)})
+    local t = dice:range(0, 1)
+    scene:add_child(gr.sphere{material = air, centre = {.95 + .16 * math.sin(9 * t) + dice:range(-.1, .1), -.6 + 3.4 * t, -.9 + dice:range(-.15, .15)}, radius = dice:range(.014, .05)})
 end
 local deep = gr.sky_gradient{{-1, .004, .012, .018}, {0, .012, .055, .075}, {.5, .03, .13, .16}, {1, .10, .34, .36}}
 gr.render{node = scene, file = 'octopus.png', width = 1600, height = 1200, eye = {.45, 1.05, 7.0}, target = {.1, .1, 0}, fov = 28, aperture = .035, focus_point = {0, .3, .5}, background = deep,

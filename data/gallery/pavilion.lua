@@ -5,7 +5,6 @@
 local sdf, random = require 'sdf', require 'random'
 local scene = gr.node 'garden'
 local dice = random.new(12)
-local function between(a, b) return a + (b - a) * dice:number() end
 
 -- the dome: a wall of 14 cm along a gyroid, in a shell of a ball, on a ring
 local plaster = gr.openpbr_material{specular_roughness = .55, specular_weight = .4,
@@ -47,26 +46,26 @@ local function birch(x, z, height, lean)
     local tree, points, radii = gr.node 'birch', {}, {}
     for k = 0, 8 do
         local t = k / 8
-        points[k + 1] = {lean * t ^ 1.5 + .06 * between(-1, 1) * t, height * t - .3, .08 * between(-1, 1) * t}
+        points[k + 1] = {lean * t ^ 1.5 + .06 * dice:range(-1, 1) * t, height * t - .3, .08 * dice:range(-1, 1) * t}
         radii[k + 1] = .11 * (1 - t) ^ .8 + .008
     end
     tree:add_child(gr.sweep(bark, points, radii))
     for _ = 1, 46 do
-        local t = between(.28, .97)
+        local t = dice:range(.28, .97)
         local base = points[math.floor(t * 8) + 1]
-        local a, length = between(0, 2 * math.pi), (1 - t) * height * .45 + .3
+        local a, length = dice:range(0, 2 * math.pi), (1 - t) * height * .45 + .3
         local dx, dz = math.cos(a), math.sin(a)
         local branch, widths = {}, {}
         for j = 0, 4 do
             local s = j / 4
-            branch[j + 1] = {base[1] + dx * length * s ^ .8 * .55 + .09 * between(-1, 1) * s, base[2] + length * (1.05 * s - .18 * s * s), base[3] + dz * length * s ^ .8 * .55 + .09 * between(-1, 1) * s}
+            branch[j + 1] = {base[1] + dx * length * s ^ .8 * .55 + .09 * dice:range(-1, 1) * s, base[2] + length * (1.05 * s - .18 * s * s), base[3] + dz * length * s ^ .8 * .55 + .09 * dice:range(-1, 1) * s}
             widths[j + 1] = .016 * (1 - s) * (1.2 - t) + .003
         end
         tree:add_child(gr.sweep(twig, branch, widths))
         for j = 3, 5 do                            -- twigs that hang
-            local b, out = branch[j], between(-.25, .25) * length
+            local b, out = branch[j], dice:range(-.25, .25) * length
             tree:add_child(gr.sweep(twig, {b, {b[1] + dx * .12 * length + out * dz, b[2] + .10 * length, b[3] + dz * .12 * length - out * dx},
-                {b[1] + dx * .22 * length + 1.6 * out * dz, b[2] - between(.0, .22) * length, b[3] + dz * .22 * length - 1.6 * out * dx}}, {.006, .004, .0025}))
+                {b[1] + dx * .22 * length + 1.6 * out * dz, b[2] - dice:range(.0, .22) * length, b[3] + dz * .22 * length - 1.6 * out * dx}}, {.006, .004, .0025}))
         end
     end
     scene:add_child(tree:translate(x, ground(x, z), z))
@@ -91,8 +90,8 @@ scene:add_child(walker:scale(1.2, 1.2, 1.2):translate(.42, ground(.42, 4.05) + .
 
 -- falling snow, the lamp on its stand
 for _ = 1, 420 do
-    local z = between(-7, 7.4)
-    scene:add_child(gr.sphere{material = snow, centre = {between(-.42, .42) * (13 - z) + .6, between(.05, 4.4), z}, radius = between(.010, .02)})
+    local z = dice:range(-7, 7.4)
+    scene:add_child(gr.sphere{material = snow, centre = {dice:range(-.42, .42) * (13 - z) + .6, dice:range(.05, 4.4), z}, radius = dice:range(.010, .02)})
 end
 scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {44, 23, 8.5}}, centre = {-.1, .92, -.2}, radius = .26})
 scene:add_child(gr.cylinder{material = twig, from = {-.1, -.1, -.2}, to = {-.1, .7, -.2}, radius = .03})

@@ -3,10 +3,9 @@
 -- LARGE: --spp 64
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
 -- crests; the buoy has rust, a cage, a lamp, and a gull.
-local random, sdf = require 'random', require 'sdf'
+local random = require 'random'
 local scene = gr.node 'sea'
 local dice = random.new(3)
-local function between(a, b) return a + (b - a) * dice:number() end
 local cells = quick and 200 or 1500               -- -D quick=true makes a draft
 local sun = gr.vec(.16, .075, -1):normalize()
 
@@ -14,8 +13,8 @@ local sun = gr.vec(.16, .075, -1):normalize()
 local waves = {}
 for k = 1, 26 do
     local length = 9 * .80 ^ k + .16
-    local angle = math.rad(68 + between(-38, 38))
-    waves[k] = {math.cos(angle) / length, math.sin(angle) / length, .0078 * length ^ 1.02, between(0, 1)}
+    local angle = math.rad(68 + dice:range(-38, 38))
+    waves[k] = {math.cos(angle) / length, math.sin(angle) / length, .0078 * length ^ 1.02, dice:range(0, 1)}
 end
 local function height(x, z)
     local h = 0
@@ -69,7 +68,7 @@ local function gull(x, y, z, size, flap, turn)
     local bird = gr.node 'gull'
     bird:add_child(gr.sweep(feathers, {{0, 0, -.42}, {0, .03, -.2}, {0, .04, .1}, {0, .05, .42}, {0, .04, .55}}, {.01, .08, .11, .06, .01}))
     for side = -1, 1, 2 do
-        bird:add_child(gr.sweep(feathers, {{0, .05, .1}, {side * .45, .05 + .55 * flap, .16}, {side * 1.0, .05 + .45 * flap, .02}, {side * 1.5, .05 + .18 * flap, -.2}}, {.055, .05, .035, .004}):scale(1, 1, 1))
+        bird:add_child(gr.sweep(feathers, {{0, .05, .1}, {side * .45, .05 + .55 * flap, .16}, {side * 1.0, .05 + .45 * flap, .02}, {side * 1.5, .05 + .18 * flap, -.2}}, {.055, .05, .035, .004}))
     end
     scene:add_child(bird:scale(size, size, size):rotate('z', 12):rotate('y', turn):translate(x, y, z))
 end

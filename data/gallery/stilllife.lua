@@ -6,7 +6,6 @@
 local random, patterns = require 'random', require 'patterns'
 local scene = gr.node 'still life'
 local dice = random.new(14)
-local function between(a, b) return a + (b - a) * dice:number() end
 
 -- the table, the wall, the cloth: a fall of folds over the edge, creases from the cupboard on top
 local oak = gr.openpbr_material{specular_roughness = .42, base_color = function(p)
@@ -82,16 +81,16 @@ local kinds = {grape_of(.10, .018, .055), grape_of(.15, .022, .06), grape_of(.06
 local stalk = gr.openpbr_material{base_color = {.16, .12, .04}, specular_roughness = .6}
 local placed = {}
 for _ = 1, 2600 do
-    local t = between(0, 1)
-    local radius, spread = between(.135, .165), .50 * (1 - t) ^ .6 + .08
-    local a, q = between(0, 2 * math.pi), between(0, 1) ^ .5
+    local t = dice:range(0, 1)
+    local radius, spread = dice:range(.135, .165), .50 * (1 - t) ^ .6 + .08
+    local a, q = dice:range(0, 2 * math.pi), dice:range(0, 1) ^ .5
     local c = {-.75 - 1.35 * t + spread * q * math.cos(a) * .6, 0, 1.05 + .35 * t + spread * q * math.sin(a)}
-    c[2] = radius + .06 + between(0, .62) * (1 - t) * (1 - q * q)
+    c[2] = radius + .06 + dice:range(0, .62) * (1 - t) * (1 - q * q)
     local free = true
     for _, g in ipairs(placed) do free = free and (g[1] - c[1]) ^ 2 + (g[2] - c[2]) ^ 2 + (g[3] - c[3]) ^ 2 > (.93 * (g[4] + radius)) ^ 2 end
     if free and #placed < 58 then
         placed[#placed + 1] = {c[1], c[2], c[3], radius}
-        scene:add_child(gr.ellipsoid{material = kinds[dice:number() < .5 and 1 or (dice:number() < .5 and 2 or 3)], centre = c, radii = {radius, radius * between(1.0, 1.12), radius}})
+        scene:add_child(gr.ellipsoid{material = kinds[dice:number() < .5 and 1 or (dice:number() < .5 and 2 or 3)], centre = c, radii = {radius, radius * dice:range(1.0, 1.12), radius}})
     end
 end
 scene:add_child(gr.sweep(stalk, {{-.55, .75, 1.0}, {-.25, .62, .85}, {.0, .40, .62}, {.12, .34, .45}}, {.022, .026, .03, .045}))
