@@ -1,13 +1,14 @@
 # Renders NAME.glb in Cycles and compares it with gray's NAME.exr and NAME-mask.exr, for each NAME after --.
 # A pixel counts if a light shines evenly on the 3 x 3 around it. Exit status 1: more than 0.1 % of the picture is
 # covered otherwise, or the colours differ by more than 2 % in the median.
-import bpy
-import numpy
+import os
 import sys
 
-for name, kind in (('bool', bool), ('float', float), ('int', int), ('object', object)):
-    if name not in numpy.__dict__:
-        setattr(numpy, name, kind)  # what the importer of Blender 3.4 calls, newer versions do not have
+import bpy
+import numpy
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), '../data/gltf'))
+from blender import open_glb  # noqa: E402
 
 
 def load(path):
@@ -17,8 +18,7 @@ def load(path):
 
 
 def render(name):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=name + '.glb')
+    open_glb(name + '.glb')
     scene = bpy.context.scene
     scene.camera = [o for o in scene.objects if o.type == 'CAMERA'][0]
     scene.render.engine = 'CYCLES'

@@ -1,17 +1,15 @@
 # Opens what gray wrote, gives the outer planet a moon and a tint, and writes the animation again.
 # blender -b --python orrery.py -- orrery.glb orrery-back.glb
+import os
 import sys
 
 import bpy
-import numpy
 
-for name, kind in (('bool', bool), ('float', float), ('int', int), ('object', object)):
-    if name not in numpy.__dict__:
-        setattr(numpy, name, kind)  # the importer of Blender 3.4 asks for them
+sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+from blender import open_glb, save_glb  # noqa: E402
 
 source, target = sys.argv[sys.argv.index('--') + 1:][:2]
-bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_scene.gltf(filepath=source)
+open_glb(source)
 
 planet = bpy.data.objects['outer']
 paint = planet.data.materials[0].copy()
@@ -28,4 +26,4 @@ moon.location = (1.7, 0, 0.6)
 moon.data.materials.append(paint)
 bpy.ops.object.shade_smooth()
 
-bpy.ops.export_scene.gltf(filepath=target, export_format='GLB', export_cameras=True, export_lights=True)
+save_glb(target)
