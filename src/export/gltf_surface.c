@@ -14,6 +14,7 @@
 #include "mesh/mesh.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"
+#include "shape/sweep.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,6 +54,7 @@ struct surface_grid {
     const void *context;
     uint32_t columns, rows, material;
     double corner[2], size[2]; /* in the unit square */
+    bool falls;                /* the diagonal of a cell, from the left */
 };
 
 static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid) {
@@ -68,7 +70,8 @@ static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid) {
     }
     for (uint32_t i = 0; ok && i < grid->columns * grid->rows; i++) {
         uint32_t a = first + i / grid->columns * width + i % grid->columns, d = a + width;
-        ok = add_triangle(s, a, a + 1, d + 1, grid->material) && add_triangle(s, a, d + 1, d, grid->material);
+        ok = add_triangle(s, a, a + 1, grid->falls ? d : d + 1, grid->material) &&
+             add_triangle(s, grid->falls ? a + 1 : a, d + 1, d, grid->material);
     }
     s->has_normals = s->is_unfolded = true;
     return ok;
@@ -399,7 +402,8 @@ static bool add_height_field(struct gltf_surface *s, const struct height_field *
                                 .columns = h.field.columns - 1,
                                 .rows = h.field.rows - 1,
                                 .material = material,
-                                .size = {1, h.field.open ? 1 : 0.75}};
+                                .size = {1, h.field.open ? 1 : 0.75},
+                                .falls = true};
     bool ok = add_grid(s, &grid);
     for (int i = 0; ok && i < 4 && !h.field.open; i++) {
         h.corner = vec3_make(i == 1 || i == 2, 0, i < 2);
@@ -426,36 +430,88 @@ static bool add_height_field(struct gltf_surface *s, const struct height_field *
     return ok || error_no_memory(error, "a height field");
 }
 
-/* A piece of a curve, which faces every ray, is a round tube. */
+/* A piece of a sweep, or of a curve, which faces every ray: the balls along it touch their envelope in circles. */
 struct tube {
-    double points[4][4];
+    double points[4][4]; /* of x, y, z and of the radius, the four Bezier points */
 };
 
-static void tube_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
-    const double(*tube)[4] = (const double(*)[4])((const struct tube *)context)->points;
-    double w = 1 - v, at[4], to[3];
-    for (int k = 0; k < 4; k++)
-        at[k] = w * w * (w * tube[0][k] + 3 * v * tube[1][k]) + v * v * (3 * w * tube[2][k] + v * tube[3][k]);
-    for (int k = 0; k < 3; k++)
-        to[k] = w * w * (tube[1][k] - tube[0][k]) + 2 * w * v * (tube[2][k] - tube[1][k]) +
-                v * v * (tube[3][k] - tube[2][k]);
-    struct vec3 along = vec3_make(to[0], to[1], to[2]), x, y;
-    along = vec3_max_abs(along) > 0 ? vec3_normalize(along) : y_axis;
-    frame_tangents(along, &x, &y);
-    y = vec3_cross(along, x);
-    *normal = circle_at(u == 1 ? 0 : u, x, y);
-    *point = vec3_add_scaled(vec3_make(at[0], at[1], at[2]), *normal, at[3]);
+/* The ball at w, and how its place and radius grow there. */
+static struct vec3 tube_ball(const struct tube *tube, double w, double *radius, struct vec3 *along, double *widening) {
+    const double(*p)[4] = tube->points;
+    double at[4], to[4], v = 1 - w;
+    for (int k = 0; k < 4; k++) {
+        at[k] = v * v * (v * p[k][0] + 3 * w * p[k][1]) + w * w * (3 * v * p[k][2] + w * p[k][3]);
+        to[k] = 3 * (v * v * (p[k][1] - p[k][0]) + 2 * v * w * (p[k][2] - p[k][1]) + w * w * (p[k][3] - p[k][2]));
+    }
+    *radius = at[3];
+    *along = vec3_make(to[0], to[1], to[2]);
+    *widening = to[3];
+    return vec3_make(at[0], at[1], at[2]);
 }
 
-static bool add_curve(struct gltf_surface *s, const struct curve *curve, uint32_t material) {
+static void tube_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
+    struct vec3 along, x, y;
+    double radius, widening;
+    *point = tube_ball(context, v, &radius, &along, &widening);
+    double speed = vec3_length(along), slope = speed > 0 ? math_min(math_max(widening / speed, -1), 1) : 0;
+    along = speed > 0 ? vec3_scale(along, 1 / speed) : y_axis;
+    frame_tangents(along, &x, &y);
+    y = vec3_cross(along, x);
+    *normal = vec3_scale(circle_at(u == 1 ? 0 : u, x, y), sqrt(1 - slope * slope));
+    *normal = vec3_add_scaled(*normal, along, -slope);
+    *point = vec3_add_scaled(*point, *normal, radius);
+}
+
+struct ball {
+    struct vec3 centre;
+    double radius;
+};
+
+static void end_ball_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
+    const struct ball *ball = context;
+    ball_at(NULL, u, v, point, normal);
+    *point = vec3_add_scaled(ball->centre, *normal, ball->radius);
+}
+
+static bool add_ball(struct gltf_surface *s, const struct ball *ball, uint32_t columns, uint32_t material) {
+    return ball->radius == 0 || add_grid(s, &(struct surface_grid){.at = end_ball_at,
+                                                                   .context = ball,
+                                                                   .columns = columns,
+                                                                   .rows = columns / 2,
+                                                                   .material = material,
+                                                                   .size = {1, 1}});
+}
+
+/* Tubes; a sweep has balls where its path ends or turns. */
+static bool add_tubes(struct gltf_surface *s, const struct shape *shape, double tolerance, uint32_t material) {
+    const bool is_sweep = shape->kind == SHAPE_SWEEP;
+    struct vec3 before = {0, 0, 0};
+    struct ball last = {.radius = 0};
     struct tube tube;
     bool ok = true;
-    for (uint32_t i = 0; ok && curve_piece_tube(curve, i, tube.points); i++)
-        ok = add_grid(
-            s, &(struct surface_grid){
-                   .at = tube_at, .context = &tube, .columns = 8, .rows = 4, .material = material, .size = {1, 1}});
+    for (uint32_t i = 0; ok && (is_sweep ? sweep_piece_tube(shape->sweep, i, tube.points)
+                                         : curve_piece_tube(shape->curve, i, tube.points));
+         i++) {
+        struct vec3 along;
+        struct ball first;
+        double unused;
+        first.centre = tube_ball(&tube, 0, &first.radius, &along, &unused);
+        const uint32_t columns = is_sweep ? chords(tolerance / math_max(2 * first.radius, tolerance)) : 8;
+        bool goes_on = vec3_length(vec3_sub(first.centre, last.centre)) <= 1e-9 * first.radius &&
+                       vec3_dot(before, along) > 0.999 * vec3_length(before) * vec3_length(along);
+        if (is_sweep && !goes_on)
+            ok = add_ball(s, &last, columns, material) && add_ball(s, &first, columns, material);
+        ok = ok && add_grid(s, &(struct surface_grid){.at = tube_at,
+                                                      .context = &tube,
+                                                      .columns = columns,
+                                                      .rows = 4,
+                                                      .material = material,
+                                                      .size = {1, 1}});
+        last.centre = tube_ball(&tube, 1, &last.radius, &before, &unused);
+    }
+    ok = ok && (!is_sweep || add_ball(s, &last, chords(tolerance / math_max(2 * last.radius, tolerance)), material));
     s->is_unfolded = false;
-    s->is_open = true;
+    s->is_open = !is_sweep;
     return ok;
 }
 
@@ -581,6 +637,7 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
     const double share = source->share;
     const struct shape *shape = &prototype->geometry.shape;
     const uint32_t material = prototype->material;
+    const struct box box = geometry_bounds(&prototype->geometry);
     struct arena arena = {0};
     bool ok = true, is_solid = prototype->geometry.csg != NULL;
     *out =
@@ -619,7 +676,8 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
         ok = add_height_field(out, shape->height_field, &arena, material, error);
         break;
     case SHAPE_CURVE:
-        ok = add_curve(out, shape->curve, material);
+    case SHAPE_SWEEP:
+        ok = add_tubes(out, shape, share * vec3_max_abs(vec3_sub(box.max, box.min)), material);
         break;
     case SHAPE_MESH:
         ok = add_mesh(out, shape->mesh, prototype);
@@ -629,7 +687,6 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
     case SHAPE_LATHE:
     case SHAPE_PRISM:
     case SHAPE_BEVELLED:
-    case SHAPE_SWEEP:
     case SHAPE_BLOB:
     case SHAPE_IMPLICIT:
         is_solid = true;
@@ -639,7 +696,6 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
         (void)error_no_memory(error, "the surfaces of a model");
     ok = ok && (!is_solid || out->why || add_solid(out, source, &arena, error));
     arena_destroy(&arena);
-    struct box box = geometry_bounds(&prototype->geometry);
     double stretch = out->is_unit ? transform_stretch(&out->object_from_surface) : 1;
     out->tolerance = math_max(share, source->solid_share) * vec3_max_abs(vec3_sub(box.max, box.min)) / stretch;
     return ok;

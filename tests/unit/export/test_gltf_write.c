@@ -252,8 +252,63 @@ TEST(the_frames_of_an_animation_are_the_keys_of_a_glb) {
     }
 }
 
+/* A rectangle with the picture of a script. */
+static void check_copied_picture(void) {
+    struct model model;
+    expect("gr.render{node = gr.sphere{}, width = 8, height = 6, file = 'ball.png'}\n", "scene.lua", 0, NULL);
+    expect("local ball = gr.texture{file = 'ball.png', encoding = 'srgb'}\n"
+           "gr.render{width = 8, height = 8, colour = 'linear', node = gr.rectangle{\n"
+           "    material = gr.openpbr_material{base_color = ball}}}\n",
+           "-o copied.glb scene.lua", 0, NULL);
+    struct test_picture ball = test_read_picture(test_path("ball.png"));
+    read_file(&model, "copied.glb", -1);
+    const struct image *image = model_materials(&model)[0].map_kd.image;
+    CHECK(image && image_width(image) == 8 && image_height(image) == 6);
+    for (uint32_t i = 0; image && i < 48; i++) {
+        struct rgba texel = image_texel(image, i % 8, i / 8);
+        CHECK_NEAR(255 * texel.r, ball.rgb[3 * i], 1e-6);
+        CHECK_NEAR(255 * texel.b, ball.rgb[3 * i + 2], 1e-6);
+    }
+    free(ball.rgb);
+    model_destroy(&model);
+}
+
+/* Shapes of one colour that no light changes (KHR_materials_unlit), before others; one sample for a pixel. */
+TEST(a_glb_that_gray_reads_back_has_the_outlines_of_the_script) {
+    static const char scene[] =
+        "local red = gr.material{kd = {1, 0, 0}, lit = false}\n"
+        "local function at(i, node) return node:set_material(red):translate(3 * (i % 4) - 4.5, 3 * (i // 4) - 3, 0) "
+        "end\n"
+        "gr.render{eye = {3, 4, 16}, target = {0, 0, 0}, fov = 36, node = gr.node{children = {at(0, gr.sphere{}),\n"
+        "    at(1, gr.torus{major = .8, minor = .3}), at(2, gr.cone{from = {0, 1, 0}, to = {0, -1, 0}}),\n"
+        "    at(3, gr.difference{gr.sphere{}, gr.box{min = {0, 0, 0}, max = {2, 2, 2}}}),\n"
+        "    at(4, gr.cylinder{from = {0, -1, 0}, to = {.5, 1, 0}, radius = .6}), at(5, gr.disc{radius = 1, normal = "
+        "{0, 1, 1}}),\n"
+        "    at(6, gr.prism{outline = {{-1, -1}, {1, -1}, {0, 1}}, to = .5}), at(7, gr.box{min = {-1, -.5, -.5}, max = "
+        "{1, .5, .5}}:rotate('z', 30)),\n"
+        "    at(8, gr.height_field{heights = {{.2, .8, .3}, {.5, .1, .9}}}), at(9, gr.sweep{points = {{-1, 0, 0}, {0, "
+        "1, 0}, {1, 0, 0}}, radii = .2}),\n"
+        "    at(10, gr.ellipsoid{radii = {1, .5, .7}}), at(11, gr.polygon{points = {{-1, -1, 0}, {1, -1, 0}, {0, .2, "
+        "0}, {1, 1, 0}, {-1, 1, 0}}})}}}\n";
+    expect(scene, "-ss 1 --size 160x120 -o script.png scene.lua", 0, NULL);
+    expect(scene, "-o x.glb scene.lua", 0, NULL);
+    expect(scene, "-ss 1 --integrator whitted --size 160x120 -o back.png x.glb", 0, NULL);
+    struct test_picture a = test_read_picture(test_path("script.png")), b = test_read_picture(test_path("back.png"));
+    int covered = 0, differ = 0;
+    for (int i = 0; i < 160 * 120; i++) {
+        bool first = a.rgb[3 * i + 1] == 0, second = b.rgb[3 * i + 1] == 0;
+        covered += first;
+        differ += first != second;
+    }
+    if (covered < 3000 || differ > 0.01 * covered)
+        test_fail(__FILE__, __LINE__, "%d of %d pixels differ", differ, covered);
+    free(a.rgb);
+    free(b.rgb);
+}
+
 TEST(patterns_and_functions_are_baked_and_pictures_are_copied) {
     struct model model;
+    check_copied_picture();
     expect("local function stripes(p) if p.x > 0 then return {1, 0, 0} end return {0, 0, 1} end\n"
            "gr.render{width = 8, height = 8, colour = 'linear', node = gr.box{min = {-1, -1, -1}, max = {1, 1, 1},\n"
            "    material = gr.openpbr_material{base_color = stripes}}}\n",
