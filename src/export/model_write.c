@@ -4,10 +4,11 @@
 #include "export/model_write.h"
 
 #include "base/key_map.h"
+#include "base/mem.h"
+#include "export/gltf_file_internal.h"
 #include "export/triangles_internal.h"
 #include "export/zip_internal.h"
 #include "image/transfer.h"
-#include "math/box.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -202,52 +203,55 @@ static bool write_coloured_ply(const struct coloured_mesh *mesh, struct list *ou
     return !w.failed;
 }
 
-/* One mesh of colours that are light already (KHR_materials_unlit), in the two chunks of a GLB (glTF 2.0, 4.4). */
-static bool write_coloured_glb(const struct coloured_mesh *mesh, struct list *out) {
-    enum { FLOATS = 5126, WORDS = 5125, VERTEX = 24 };
+/* The numbers of a vertex, three each, as an attribute. */
+static uint32_t add_floats(struct gltf_file *file, const struct coloured_mesh *mesh, bool is_colour) {
     const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
-    const size_t points = mesh->point_count, indices = 3 * mesh->triangle_count;
-    struct list text = {0};
-    struct writer w = {.out = &text};
-    struct box box = box_empty();
-    for (size_t i = 0; i < points; i++)
-        box = box_add_point(box, mesh->points[i]);
-    print(&w,
-          "%s\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_materials_unlit\"],"
-          "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"materials\":[{\"doubleSided\":true,"
-          "\"extensions\":{\"KHR_materials_unlit\":{}}}],\"meshes\":[{\"primitives\":[{\"material\":0,\"indices\":2,"
-          "\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}]}],",
-          model_glb_header);
-    print(&w, "\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[", VERTEX * points + 4 * indices);
-    print(&w, "{\"buffer\":0,\"byteLength\":%zu,\"byteStride\":%d,\"target\":34962},", VERTEX * points, VERTEX);
-    print(&w, "{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}],\"accessors\":[", VERTEX * points,
-          4 * indices);
-    print(&w,
-          "{\"bufferView\":0,\"componentType\":%d,\"count\":%zu,\"type\":\"VEC3\",\"min\":[%.9g,%.9g,%.9g],"
-          "\"max\":[%.9g,%.9g,%.9g]},",
-          FLOATS, points, (double)(float)box.min.x, (double)(float)box.min.y, (double)(float)box.min.z,
-          (double)(float)box.max.x, (double)(float)box.max.y, (double)(float)box.max.z);
-    print(&w, "{\"bufferView\":0,\"byteOffset\":12,\"componentType\":%d,\"count\":%zu,\"type\":\"VEC3\"},", FLOATS,
-          points);
-    print(&w, "{\"bufferView\":1,\"componentType\":%d,\"count\":%zu,\"type\":\"SCALAR\"}]}%*s", WORDS, indices, 3, "");
-    text.count -= text.count % 4;
-    const size_t sizes[2] = {text.count, VERTEX * points + 4 * indices};
-    w.out = out;
-    print(&w, "glTF");
-    put_number(&w, 2, 4);
-    put_number(&w, (uint32_t)(28 + sizes[0] + sizes[1]), 4);
-    put_number(&w, (uint32_t)sizes[0], 4);
-    print(&w, "JSON");
-    put(&w, text.items, sizes[0]);
-    put_number(&w, (uint32_t)sizes[1], 4);
-    put(&w, "BIN", 4);
-    for (size_t i = 0; i < 6 * points; i++)
-        put_float(&w, i % 6 < 3 ? vec3_get(mesh->points[i / 6], (int)(i % 6))
-                                : transfer_decode(srgb, mesh->colours[i / 6][i % 6 - 3] / 255.0));
-    for (size_t i = 0; i < indices; i++)
-        put_number(&w, mesh->triangles[i / 3][i % 3], 4);
-    list_destroy(&text);
-    return !w.failed;
+    const size_t count = mesh->point_count;
+    float *numbers = mem_alloc((3 * count + 1) * sizeof *numbers);
+    for (size_t i = 0; numbers && i < 3 * count; i++)
+        numbers[i] = (float)(is_colour ? transfer_decode(srgb, mesh->colours[i / 3][i % 3] / 255.0)
+                                       : vec3_get(mesh->points[i / 3], (int)(i % 3)));
+    uint32_t accessor = numbers ? gltf_add_floats(file, numbers, count, 3, GLTF_VERTICES) : GLTF_NONE;
+    file->failed = !numbers || file->failed;
+    mem_free(numbers);
+    return accessor;
+}
+
+/* One mesh of colours that are light already (KHR_materials_unlit). */
+static bool write_coloured_glb(const struct coloured_mesh *mesh, struct list *out) {
+    struct gltf_file file = {0};
+    struct gltf_text text = {0};
+    struct list roots = {0};
+    gltf_open(&text, NULL, '{');
+    gltf_true(&text, "doubleSided");
+    gltf_open(&text, "extensions", '{');
+    gltf_open_extension(&file, &text, GLTF_UNLIT);
+    for (int i = 0; i < 3; i++)
+        gltf_close(&text, '}');
+    const uint32_t material = gltf_add(&file, GLTF_MATERIALS, &text);
+    gltf_open(&text, NULL, '{');
+    gltf_open(&text, "primitives", '[');
+    gltf_open(&text, NULL, '{');
+    gltf_open(&text, "attributes", '{');
+    gltf_number(&text, "POSITION", add_floats(&file, mesh, false));
+    gltf_number(&text, "COLOR_0", add_floats(&file, mesh, true));
+    gltf_close(&text, '}');
+    gltf_number(&text, "indices",
+                gltf_add_indices(&file, (const uint32_t *)mesh->triangles, 3 * mesh->triangle_count,
+                                 (uint32_t)mesh->point_count));
+    gltf_number(&text, "material", material);
+    gltf_close(&text, '}');
+    gltf_close(&text, ']');
+    gltf_close(&text, '}');
+    const uint32_t number = gltf_add(&file, GLTF_MESHES, &text);
+    gltf_open(&text, NULL, '{');
+    gltf_number(&text, "mesh", number);
+    gltf_close(&text, '}');
+    bool ok = list_add_index(&roots, gltf_add(&file, GLTF_NODES, &text)) && gltf_file_write(&file, true, &roots, out);
+    list_destroy(&text.bytes);
+    list_destroy(&roots);
+    gltf_file_destroy(&file);
+    return ok;
 }
 
 bool coloured_mesh_write(const struct coloured_mesh *mesh, enum model_format format, struct list *out) {
