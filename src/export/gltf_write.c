@@ -573,7 +573,7 @@ static void visit_tree(struct visit *visit, uint32_t root) {
 
 /* A node that looks along -z, with y upwards. */
 static struct affine looking(struct vec3 from, struct vec3 along, struct vec3 up) {
-    struct vec3 z = vec3_normalize(vec3_negate(along)), x = vec3_cross(up, z), other;
+    struct vec3 z = vec3_normalize(vec3_negate(along)), x = vec3_cross(vec3_normalize(up), z), other;
     if (vec3_max_abs(x) > 1e-9)
         x = vec3_normalize(x);
     else

@@ -1,6 +1,6 @@
 /* jansson allocates from an arena, which is faster than a block for each value, and its memory is bounded before it
- * starts. It refuses NaN, infinities, numbers
- * that do not fit, zero bytes, text that is not UTF-8, and more than 2048 values in each other. */
+ * starts. It refuses NaN, infinities, numbers that do not fit, zero bytes, text that is not UTF-8, and more than 2048
+ * values in each other. */
 #include "formats/json_text.h"
 
 #ifndef HAVE_JANSSON
