@@ -3,12 +3,9 @@
 #include "export/gltf_file_internal.h"
 
 #include "base/hash.h"
+#include "base/json_write.h"
 #include "base/list.h"
-#include "base/terminal_text.h"
 #include "formats/model_format.h"
-
-#include <stdio.h>
-#include <stdlib.h>
 
 static const char *const list_names[] = {GLTF_LISTS(LIST_WORD)};
 static const char *const extension_names[] = {GLTF_EXTENSIONS(LIST_WORD)};
@@ -24,18 +21,10 @@ static void put_word(struct gltf_text *text, const char *word) {
 }
 
 static void put_quoted(struct gltf_text *text, const char *string) {
+    char piece[JSON_PIECE];
     put(text, "\"", 1);
-    for (const unsigned char *at = (const unsigned char *)string; *at;) {
-        char escape[8];
-        size_t length = utf8_length(at);
-        if (*at < ' ' || *at == '"' || *at == '\\') {
-            (void)snprintf(escape, sizeof escape, "\\u%04x", *at);
-            put_word(text, escape);
-        } else {
-            put(text, length ? (const char *)at : "?", length ? length : 1);
-        }
-        at += length ? length : 1;
-    }
+    for (size_t taken; *string; string += taken)
+        put(text, piece, json_piece(string, piece, &taken));
     put(text, "\"", 1);
 }
 
@@ -60,12 +49,8 @@ void gltf_close(struct gltf_text *text, char bracket) {
 }
 
 void gltf_number(struct gltf_text *text, const char *key, double number) {
-    char digits[32];
-    for (int precision = 15; precision <= 17; precision++) {
-        (void)snprintf(digits, sizeof digits, "%.*g", precision, number);
-        if (strtod(digits, NULL) == number)
-            break;
-    }
+    char digits[JSON_NUMBER];
+    json_number(digits, number);
     put_key(text, key);
     put_word(text, digits);
 }

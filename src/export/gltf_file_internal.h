@@ -51,7 +51,7 @@ void gltf_close(struct gltf_text *text, char bracket);
 /* The shortest decimal number that reads back equal. */
 void gltf_number(struct gltf_text *text, const char *key, double number);
 void gltf_tuple(struct gltf_text *text, const char *key, const double *numbers, int count);
-/* Quoted; bytes that are no UTF-8 become '?'. */
+/* Quoted; bytes that are no UTF-8 become U+FFFD. */
 void gltf_string(struct gltf_text *text, const char *key, const char *string);
 void gltf_true(struct gltf_text *text, const char *key);
 

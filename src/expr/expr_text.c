@@ -4,6 +4,7 @@
  * graph has a meaning only within its loop. */
 #include "expr/expr_text.h"
 
+#include "base/json_write.h"
 #include "base/mem.h"
 
 #include <stdio.h>
@@ -29,12 +30,8 @@ struct text {
 };
 
 static void put_float(struct text *t, double x) {
-    char words[32];
-    for (int digits = 15; digits <= 17; digits++) {
-        (void)snprintf(words, sizeof words, "%.*g", digits, x);
-        if (strtod(words, NULL) == x)
-            break;
-    }
+    char words[JSON_NUMBER];
+    json_number(words, x);
     document_add(t->out, " %s", words);
 }
 

@@ -2,6 +2,8 @@
 #include "script/scene_write_internal.h"
 
 #include "base/document.h"
+#include "base/json_write.h"
+#include "base/terminal_text.h"
 #include "expr/expr_text.h"
 #include "sandbox/embedded.h"
 #include "script/gr_model_internal.h"
@@ -42,24 +44,11 @@ static int quote(lua_State *L) {
     luaL_Buffer out;
     luaL_buffinit(L, &out);
     luaL_addchar(&out, '"');
-    for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)text[i];
-        char escape[8];
-        size_t more = c < 0x80 ? 0 : c >= 0xf0 && c < 0xf5 ? 3 : c >= 0xe0 ? 2 : c >= 0xc2 ? 1 : 9;
-        if (c >= 0xf5 || more > length - i - 1)
+    for (size_t i = 0, taken; i < length; i += taken) {
+        char piece[JSON_PIECE];
+        if (utf8_length((const unsigned char *)text + i) == 0)
             return 0;
-        for (size_t k = 1; k <= more; k++)
-            if (((unsigned char)text[i + k] & 0xc0) != 0x80)
-                return 0;
-        if (c == '"' || c == '\\')
-            luaL_addchar(&out, '\\');
-        if (c < ' ') {
-            (void)snprintf(escape, sizeof escape, "\\u%04x", c);
-            luaL_addstring(&out, escape);
-        } else {
-            luaL_addlstring(&out, text + i, more + 1);
-        }
-        i += more;
+        luaL_addlstring(&out, piece, json_piece(text + i, piece, &taken));
     }
     luaL_addchar(&out, '"');
     luaL_pushresult(&out);
@@ -77,11 +66,7 @@ static int number_text(lua_State *L) {
     else if (x == floor(x) && fabs(x) < 1e15)
         (void)snprintf(text, sizeof text, "%.0f", x);
     else
-        for (int digits = 15; digits <= 17; digits++) {
-            (void)snprintf(text, sizeof text, "%.*g", digits, x);
-            if (strtod(text, NULL) == x)
-                break;
-        }
+        json_number(text, x);
     lua_pushstring(L, text);
     return 1;
 }

@@ -4,6 +4,7 @@
 #include "session/text.h"
 #include "math/colour.h"
 
+#include "base/json_write.h"
 #include "base/terminal_text.h"
 #include "session/standard_streams.h"
 
@@ -109,26 +110,11 @@ int text_print_error(const struct error *error) {
     return (int)error->kind;
 }
 
-/* The beginning of a JSON string: the bytes for the next *taken bytes of a text; returns how many. */
-static size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
-    const unsigned char *at = (const unsigned char *)text;
-    size_t length = utf8_length(at);
-    *taken = length ? length : 1;
-    if (length == 0)
-        return (size_t)snprintf(piece, 8, "\\ufffd");
-    if (*at == '"' || *at == '\\')
-        return (size_t)snprintf(piece, 8, "\\%c", *at);
-    if (*at == '\t' || is_control(at))
-        return (size_t)snprintf(piece, 8, "\\u%04x", (unsigned)utf8_code(at, length) & 0xffff);
-    memcpy(piece, at, length);
-    return length;
-}
-
 void text_print_json(FILE *stream, const char *text) {
-    char piece[8];
+    char piece[JSON_PIECE];
     (void)fputc('"', stream);
     for (size_t taken; *text; text += taken) {
-        size_t size = text_json_piece(text, piece, &taken);
+        size_t size = json_piece(text, piece, &taken);
         (void)fwrite(piece, 1, size, stream);
     }
     (void)fputc('"', stream);
@@ -190,7 +176,7 @@ static void add_json(struct text_writer *writer, const char *text) {
     char piece[8];
     add(writer, "\"", 1);
     for (const char *at = text; *at;) {
-        size_t taken, size = text_json_piece(at, piece, &taken);
+        size_t taken, size = json_piece(at, piece, &taken);
         add(writer, piece, size);
         at += taken;
     }
