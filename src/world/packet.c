@@ -6,6 +6,7 @@
 
 #include "accel/beam.h"
 #include "math/lanes.h"
+#include "shape/implicit.h"
 #include "world/world_internal.h"
 
 #include <string.h>
@@ -115,7 +116,37 @@ static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     }
 }
 
+/* A solid that searches for the crossings of many rays at once, or NULL. */
+static const struct implicit *solid_of_packets(const struct packet_search *s, uint32_t index) {
+    const struct geometry *geometry = primitive_geometry(s->world, index);
+    const bool is_implicit = !geometry->csg && geometry->shape.kind == SHAPE_IMPLICIT;
+    return is_implicit && implicit_takes_packets(geometry->shape.implicit, &s->scratch->geom) ? geometry->shape.implicit
+                                                                                              : NULL;
+}
+
+static void try_solid(struct packet_search *s, uint32_t index, const struct implicit *solid, uint64_t active) {
+    struct ray rays[PACKET_RAYS];
+    struct crossing crossings[PACKET_RAYS];
+    for (uint64_t rest = active; rest; rest &= rest - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(rest);
+        rays[i] = ray_packet_get(s->rays, i);
+        rays[i].t_max = s->limit[i];
+        rays[i] = primitive_ray(s->world, index, &rays[i]);
+    }
+    uint64_t met = implicit_nearest_packet(solid, rays, active, &s->scratch->geom, crossings);
+    s->scratch->geom.shape_tests += (uint64_t)__builtin_popcountll(active);
+    for (; met; met &= met - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(met);
+        better(s, i, index, &crossings[i]);
+    }
+}
+
 static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) {
+    const struct implicit *solid = solid_of_packets(s, index);
+    if (solid) {
+        try_solid(s, index, solid, active);
+        return;
+    }
     for (; active; active &= active - 1) {
         unsigned i = (unsigned)__builtin_ctzll(active);
         struct crossing crossing;
