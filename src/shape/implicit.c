@@ -58,13 +58,13 @@ static double implicit_difference(const struct implicit *solid, const struct exp
     enum { CORNERS = 4 };
     static const double signs[3][CORNERS] = {{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
     unsigned char memory[expr_batch_size(program) + IMPLICIT_ALIGNMENT];
-    double places[3][CORNERS], values[CORNERS], *const outputs[EXPR_OUTPUTS] = {values};
+    double points[3][CORNERS], values[CORNERS], *const outputs[EXPR_OUTPUTS] = {values};
     const double *const inputs[EXPR_INPUT_COUNT] = {
-        [EXPR_POINT_X] = places[0], [EXPR_POINT_Y] = places[1], [EXPR_POINT_Z] = places[2]};
+        [EXPR_POINT_X] = points[0], [EXPR_POINT_Y] = points[1], [EXPR_POINT_Z] = points[2]};
     const double step = solid->size * 0x1p-18 + vec3_max_abs(point) * 0x1p-24;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < CORNERS; i++)
-            places[k][i] = vec3_get(point, k) + signs[k][i] * step;
+            points[k][i] = vec3_get(point, k) + signs[k][i] * step;
     expr_evaluate_batch(program, CORNERS, inputs, outputs, implicit_aligned(memory));
     double sums[3] = {0, 0, 0};
     for (int k = 0; k < 3; k++)

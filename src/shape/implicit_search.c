@@ -656,8 +656,8 @@ static uint32_t find_leaf(struct lane *lane, double s, struct node_box *box, dou
     const struct box *bounds = &search->solid->in.bounds;
     uint32_t cell[3], changed = 0;
     for (int k = 0; k < 3; k++) {
-        const double place = search->origin[k] + vec3_get(search->line.direction, k) * s - vec3_get(bounds->min, k);
-        cell[k] = (uint32_t)math_min(math_max(place * lane->cells[k], 0), (1 << IMPLICIT_LEVELS) - 1);
+        const double above_min = search->origin[k] + vec3_get(search->line.direction, k) * s - vec3_get(bounds->min, k);
+        cell[k] = (uint32_t)math_min(math_max(above_min * lane->cells[k], 0), (1 << IMPLICIT_LEVELS) - 1);
         changed |= cell[k] ^ lane->cell[k];
         lane->cell[k] = cell[k];
     }
