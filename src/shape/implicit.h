@@ -49,12 +49,6 @@ bool implicit_is_closed(const struct implicit *solid);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);
-/* The nearest crossings of rays (of which `active` has the bits, at most EXPR_BATCH) within the tolerance of the
- * scratch; returns the bits of those that have one. Only where it takes packets: of solids with a Lipschitz bound, in
- * previews. */
-bool implicit_takes_packets(const struct implicit *solid, const struct geom_scratch *scratch);
-uint64_t implicit_nearest_packet(const struct implicit *solid, const struct ray *rays, uint64_t active,
-                                 struct geom_scratch *scratch, struct crossing *out);
 uint32_t implicit_scratch_need(const struct implicit *solid);
 
 #endif

@@ -6,7 +6,6 @@
 
 #include "accel/beam.h"
 #include "math/lanes.h"
-#include "shape/implicit.h"
 #include "world/world_internal.h"
 
 #include <string.h>
@@ -116,15 +115,7 @@ static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     }
 }
 
-/* A solid that searches for the crossings of many rays at once, or NULL. */
-static const struct implicit *solid_of_packets(const struct packet_search *s, uint32_t index) {
-    const struct geometry *geometry = primitive_geometry(s->world, index);
-    const bool is_implicit = !geometry->csg && geometry->shape.kind == SHAPE_IMPLICIT;
-    return is_implicit && implicit_takes_packets(geometry->shape.implicit, &s->scratch->geom) ? geometry->shape.implicit
-                                                                                              : NULL;
-}
-
-static void try_solid(struct packet_search *s, uint32_t index, const struct implicit *solid, uint64_t active) {
+static void try_together(struct packet_search *s, uint32_t index, const struct shape *shape, uint64_t active) {
     struct ray rays[PACKET_RAYS];
     struct crossing crossings[PACKET_RAYS];
     for (uint64_t rest = active; rest; rest &= rest - 1) {
@@ -133,8 +124,7 @@ static void try_solid(struct packet_search *s, uint32_t index, const struct impl
         rays[i].t_max = s->limit[i];
         rays[i] = primitive_ray(s->world, index, &rays[i]);
     }
-    uint64_t met = implicit_nearest_packet(solid, rays, active, &s->scratch->geom, crossings);
-    s->scratch->geom.shape_tests += (uint64_t)__builtin_popcountll(active);
+    uint64_t met = shape_nearest_packet(shape, rays, active, &s->scratch->geom, crossings);
     for (; met; met &= met - 1) {
         unsigned i = (unsigned)__builtin_ctzll(met);
         better(s, i, index, &crossings[i]);
@@ -142,9 +132,9 @@ static void try_solid(struct packet_search *s, uint32_t index, const struct impl
 }
 
 static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) {
-    const struct implicit *solid = solid_of_packets(s, index);
-    if (solid) {
-        try_solid(s, index, solid, active);
+    const struct geometry *geometry = primitive_geometry(s->world, index);
+    if (!geometry->csg && shape_takes_packets(&geometry->shape, &s->scratch->geom)) {
+        try_together(s, index, &geometry->shape, active);
         return;
     }
     for (; active; active &= active - 1) {

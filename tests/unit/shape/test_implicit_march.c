@@ -1,7 +1,6 @@
 /* Implicit solids with a declared Lipschitz bound: against solids whose surface is found by bounds, and against their
  * functions at points all along lines. */
 #include "scene/node.h"
-#include "shape/implicit.h"
 #include "shape/shape.h"
 #include "tests/unit/script_host.h"
 
@@ -194,11 +193,11 @@ static void search_together(struct listener *listener, const struct render_reque
                 rays[i].t_max = i % 5 == 0 ? 21 : INFINITY;
             }
             scratch.tolerance = 0;
-            CHECK(!implicit_takes_packets(shape->implicit, &scratch));
+            CHECK(!shape_takes_packets(shape, &scratch));
             const uint64_t want = search_exactly(shape, rays, &scratch, share, exact, &certain);
             scratch.tolerance = (float)share;
-            CHECK(implicit_takes_packets(shape->implicit, &scratch));
-            const uint64_t found = implicit_nearest_packet(shape->implicit, rays, active, &scratch, got);
+            CHECK(shape_takes_packets(shape, &scratch));
+            const uint64_t found = shape_nearest_packet(shape, rays, active, &scratch, got);
             CHECK((found & ~active) == 0);
             for (int i = 0; i < EXPR_BATCH; i++) {
                 if (!((active & certain) >> i & 1))
