@@ -340,22 +340,18 @@ static void put_primitive(struct gltf_scene *scene, const struct gltf_surface *s
         const struct gltf_triangle *t = &gltf_triangles(s)[i];
         ok = t->material != material || list_add(&indices, t->vertex, 3, sizeof *t->vertex);
     }
-    gltf_open(text, NULL, '{');
-    gltf_open(text, "attributes", '{');
-    gltf_number(text, "POSITION", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
+    gltf_put(text, "{'attributes':{'POSITION':%u",
+             add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
     if (s->has_normals || uses.tangents)
-        gltf_number(text, "NORMAL", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
+        gltf_put(text, "'NORMAL':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
     if (uses.uv)
-        gltf_number(text, "TEXCOORD_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
+        gltf_put(text, "'TEXCOORD_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
     if (uses.tangents)
-        gltf_number(text, "TANGENT", add_tangents(&scene->file, s));
+        gltf_put(text, "'TANGENT':%u", add_tangents(&scene->file, s));
     if (uses.colours)
-        gltf_number(text, "COLOR_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
-    gltf_close(text, '}');
-    gltf_number(text, "indices",
-                gltf_add_indices(&scene->file, indices.items, indices.count, (uint32_t)s->vertices.count));
-    gltf_number(text, "material", number);
-    gltf_close(text, '}');
+        gltf_put(text, "'COLOR_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
+    gltf_put(text, "},'indices':%u,'material':%u}",
+             gltf_add_indices(&scene->file, indices.items, indices.count, (uint32_t)s->vertices.count), number);
     list_destroy(&indices);
     scene->file.failed = !ok || scene->file.failed;
 }
@@ -365,9 +361,7 @@ static uint32_t put_mesh(struct gltf_scene *scene, const struct gltf_surface *s,
     struct key_map seen = {0};
     struct gltf_text text = {0};
     bool ok = true;
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "name", name);
-    gltf_open(&text, "primitives", '[');
+    gltf_put(&text, "{'name':%s,'primitives':[", name);
     for (size_t i = 0; i < s->triangles.count; i++) {
         uint32_t material = gltf_triangles(s)[i].material;
         if (key_map_find(&seen, material + 1ULL))
@@ -375,8 +369,7 @@ static uint32_t put_mesh(struct gltf_scene *scene, const struct gltf_surface *s,
         ok = key_map_add(&seen, material + 1ULL, 0) && ok;
         put_primitive(scene, s, paint, material, &text);
     }
-    gltf_close(&text, ']');
-    gltf_close(&text, '}');
+    gltf_put(&text, "]}");
     uint32_t mesh = gltf_add(&scene->file, GLTF_MESHES, &text);
     list_destroy(&text.bytes);
     key_map_destroy(&seen);
@@ -588,29 +581,18 @@ static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *m
     double size = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, box.min));
     double far = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, moment->camera->eye)) + size;
     bool is_orthographic = lens->projection == PROJECTION_ORTHOGRAPHIC;
-    struct gltf_text text = {0};
     if (lens->projection != PROJECTION_PERSPECTIVE && !is_orthographic)
         lacks(scene, "the camera has a perspective projection, not that of the scene", "");
     if (lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
         lens->shift_y != 0)
         lacks(scene, "the camera is a pinhole, without depth of field, shift, stereo and light field", "");
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "type", is_orthographic ? "orthographic" : "perspective");
-    gltf_open(&text, is_orthographic ? "orthographic" : "perspective", '{');
-    if (is_orthographic) {
-        gltf_number(&text, "xmag", lens->view_height / 2 * moment->aspect);
-        gltf_number(&text, "ymag", lens->view_height / 2);
-        gltf_number(&text, "zfar", 2 * far);
-    } else {
-        gltf_number(&text, "aspectRatio", moment->aspect);
-        gltf_number(&text, "yfov", moment->camera->fov * (PI / 180));
-    }
-    gltf_number(&text, "znear", is_orthographic ? 0 : far / 10000);
-    gltf_close(&text, '}');
-    gltf_close(&text, '}');
-    uint32_t number = gltf_add(&scene->file, GLTF_CAMERAS, &text);
-    list_destroy(&text.bytes);
-    return number;
+    if (is_orthographic)
+        return gltf_element(&scene->file, GLTF_CAMERAS,
+                            "{'type':'orthographic','orthographic':{'xmag':%g,'ymag':%g,'zfar':%g,'znear':0}}",
+                            lens->view_height / 2 * moment->aspect, lens->view_height / 2, 2 * far);
+    return gltf_element(&scene->file, GLTF_CAMERAS,
+                        "{'type':'perspective','perspective':{'aspectRatio':%g,'yfov':%g,'znear':%g}}", moment->aspect,
+                        moment->camera->fov * (PI / 180), far / 10000);
 }
 
 /* A light as the file has it. */
@@ -692,25 +674,14 @@ static bool punctual_of(struct gltf_scene *scene, const struct light *light, str
 static uint32_t put_light(struct gltf_scene *scene, const struct light *light, const struct punctual *punctual) {
     double largest = colour_max_abs(light->colour);
     struct colour colour = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
-    struct gltf_text text = {0};
-    gltf_open(&text, NULL, '{');
-    gltf_tuple(&text, "color", (const double[3]){colour.r, colour.g, colour.b}, 3);
-    gltf_number(&text, "intensity", lumens * largest * punctual->strength);
-    gltf_string(&text, "type",
-                punctual->kind == LIGHT_POINT  ? "point"
-                : punctual->kind == LIGHT_SPOT ? "spot"
-                                               : "directional");
-    if (punctual->kind == LIGHT_SPOT) {
-        gltf_open(&text, "spot", '{');
-        gltf_number(&text, "innerConeAngle", math_min(punctual->inner, 0.9999 * punctual->outer));
-        gltf_number(&text, "outerConeAngle", punctual->outer);
-        gltf_close(&text, '}');
-    }
-    gltf_close(&text, '}');
-    gltf_use(&scene->file, GLTF_PUNCTUAL);
-    uint32_t number = gltf_add(&scene->file, GLTF_LIGHTS, &text);
-    list_destroy(&text.bytes);
-    return number;
+    const double intensity = lumens * largest * punctual->strength;
+    if (punctual->kind == LIGHT_SPOT)
+        return gltf_element(
+            &scene->file, GLTF_LIGHTS,
+            "{'color':%3,'intensity':%g,'type':'spot','spot':{'innerConeAngle':%g,'outerConeAngle':%g}}", &colour.r,
+            intensity, math_min(punctual->inner, 0.9999 * punctual->outer), punctual->outer);
+    return gltf_element(&scene->file, GLTF_LIGHTS, "{'color':%3,'intensity':%g,'type':%s}", &colour.r, intensity,
+                        punctual->kind == LIGHT_POINT ? "point" : "directional");
 }
 
 static void add_lights(struct visit *visit, uint32_t root) {
@@ -781,7 +752,6 @@ static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input,
     const struct key *keys = at->keys.items;
     const size_t count = at->keys.count;
     float *numbers = mem_alloc((count * (size_t)width + 1) * sizeof *numbers);
-    struct gltf_text text = {0};
     bool moves = false;
     for (size_t i = 0; numbers && i < count; i++) {
         const double *from = (const double *)(const void *)((const char *)&keys[i].pose + offset);
@@ -792,21 +762,10 @@ static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input,
     scene->file.failed = scene->file.failed || !numbers;
     if (numbers && moves) {
         uint32_t output = gltf_add_floats(&scene->file, numbers, count, width, GLTF_NO_TARGET);
-        gltf_open(&text, NULL, '{');
-        gltf_number(&text, "input", input);
-        gltf_string(&text, "interpolation", "LINEAR");
-        gltf_number(&text, "output", output);
-        gltf_close(&text, '}');
-        uint32_t sampler = gltf_add(&scene->file, GLTF_SAMPLERS, &text);
-        gltf_open(&text, NULL, '{');
-        gltf_number(&text, "sampler", sampler);
-        gltf_open(&text, "target", '{');
-        gltf_number(&text, "node", node);
-        gltf_string(&text, "path", path);
-        gltf_close(&text, '}');
-        gltf_close(&text, '}');
-        (void)gltf_add(&scene->file, GLTF_CHANNELS, &text);
-        list_destroy(&text.bytes);
+        uint32_t sampler = gltf_element(&scene->file, GLTF_SAMPLERS,
+                                        "{'input':%u,'interpolation':'LINEAR','output':%u}", input, output);
+        (void)gltf_element(&scene->file, GLTF_CHANNELS, "{'sampler':%u,'target':{'node':%u,'path':%s}}", sampler, node,
+                           path);
     }
     mem_free(numbers);
 }
@@ -830,33 +789,24 @@ static void put_animation(struct gltf_scene *scene, uint32_t node) {
 static void put_node(struct gltf_scene *scene, uint32_t number, struct gltf_text *text) {
     static const struct pose rest = {.turn = {0, 0, 0, 1}, .size = {1, 1, 1}};
     const struct out_node *at = node_at(scene, number);
-    gltf_open(text, NULL, '{');
+    gltf_put(text, "{");
     if (at->name[0])
-        gltf_string(text, "name", at->name);
+        gltf_put(text, "'name':%s", at->name);
     if (memcmp(at->pose.move, rest.move, sizeof rest.move) != 0)
-        gltf_tuple(text, "translation", at->pose.move, 3);
+        gltf_put(text, "'translation':%3", at->pose.move);
     if (memcmp(at->pose.turn, rest.turn, sizeof rest.turn) != 0)
-        gltf_tuple(text, "rotation", at->pose.turn, 4);
+        gltf_put(text, "'rotation':%4", at->pose.turn);
     if (memcmp(at->pose.size, rest.size, sizeof rest.size) != 0)
-        gltf_tuple(text, "scale", at->pose.size, 3);
+        gltf_put(text, "'scale':%3", at->pose.size);
     if (at->mesh != GLTF_NONE)
-        gltf_number(text, "mesh", at->mesh);
+        gltf_put(text, "'mesh':%u", at->mesh);
     if (at->camera != GLTF_NONE)
-        gltf_number(text, "camera", at->camera);
-    if (at->light != GLTF_NONE) {
-        gltf_open(text, "extensions", '{');
-        gltf_open_extension(&scene->file, text, GLTF_PUNCTUAL);
-        gltf_number(text, "light", at->light);
-        gltf_close(text, '}');
-        gltf_close(text, '}');
-    }
-    if (at->first_child != GLTF_NONE) {
-        gltf_open(text, "children", '[');
-        for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
-            gltf_number(text, NULL, child);
-        gltf_close(text, ']');
-    }
-    gltf_close(text, '}');
+        gltf_put(text, "'camera':%u", at->camera);
+    if (at->light != GLTF_NONE)
+        gltf_put(text, "'extensions':{'KHR_lights_punctual':{'light':%u}}", at->light);
+    for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
+        gltf_put(text, child == at->first_child ? "'children':[%u" : "%u", child);
+    gltf_put(text, at->first_child != GLTF_NONE ? "]}" : "}");
     (void)gltf_add(&scene->file, GLTF_NODES, text);
 }
 
