@@ -56,14 +56,14 @@ struct surface_grid {
 };
 static const double whole[4] = {0, 0, 1, 1}; /* of the unit square: a corner, and the size */
 
-static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid, const double place[4]) {
+static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid, const double part[4]) {
     uint32_t first = (uint32_t)s->vertices.count, width = grid->columns + 1;
     bool ok = true;
     for (uint32_t i = 0; ok && i < width * (grid->rows + 1); i++) {
         double u = (double)(i % width) / grid->columns, v = (double)(i / width) / grid->rows;
         struct vec3 point, normal;
         grid->at(grid->context, u, v, &point, &normal);
-        struct gltf_vertex vertex = vertex_make(point, normal, place[0] + u * place[2], place[1] + v * place[3]);
+        struct gltf_vertex vertex = vertex_make(point, normal, part[0] + u * part[2], part[1] + v * part[3]);
         ok = list_add(&s->vertices, &vertex, 1, sizeof vertex);
     }
     for (uint32_t i = 0; ok && i < grid->columns * grid->rows; i++) {
@@ -151,11 +151,11 @@ static bool add_turned(struct gltf_surface *s, const struct revolved_quadric *q,
     const double rim = q->open ? 0 : 0.25, side[4] = {0, 0, 1, 1 - rim};
     bool ok = add_grid(s, &(struct surface_grid){side_at, &turned, columns, straight ? 1 : columns}, side);
     for (int end = 0; ok && end < 2 && !q->open; end++) {
-        const double place[4] = {end / 2.0, 1 - rim, 0.5, rim};
+        const double part[4] = {end / 2.0, 1 - rim, 0.5, rim};
         turned.height = end ? q->hi : q->lo;
         turned.radius = sqrt(math_max((q->a * turned.height + q->b) * turned.height + q->c, 0));
         turned.y = end ? y : vec3_negate(y);
-        ok = turned.radius == 0 || add_grid(s, &(struct surface_grid){end_at, &turned, columns, 1}, place);
+        ok = turned.radius == 0 || add_grid(s, &(struct surface_grid){end_at, &turned, columns, 1}, part);
     }
     s->is_open = q->open;
     return ok;
@@ -168,19 +168,19 @@ static void rectangle_at(const void *context, double u, double v, struct vec3 *p
     *point = vec3_add_scaled(vec3_add_scaled(corner[0], corner[1], u), corner[2], v);
 }
 
-static bool add_rectangle(struct gltf_surface *s, const struct vec3 corner[3], const double place[4]) {
-    return add_grid(s, &(struct surface_grid){rectangle_at, corner, 1, 1}, place);
+static bool add_rectangle(struct gltf_surface *s, const struct vec3 corner[3], const double part[4]) {
+    return add_grid(s, &(struct surface_grid){rectangle_at, corner, 1, 1}, part);
 }
 
 static bool add_box(struct gltf_surface *s) {
     bool ok = true;
     for (int side = 0; ok && side < 6; side++) {
         const int i = side / 2;
-        const double place[4] = {side % 3 / 3.0, side / 3 / 2.0, 1 / 3.0, 1 / 2.0};
+        const double part[4] = {side % 3 / 3.0, side / 3 / 2.0, 1 / 3.0, 1 / 2.0};
         struct vec3 u = vec3_make(i == 2, i == 0, i == 1), v = vec3_make(i == 1, i == 2, i == 0);
         const struct vec3 corner[3] = {side % 2 ? vec3_sub(vec3_all(1), vec3_add(u, v)) : vec3_all(0), side % 2 ? u : v,
                                        side % 2 ? v : u};
-        ok = add_rectangle(s, corner, place);
+        ok = add_rectangle(s, corner, part);
     }
     return ok;
 }
@@ -380,10 +380,10 @@ static bool add_height_field(struct gltf_surface *s, const struct height_field *
     bool ok = add_grid(s, &(struct surface_grid){height_field_at, &h, columns, rows}, top);
     s->falls = false;
     for (int i = 0; ok && i < 4 && !h.field.open; i++) {
-        const double place[4] = {0.2 * i, 0.75, 0.2, 0.25};
+        const double part[4] = {0.2 * i, 0.75, 0.2, 0.25};
         h.corner = vec3_make(i == 1 || i == 2, 0, i < 2);
         h.along = i == 0 ? x_axis : i == 1 ? back : i == 2 ? vec3_negate(x_axis) : vec3_negate(back);
-        ok = add_grid(s, &(struct surface_grid){wall_at, &h, i % 2 ? rows : columns, 1}, place);
+        ok = add_grid(s, &(struct surface_grid){wall_at, &h, i % 2 ? rows : columns, 1}, part);
     }
     ok = ok && (h.field.open || add_rectangle(s, floor, below));
     s->is_open = h.field.open;
