@@ -647,7 +647,8 @@ static bool punctual_of(struct gltf_scene *scene, const struct light *light, str
         out->strength = light->kind == LIGHT_PARALLELOGRAM ? vec3_length(vec3_cross(light->edge1, light->edge2)) / PI
                                                            : light->radius * light->radius;
         out->kind = light->one_sided && light->kind != LIGHT_SPHERE ? LIGHT_SPOT : LIGHT_POINT;
-        out->along = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
+        if (light->kind != LIGHT_SPHERE) /* which has no direction */
+            out->along = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
         return true;
     case LIGHT_MESH:
         lacks(scene, "the light of a mesh is left out; its surface emits it", "");
