@@ -1,23 +1,29 @@
 /* glTF 2.0 (Khronos Group, ISO/IEC 12113:2022), sections 3.6 and 4.4. Equal elements are written once: so instances
  * share their meshes, and materials that look alike are one. */
+#define _GNU_SOURCE /* memmem */
 #include "export/gltf_file_internal.h"
 
+#include "base/bytes.h"
 #include "base/hash.h"
 #include "base/json_write.h"
 #include "base/list.h"
 #include "formats/model_format.h"
 
+#include <stdarg.h>
+#include <stdio.h>
+
 static const char *const list_names[] = {GLTF_LISTS(LIST_WORD)};
-static const char *const extension_names[] = {GLTF_EXTENSIONS(LIST_WORD)};
+static const char *const extensions[] = {
+    "KHR_materials_ior",         "KHR_materials_specular",   "KHR_materials_transmission",
+    "KHR_materials_volume",      "KHR_materials_clearcoat",  "KHR_materials_sheen",
+    "KHR_materials_iridescence", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",       "KHR_texture_transform",    "KHR_lights_punctual",
+};
 
 /* --- JSON --- */
 
 static void put(struct gltf_text *text, const char *bytes, size_t size) {
     text->failed = !list_add_bytes(&text->bytes, bytes, size) || text->failed;
-}
-
-static void put_word(struct gltf_text *text, const char *word) {
-    put(text, word, strlen(word));
 }
 
 static void put_quoted(struct gltf_text *text, const char *string) {
@@ -28,48 +34,45 @@ static void put_quoted(struct gltf_text *text, const char *string) {
     put(text, "\"", 1);
 }
 
-static void put_key(struct gltf_text *text, const char *key) {
-    char last = text->bytes.count ? ((char *)text->bytes.items)[text->bytes.count - 1] : '{';
-    if (last != '{' && last != '[')
+static void put_number(struct gltf_text *text, double number) {
+    char digits[JSON_NUMBER];
+    json_number(digits, number);
+    put(text, digits, strlen(digits));
+}
+
+static void put_format(struct gltf_text *text, const char *format, va_list values) {
+    const char last = text->bytes.count ? ((char *)text->bytes.items)[text->bytes.count - 1] : '{';
+    if (!strchr("]}", format[0]) && !strchr("{[:", last))
         put(text, ",", 1);
-    if (key) {
-        put_quoted(text, key);
-        put(text, ":", 1);
+    while (*format) {
+        size_t length = strcspn(format, "'%");
+        put(text, format, length);
+        format += length;
+        if (*format == '\'')
+            put(text, "\"", 1);
+        else if (*format && *++format == 's')
+            put_quoted(text, va_arg(values, const char *));
+        else if (*format == 'u')
+            put_number(text, va_arg(values, uint32_t));
+        else if (*format == 'g')
+            put_number(text, va_arg(values, double));
+        else if (*format) {
+            const double *numbers = va_arg(values, const double *);
+            for (int i = 0; i < *format - '0'; i++) {
+                put(text, i ? "," : "[", 1);
+                put_number(text, numbers[i]);
+            }
+            put(text, "]", 1);
+        }
+        format += *format != '\0';
     }
 }
 
-void gltf_open(struct gltf_text *text, const char *key, char bracket) {
-    if (key || text->bytes.count)
-        put_key(text, key);
-    put(text, &bracket, 1);
-}
-
-void gltf_close(struct gltf_text *text, char bracket) {
-    put(text, &bracket, 1);
-}
-
-void gltf_number(struct gltf_text *text, const char *key, double number) {
-    char digits[JSON_NUMBER];
-    json_number(digits, number);
-    put_key(text, key);
-    put_word(text, digits);
-}
-
-void gltf_tuple(struct gltf_text *text, const char *key, const double *numbers, int count) {
-    gltf_open(text, key, '[');
-    for (int i = 0; i < count; i++)
-        gltf_number(text, NULL, numbers[i]);
-    gltf_close(text, ']');
-}
-
-void gltf_string(struct gltf_text *text, const char *key, const char *string) {
-    put_key(text, key);
-    put_quoted(text, string);
-}
-
-void gltf_true(struct gltf_text *text, const char *key) {
-    put_key(text, key);
-    put_word(text, "true");
+void gltf_put(struct gltf_text *text, const char *format, ...) {
+    va_list values;
+    va_start(values, format);
+    put_format(text, format, values);
+    va_end(values);
 }
 
 /* --- elements --- */
@@ -100,6 +103,17 @@ uint32_t gltf_add(struct gltf_file *file, enum gltf_list list, struct gltf_text 
     return number;
 }
 
+uint32_t gltf_element(struct gltf_file *file, enum gltf_list list, const char *format, ...) {
+    struct gltf_text text = {0};
+    va_list values;
+    va_start(values, format);
+    put_format(&text, format, values);
+    va_end(values);
+    uint32_t number = gltf_add(file, list, &text);
+    list_destroy(&text.bytes);
+    return number;
+}
+
 uint32_t gltf_add_view(struct gltf_file *file, const void *bytes, size_t size, enum gltf_target target) {
     uint64_t key = key_of(bytes, size);
     const uint32_t *known = key_map_find(&file->known_views, key);
@@ -115,19 +129,13 @@ uint32_t gltf_add_view(struct gltf_file *file, const void *bytes, size_t size, e
     return number;
 }
 
-static uint32_t add_accessor(struct gltf_file *file, struct gltf_text *text, uint32_t view, size_t count) {
-    gltf_number(text, "bufferView", view);
-    gltf_number(text, "count", (double)count);
-    gltf_close(text, '}');
-    uint32_t number = gltf_add(file, GLTF_ACCESSORS, text);
-    list_destroy(&text->bytes);
-    return number;
-}
-
 uint32_t gltf_add_floats(struct gltf_file *file, const float *numbers, size_t count, int width,
                          enum gltf_target target) {
-    static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    struct gltf_text text = {0};
+    static const char *const formats[] = {
+        "{'type':'SCALAR','componentType':5126,'min':%1,'max':%1,'bufferView':%u,'count':%g}",
+        "{'type':'VEC2','componentType':5126,'min':%2,'max':%2,'bufferView':%u,'count':%g}",
+        "{'type':'VEC3','componentType':5126,'min':%3,'max':%3,'bufferView':%u,'count':%g}",
+        "{'type':'VEC4','componentType':5126,'min':%4,'max':%4,'bufferView':%u,'count':%g}"};
     double low[4], high[4];
     for (size_t i = 0; i < count * (size_t)width; i++) {
         size_t k = i % (size_t)width;
@@ -135,36 +143,19 @@ uint32_t gltf_add_floats(struct gltf_file *file, const float *numbers, size_t co
         low[k] = i == k || x < low[k] ? x : low[k];
         high[k] = i == k || x > high[k] ? x : high[k];
     }
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "type", types[width - 1]);
-    gltf_number(&text, "componentType", 5126);
-    gltf_tuple(&text, "min", low, width);
-    gltf_tuple(&text, "max", high, width);
     uint32_t view = gltf_add_view(file, numbers, count * (size_t)width * sizeof *numbers, target);
-    return add_accessor(file, &text, view, count);
+    return gltf_element(file, GLTF_ACCESSORS, formats[width - 1], low, high, view, (double)count);
 }
 
 uint32_t gltf_add_indices(struct gltf_file *file, const uint32_t *indices, size_t count, uint32_t vertices) {
-    struct gltf_text text = {0};
     struct list bytes = {0};
     size_t width = vertices < UINT16_MAX ? 2 : 4;
     for (size_t i = 0; i < count; i++)
         file->failed = !list_add_number(&bytes, indices[i], width) || file->failed;
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "type", "SCALAR");
-    gltf_number(&text, "componentType", width == 2 ? 5123 : 5125);
     uint32_t view = gltf_add_view(file, bytes.items, bytes.count, GLTF_INDICES);
     list_destroy(&bytes);
-    return add_accessor(file, &text, view, count);
-}
-
-void gltf_use(struct gltf_file *file, enum gltf_extension extension) {
-    file->extensions |= 1U << extension;
-}
-
-void gltf_open_extension(struct gltf_file *file, struct gltf_text *text, enum gltf_extension extension) {
-    gltf_use(file, extension);
-    gltf_open(text, extension_names[extension], '{');
+    return gltf_element(file, GLTF_ACCESSORS, "{'type':'SCALAR','componentType':%u,'bufferView':%u,'count':%g}",
+                        width == 2 ? 5123U : 5125U, view, (double)count);
 }
 
 /* --- the file --- */
@@ -173,95 +164,77 @@ static void put_list(struct gltf_text *text, const struct gltf_file *file, enum 
     const struct list *elements = &file->lists[list].text.bytes;
     if (elements->count == 0)
         return;
-    gltf_open(text, list_names[list], '[');
+    gltf_put(text, "%s:[", list_names[list]);
     put(text, elements->items, elements->count);
-    gltf_close(text, ']');
+    gltf_put(text, "]");
 }
 
-static void put_views(struct gltf_text *text, const struct gltf_file *file) {
-    const struct gltf_view *views = file->views.items;
-    gltf_open(text, "bufferViews", '[');
-    for (size_t i = 0; i < file->views.count; i++) {
-        gltf_open(text, NULL, '{');
-        gltf_number(text, "buffer", 0);
-        gltf_number(text, "byteOffset", (double)views[i].start);
-        gltf_number(text, "byteLength", (double)views[i].size);
-        if (views[i].target != GLTF_NO_TARGET)
-            gltf_number(text, "target", views[i].target);
-        gltf_close(text, '}');
+/* No string of JSON ends with a quote before a colon, but keys do. */
+static bool uses(const struct gltf_file *file, const char *extension) {
+    char key[64];
+    size_t size = (size_t)snprintf(key, sizeof key, "\"%s\":", extension);
+    bool found = false;
+    for (int i = 0; i < GLTF_LIST_COUNT && !found; i++) {
+        const struct list *text = &file->lists[i].text.bytes;
+        found = text->count > 0 && memmem(text->items, text->count, key, size);
     }
-    gltf_close(text, ']');
-}
-
-static void put_base64(struct gltf_text *text, const uint8_t *bytes, size_t size) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    put_word(text, "\"data:application/octet-stream;base64,");
-    for (size_t i = 0; i < size; i += 3) {
-        uint32_t word = (uint32_t)bytes[i] << 16;
-        word |= i + 1 < size ? (uint32_t)bytes[i + 1] << 8 : 0;
-        word |= i + 2 < size ? bytes[i + 2] : 0;
-        const char four[4] = {digits[word >> 18], digits[word >> 12 & 63], i + 1 < size ? digits[word >> 6 & 63] : '=',
-                              i + 2 < size ? digits[word & 63] : '='};
-        put(text, four, sizeof four);
-    }
-    put(text, "\"", 1);
+    return found;
 }
 
 static void put_buffer(struct gltf_text *text, const struct gltf_file *file, bool binary) {
+    const struct gltf_view *views = file->views.items;
     if (file->bytes.count == 0)
         return;
-    put_views(text, file);
-    gltf_open(text, "buffers", '[');
-    gltf_open(text, NULL, '{');
-    gltf_number(text, "byteLength", (double)file->bytes.count);
-    if (!binary) {
-        put_key(text, "uri");
-        put_base64(text, file->bytes.items, file->bytes.count);
+    gltf_put(text, "'bufferViews':[");
+    for (size_t i = 0; i < file->views.count; i++) {
+        gltf_put(text, "{'buffer':0,'byteOffset':%g,'byteLength':%g", (double)views[i].start, (double)views[i].size);
+        if (views[i].target != GLTF_NO_TARGET)
+            gltf_put(text, "'target':%u", views[i].target);
+        gltf_put(text, "}");
     }
-    gltf_close(text, '}');
-    gltf_close(text, ']');
+    gltf_put(text, "]");
+    gltf_put(text, "'buffers':[{'byteLength':%g", (double)file->bytes.count);
+    if (!binary) {
+        gltf_put(text, "'uri':");
+        put(text, "\"data:application/octet-stream;base64,", 38);
+        for (size_t i = 0; i < file->bytes.count; i += 3) {
+            char four[4];
+            bytes_base64((const uint8_t *)file->bytes.items + i, file->bytes.count - i, four);
+            put(text, four, sizeof four);
+        }
+        put(text, "\"", 1);
+    }
+    gltf_put(text, "}]");
 }
 
 static void put_json(struct gltf_text *text, const struct gltf_file *file, bool binary, const struct list *roots) {
-    put_word(text, model_glb_header);
-    put_word(text, "\"version\":\"2.0\"}");
-    if (file->extensions) {
-        gltf_open(text, "extensionsUsed", '[');
-        for (int i = 0; i < LIST_COUNT(GLTF_EXTENSIONS); i++)
-            if (file->extensions & 1U << i)
-                gltf_string(text, NULL, extension_names[i]);
-        gltf_close(text, ']');
-    }
-    gltf_number(text, "scene", 0);
-    gltf_open(text, "scenes", '[');
-    gltf_open(text, NULL, '{');
-    if (roots->count > 0) {
-        gltf_open(text, "nodes", '[');
-        for (size_t i = 0; i < roots->count; i++)
-            gltf_number(text, NULL, ((const uint32_t *)roots->items)[i]);
-        gltf_close(text, ']');
-    }
-    gltf_close(text, '}');
-    gltf_close(text, ']');
+    const char *separator = "'extensionsUsed':[%s";
+    put(text, model_glb_header, strlen(model_glb_header));
+    put(text, "\"version\":\"2.0\"}", 16);
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (uses(file, extensions[i])) {
+            gltf_put(text, separator, extensions[i]);
+            separator = "%s";
+        }
+    gltf_put(text, separator[0] == '%' ? "],'scene':0,'scenes':[{" : "'scene':0,'scenes':[{");
+    for (size_t i = 0; i < roots->count; i++)
+        gltf_put(text, i ? "%u" : "'nodes':[%u", ((const uint32_t *)roots->items)[i]);
+    gltf_put(text, roots->count ? "]}]" : "}]");
     for (int i = 0; i < (int)GLTF_LIGHTS; i++)
         put_list(text, file, (enum gltf_list)i);
     if (file->lists[GLTF_CHANNELS].starts.count) {
-        gltf_open(text, "animations", '[');
-        gltf_open(text, NULL, '{');
+        gltf_put(text, "'animations':[{");
         put_list(text, file, GLTF_CHANNELS);
         put_list(text, file, GLTF_SAMPLERS);
-        gltf_close(text, '}');
-        gltf_close(text, ']');
+        gltf_put(text, "}]");
     }
-    if (file->extensions & 1U << GLTF_PUNCTUAL) {
-        gltf_open(text, "extensions", '{');
-        gltf_open(text, extension_names[GLTF_PUNCTUAL], '{');
+    if (file->lists[GLTF_LIGHTS].starts.count) {
+        gltf_put(text, "'extensions':{'KHR_lights_punctual':{");
         put_list(text, file, GLTF_LIGHTS);
-        gltf_close(text, '}');
-        gltf_close(text, '}');
+        gltf_put(text, "}}");
     }
     put_buffer(text, file, binary);
-    gltf_close(text, '}');
+    gltf_put(text, "}");
 }
 
 bool gltf_file_write(struct gltf_file *file, bool binary, const struct list *roots, struct list *out) {

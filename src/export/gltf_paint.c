@@ -276,39 +276,27 @@ static uint8_t encode(double light) {
 /* The texture of a PNG file with these pixels. */
 static uint32_t add_picture(struct gltf_file *file, const struct pixels *pixels, uint32_t height, bool is_colour,
                             const struct texture_image *how) {
-    static const double wraps[] = {[IMAGE_CLAMP] = 33071, [IMAGE_REPEAT] = 10497, [IMAGE_MIRROR] = 33648};
+    static const uint32_t wraps[] = {[IMAGE_CLAMP] = 33071, [IMAGE_REPEAT] = 10497, [IMAGE_MIRROR] = 33648};
     const struct png_source source = {.width = pixels->width,
                                       .height = height,
                                       .bytes = row_of_pixels,
                                       .context = (void *)(uintptr_t)pixels,
                                       .alpha = true,
                                       .srgb = is_colour};
-    struct gltf_text text = {0};
     struct list png = {0};
     struct error error = {0};
     file->failed = !png_encode(&source, NULL, put_into_list, &png, &error) || file->failed;
     uint32_t view = gltf_add_view(file, png.items, png.count, GLTF_NO_TARGET);
     list_destroy(&png);
-    gltf_open(&text, NULL, '{');
-    gltf_number(&text, "bufferView", view);
-    gltf_string(&text, "mimeType", "image/png");
-    gltf_close(&text, '}');
-    uint32_t image = gltf_add(file, GLTF_IMAGES, &text);
     bool nearest = how && how->filter == IMAGE_NEAREST;
-    gltf_open(&text, NULL, '{');
-    gltf_number(&text, "magFilter", nearest ? 9728 : 9729);
-    gltf_number(&text, "minFilter", nearest ? 9728 : how ? 9987 : 9729); /* texels beside a place are of others */
-    gltf_number(&text, "wrapS", wraps[how ? how->wrap : IMAGE_CLAMP]);
-    gltf_number(&text, "wrapT", wraps[how ? (how->apart ? how->wrap_v : how->wrap) : IMAGE_CLAMP]);
-    gltf_close(&text, '}');
-    uint32_t sampler = gltf_add(file, GLTF_TEXTURE_SAMPLERS, &text);
-    gltf_open(&text, NULL, '{');
-    gltf_number(&text, "source", image);
-    gltf_number(&text, "sampler", sampler);
-    gltf_close(&text, '}');
-    uint32_t texture = gltf_add(file, GLTF_TEXTURES, &text);
-    list_destroy(&text.bytes);
-    return texture;
+    uint32_t image = gltf_element(file, GLTF_IMAGES, "{'bufferView':%u,'mimeType':'image/png'}", view);
+    uint32_t sampler = gltf_element(
+        file, GLTF_TEXTURE_SAMPLERS, "{'magFilter':%u,'minFilter':%u,'wrapS':%u,'wrapT':%u}", nearest ? 9728 : 9729,
+        nearest ? 9728
+        : how   ? 9987
+                : 9729, /* texels beside a place are of others */
+        wraps[how ? how->wrap : IMAGE_CLAMP], wraps[how ? (how->apart ? how->wrap_v : how->wrap) : IMAGE_CLAMP]);
+    return gltf_element(file, GLTF_TEXTURES, "{'source':%u,'sampler':%u}", image, sampler);
 }
 
 /* What the numbers of a picture mean. */
@@ -621,94 +609,77 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
 
 /* --- materials --- */
 
-static void put_texture(const struct gltf_painter *p, struct gltf_text *text, const char *key, uint32_t texture,
-                        const struct texture_image *how, double strength) {
-    gltf_open(text, key, '{');
-    gltf_number(text, "index", texture);
+static void put_texture(struct gltf_text *text, const char *key, uint32_t texture, const struct texture_image *how,
+                        double strength) {
+    if (texture == GLTF_NONE)
+        return;
+    gltf_put(text, "%s:{'index':%u", key, texture);
     if (strength != 1)
-        gltf_number(text, "scale", strength);
+        gltf_put(text, "'scale':%g", strength);
     if (how && how->apart) {
         /* The inverse of read_map of formats/gltf_material.c. */
         double a = how->scale[0], d = how->scale[1], b = -how->cross[0], c = -how->cross[1];
         const double scale[2] = {sqrt(a * a + c * c), sqrt(b * b + d * d)};
         const double offset[2] = {how->offset[0] - b, 1 - d - how->offset[1]};
         double turn = scale[0] > 0 ? el_atan2(-c, a) : 0;
-        if (scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0 || turn != 0) {
-            gltf_open(text, "extensions", '{');
-            gltf_open_extension(p->file, text, GLTF_TEXTURE_TRANSFORM);
-            gltf_tuple(text, "offset", offset, 2);
-            gltf_number(text, "rotation", turn);
-            gltf_tuple(text, "scale", scale, 2);
-            gltf_close(text, '}');
-            gltf_close(text, '}');
-        }
+        if (scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0 || turn != 0)
+            gltf_put(text, "'extensions':{'KHR_texture_transform':{'offset':%2,'rotation':%g,'scale':%2}}", offset,
+                     turn, scale);
     }
-    gltf_close(text, '}');
+    gltf_put(text, "}");
 }
 
-static void put_colour(struct gltf_text *text, const char *key, struct colour colour) {
-    gltf_tuple(text, key, (const double[3]){colour.r, colour.g, colour.b}, 3);
-}
-
-/* An extension with its numbers, in their order; those with the default value are left out. */
-struct number_row {
-    enum gltf_extension extension;
-    const char *key;
-    double value, otherwise;
-};
-
-static void put_extensions(struct gltf_file *file, struct gltf_text *text, const struct values *v) {
+/* The members of extensions; those with the default value are left out. */
+static void put_extensions(struct gltf_text *text, const struct values *v) {
+    const bool lit = !v->unlit, clear = v->transmission > 0 && lit, solid = clear && v->is_solid;
     const double strength = math_max(colour_max_abs(v->emission), 1);
-    const bool clear = v->transmission > 0 && !v->unlit, lit = !v->unlit;
-    const struct number_row rows[] = {
-        {GLTF_IOR, "ior", lit ? v->ior : 1.5, 1.5},
-        {GLTF_SPECULAR, "specularFactor", lit ? v->specular_weight : 1, 1},
-        {GLTF_TRANSMISSION, "transmissionFactor", clear ? v->transmission : 0, 0},
-        {GLTF_VOLUME, "thicknessFactor", clear && v->is_solid, 0},
-        {GLTF_VOLUME, "attenuationDistance", clear && v->is_solid ? v->distance : 0, 0},
-        {GLTF_COAT, "clearcoatFactor", lit ? v->coat : 0, 0},
-        {GLTF_COAT, "clearcoatRoughnessFactor", lit && v->coat > 0 ? v->coat_roughness : 0, 0},
-        {GLTF_SHEEN, "sheenRoughnessFactor", lit && colour_max_abs(v->sheen) > 0 ? v->sheen_roughness : 0, 0},
-        {GLTF_FILM, "iridescenceFactor", lit ? v->film : 0, 0},
-        {GLTF_FILM, "iridescenceIor", lit && v->film > 0 ? v->film_ior : 1.3, 1.3},
-        {GLTF_FILM, "iridescenceThicknessMinimum", lit && v->film > 0 ? v->film_thickness : 100, 100},
-        {GLTF_FILM, "iridescenceThicknessMaximum", lit && v->film > 0 ? v->film_thickness : 400, 400},
-        {GLTF_DISPERSION, "dispersion", clear && v->is_solid ? v->dispersion : 0, 0},
-        {GLTF_STRENGTH, "emissiveStrength", strength, 1},
-    };
+    const bool coat = lit && v->coat > 0, film = lit && v->film > 0, sheen = lit && colour_max_abs(v->sheen) > 0;
     const struct {
-        const char *key;
-        struct colour value, otherwise;
-    } colours[GLTF_PUNCTUAL] = {
-        [GLTF_SPECULAR] = {"specularColorFactor", lit ? v->specular : colour_all(1), {1, 1, 1}},
-        [GLTF_VOLUME] = {"attenuationColor",
-                         clear && v->is_solid && v->distance > 0 ? v->attenuation : colour_all(1),
-                         {1, 1, 1}},
-        [GLTF_SHEEN] = {"sheenColorFactor", lit ? v->sheen : colour_all(0), {0, 0, 0}}};
-    bool any = false;
-    for (int e = 0; e < GLTF_TEXTURE_TRANSFORM; e++) {
-        bool opened = false;
-        for (size_t i = 0; i <= sizeof rows / sizeof *rows; i++) {
-            bool is_colour = i == sizeof rows / sizeof *rows, is_unlit = is_colour && e == GLTF_UNLIT && v->unlit;
-            bool differs = is_colour ? colours[e].key && !colour_equal(colours[e].value, colours[e].otherwise)
-                                     : (int)rows[i].extension == e && rows[i].value != rows[i].otherwise;
-            if (!differs && !is_unlit)
-                continue;
-            if (!any)
-                gltf_open(text, "extensions", '{');
-            if (!opened)
-                gltf_open_extension(file, text, (enum gltf_extension)e);
-            any = opened = true;
-            if (is_colour && !is_unlit)
-                put_colour(text, colours[e].key, colours[e].value);
-            else if (!is_unlit)
-                gltf_number(text, rows[i].key, rows[i].value);
-        }
-        if (opened)
-            gltf_close(text, '}');
+        const char *extension, *format; /* of the value */
+        bool is_there;
+        double value[3], otherwise[3];
+    } rows[] = {
+        {"KHR_materials_ior", "'ior':%g", lit, {v->ior}, {1.5}},
+        {"KHR_materials_specular", "'specularFactor':%g", lit, {v->specular_weight}, {1}},
+        {"KHR_materials_specular",
+         "'specularColorFactor':%3",
+         lit,
+         {v->specular.r, v->specular.g, v->specular.b},
+         {1, 1, 1}},
+        {"KHR_materials_transmission", "'transmissionFactor':%g", clear, {v->transmission}, {0}},
+        {"KHR_materials_volume", "'thicknessFactor':%g", solid, {1}, {0}},
+        {"KHR_materials_volume", "'attenuationDistance':%g", solid, {v->distance}, {0}},
+        {"KHR_materials_volume",
+         "'attenuationColor':%3",
+         solid && v->distance > 0,
+         {v->attenuation.r, v->attenuation.g, v->attenuation.b},
+         {1, 1, 1}},
+        {"KHR_materials_clearcoat", "'clearcoatFactor':%g", coat, {v->coat}, {0}},
+        {"KHR_materials_clearcoat", "'clearcoatRoughnessFactor':%g", coat, {v->coat_roughness}, {0}},
+        {"KHR_materials_sheen", "'sheenRoughnessFactor':%g", sheen, {v->sheen_roughness}, {0}},
+        {"KHR_materials_sheen", "'sheenColorFactor':%3", sheen, {v->sheen.r, v->sheen.g, v->sheen.b}, {0, 0, 0}},
+        {"KHR_materials_iridescence", "'iridescenceFactor':%g", film, {v->film}, {0}},
+        {"KHR_materials_iridescence", "'iridescenceIor':%g", film, {v->film_ior}, {1.3}},
+        {"KHR_materials_iridescence", "'iridescenceThicknessMinimum':%g", film, {v->film_thickness}, {100}},
+        {"KHR_materials_iridescence", "'iridescenceThicknessMaximum':%g", film, {v->film_thickness}, {400}},
+        {"KHR_materials_dispersion", "'dispersion':%g", solid, {v->dispersion}, {0}},
+        {"KHR_materials_emissive_strength", "'emissiveStrength':%g", true, {strength}, {1}},
+        {"KHR_materials_unlit", "", v->unlit, {1}, {0}},
+    };
+    const char *open = NULL;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!rows[i].is_there || memcmp(rows[i].value, rows[i].otherwise, sizeof rows[i].value) == 0)
+            continue;
+        if (!open || strcmp(open, rows[i].extension) != 0)
+            gltf_put(text, open ? "},%s:{" : "'extensions':{%s:{", rows[i].extension);
+        open = rows[i].extension;
+        if (strstr(rows[i].format, "%3"))
+            gltf_put(text, rows[i].format, rows[i].value);
+        else
+            gltf_put(text, rows[i].format, rows[i].value[0]);
     }
-    if (any)
-        gltf_close(text, '}');
+    if (open)
+        gltf_put(text, "}}");
 }
 
 static void note_losses(const struct gltf_painter *p, uint32_t index, const char *name) {
@@ -751,30 +722,26 @@ uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t materi
     uses->tangents = own.normal != GLTF_NONE;
     uses->uv = uses->tangents || own.base != GLTF_NONE || own.rough != GLTF_NONE || own.emission != GLTF_NONE;
     uses->colours = own.by_vertex || (!baked && (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
-    gltf_open(&text, NULL, '{');
+    const double base[4] = {v.base.r, v.base.g, v.base.b, v.alpha}, strength = math_max(colour_max_abs(v.emission), 1);
+    const struct colour emission = colour_scale(v.emission, 1 / strength);
+    gltf_put(&text, "{");
     if (*name)
-        gltf_string(&text, "name", name);
-    gltf_open(&text, "pbrMetallicRoughness", '{');
-    gltf_tuple(&text, "baseColorFactor", (const double[4]){v.base.r, v.base.g, v.base.b, v.alpha}, 4);
-    gltf_number(&text, "metallicFactor", math_min(math_max(v.metallic, 0), 1));
-    gltf_number(&text, "roughnessFactor", math_min(math_max(v.roughness, 0), 1));
-    if (own.base != GLTF_NONE)
-        put_texture(painter, &text, "baseColorTexture", own.base, copies.base, 1);
-    if (own.rough != GLTF_NONE)
-        put_texture(painter, &text, "metallicRoughnessTexture", own.rough, NULL, 1);
-    gltf_close(&text, '}');
-    if (own.normal != GLTF_NONE)
-        put_texture(painter, &text, "normalTexture", own.normal, copies.normal, copies.normal ? copies.height : 1);
+        gltf_put(&text, "'name':%s", name);
+    gltf_put(&text, "'pbrMetallicRoughness':{'baseColorFactor':%4,'metallicFactor':%g,'roughnessFactor':%g", base,
+             math_min(math_max(v.metallic, 0), 1), math_min(math_max(v.roughness, 0), 1));
+    put_texture(&text, "baseColorTexture", own.base, copies.base, 1);
+    put_texture(&text, "metallicRoughnessTexture", own.rough, NULL, 1);
+    gltf_put(&text, "}");
+    put_texture(&text, "normalTexture", own.normal, copies.normal, copies.normal ? copies.height : 1);
     if (colour_max_abs(v.emission) > 0)
-        put_colour(&text, "emissiveFactor", colour_scale(v.emission, 1 / math_max(colour_max_abs(v.emission), 1)));
-    if (own.emission != GLTF_NONE)
-        put_texture(painter, &text, "emissiveTexture", own.emission, NULL, 1);
+        gltf_put(&text, "'emissiveFactor':%3", &emission.r);
+    put_texture(&text, "emissiveTexture", own.emission, NULL, 1);
     if (blends || masks)
-        gltf_string(&text, "alphaMode", blends ? "BLEND" : "MASK");
+        gltf_put(&text, "'alphaMode':%s", blends ? "BLEND" : "MASK");
     if (!v.is_solid && (surface->is_open || world->surfaces.materials[material].phong.two_sided))
-        gltf_true(&text, "doubleSided");
-    put_extensions(painter->file, &text, &v);
-    gltf_close(&text, '}');
+        gltf_put(&text, "'doubleSided':true");
+    put_extensions(&text, &v);
+    gltf_put(&text, "}");
     uint32_t number = gltf_add(painter->file, GLTF_MATERIALS, &text);
     list_destroy(&text.bytes);
     return number;

@@ -124,27 +124,18 @@ static struct vec3 column(const struct affine *map, int k) {
     return vec3_make(map->m[0][k], map->m[1][k], map->m[2][k]);
 }
 
-/* Of a rotation by its columns (K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985): from the
- * largest of its components. */
-static void quaternion_of(const struct vec3 c[3], double out[4]) {
-    const double m[3][3] = {{c[0].x, c[1].x, c[2].x}, {c[0].y, c[1].y, c[2].y}, {c[0].z, c[1].z, c[2].z}};
-    double trace = m[0][0] + m[1][1] + m[2][2], length = 0;
-    int i = m[1][1] > m[0][0] ? 1 : 0;
-    i = m[2][2] > m[i][i] ? 2 : i;
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = 1 + m[i][i] - m[j][j] - m[k][k];
-    out[j] = m[j][i] + m[i][j];
-    out[k] = m[k][i] + m[i][k];
-    out[3] = m[k][j] - m[j][k];
-    if (trace > 0) {
-        for (int n = 0; n < 3; n++)
-            out[n] = m[(n + 2) % 3][(n + 1) % 3] - m[(n + 1) % 3][(n + 2) % 3];
-        out[3] = 1 + trace;
-    }
+static struct affine of_columns(const struct vec3 c[3], struct vec3 move) {
+    return (struct affine){
+        {{c[0].x, c[1].x, c[2].x, move.x}, {c[0].y, c[1].y, c[2].y, move.y}, {c[0].z, c[1].z, c[2].z, move.z}}};
+}
+
+/* Of a rotation by its columns. */
+static void quaternion_of(const struct vec3 columns[3], double out[4]) {
+    const struct affine turn = of_columns(columns, vec3_all(0));
+    affine_quaternion(&turn, out);
+    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3]);
     for (int n = 0; n < 4; n++)
-        length += out[n] * out[n];
-    for (int n = 0; n < 4; n++)
-        out[n] = out[n] / sqrt(length) + 0.0;
+        out[n] = out[n] / length + 0.0;
 }
 
 /* Turns the columns of `left` until they are at right angles; `right` is turned with them. */
@@ -184,11 +175,9 @@ static bool pose_of(const struct affine *map, struct pose *outer, struct pose *i
         left[i] = vec3_scale(left[i], 1 / outer->size[i]);
     }
     quaternion_of(left, outer->turn);
-    if (!is_plain) { /* the transpose */
-        const struct vec3 rows[3] = {vec3_make(right[0].x, right[1].x, right[2].x),
-                                     vec3_make(right[0].y, right[1].y, right[2].y),
-                                     vec3_make(right[0].z, right[1].z, right[2].z)};
-        quaternion_of(rows, inner->turn);
+    if (!is_plain) {
+        quaternion_of(right, inner->turn);
+        inner->turn[3] = 0.0 - inner->turn[3]; /* the turn back */
     }
     return is_plain;
 }
@@ -340,22 +329,18 @@ static void put_primitive(struct gltf_scene *scene, const struct gltf_surface *s
         const struct gltf_triangle *t = &gltf_triangles(s)[i];
         ok = t->material != material || list_add(&indices, t->vertex, 3, sizeof *t->vertex);
     }
-    gltf_open(text, NULL, '{');
-    gltf_open(text, "attributes", '{');
-    gltf_number(text, "POSITION", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
+    gltf_put(text, "{'attributes':{'POSITION':%u",
+             add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
     if (s->has_normals || uses.tangents)
-        gltf_number(text, "NORMAL", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
+        gltf_put(text, "'NORMAL':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
     if (uses.uv)
-        gltf_number(text, "TEXCOORD_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
+        gltf_put(text, "'TEXCOORD_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
     if (uses.tangents)
-        gltf_number(text, "TANGENT", add_tangents(&scene->file, s));
+        gltf_put(text, "'TANGENT':%u", add_tangents(&scene->file, s));
     if (uses.colours)
-        gltf_number(text, "COLOR_0", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
-    gltf_close(text, '}');
-    gltf_number(text, "indices",
-                gltf_add_indices(&scene->file, indices.items, indices.count, (uint32_t)s->vertices.count));
-    gltf_number(text, "material", number);
-    gltf_close(text, '}');
+        gltf_put(text, "'COLOR_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
+    gltf_put(text, "},'indices':%u,'material':%u}",
+             gltf_add_indices(&scene->file, indices.items, indices.count, (uint32_t)s->vertices.count), number);
     list_destroy(&indices);
     scene->file.failed = !ok || scene->file.failed;
 }
@@ -365,9 +350,7 @@ static uint32_t put_mesh(struct gltf_scene *scene, const struct gltf_surface *s,
     struct key_map seen = {0};
     struct gltf_text text = {0};
     bool ok = true;
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "name", name);
-    gltf_open(&text, "primitives", '[');
+    gltf_put(&text, "{'name':%s,'primitives':[", name);
     for (size_t i = 0; i < s->triangles.count; i++) {
         uint32_t material = gltf_triangles(s)[i].material;
         if (key_map_find(&seen, material + 1ULL))
@@ -375,8 +358,7 @@ static uint32_t put_mesh(struct gltf_scene *scene, const struct gltf_surface *s,
         ok = key_map_add(&seen, material + 1ULL, 0) && ok;
         put_primitive(scene, s, paint, material, &text);
     }
-    gltf_close(&text, ']');
-    gltf_close(&text, '}');
+    gltf_put(&text, "]}");
     uint32_t mesh = gltf_add(&scene->file, GLTF_MESHES, &text);
     list_destroy(&text.bytes);
     key_map_destroy(&seen);
@@ -578,8 +560,7 @@ static struct affine looking(struct vec3 from, struct vec3 along, struct vec3 up
         x = vec3_normalize(x);
     else
         frame_tangents(z, &x, &other);
-    struct vec3 y = vec3_cross(z, x);
-    return (struct affine){{{x.x, y.x, z.x, from.x}, {x.y, y.y, z.y, from.y}, {x.z, y.z, z.z, from.z}}};
+    return of_columns((const struct vec3[3]){x, vec3_cross(z, x), z}, from);
 }
 
 static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *moment) {
@@ -588,29 +569,18 @@ static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *m
     double size = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, box.min));
     double far = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, moment->camera->eye)) + size;
     bool is_orthographic = lens->projection == PROJECTION_ORTHOGRAPHIC;
-    struct gltf_text text = {0};
     if (lens->projection != PROJECTION_PERSPECTIVE && !is_orthographic)
         lacks(scene, "the camera has a perspective projection, not that of the scene", "");
     if (lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
         lens->shift_y != 0)
         lacks(scene, "the camera is a pinhole, without depth of field, shift, stereo and light field", "");
-    gltf_open(&text, NULL, '{');
-    gltf_string(&text, "type", is_orthographic ? "orthographic" : "perspective");
-    gltf_open(&text, is_orthographic ? "orthographic" : "perspective", '{');
-    if (is_orthographic) {
-        gltf_number(&text, "xmag", lens->view_height / 2 * moment->aspect);
-        gltf_number(&text, "ymag", lens->view_height / 2);
-        gltf_number(&text, "zfar", 2 * far);
-    } else {
-        gltf_number(&text, "aspectRatio", moment->aspect);
-        gltf_number(&text, "yfov", moment->camera->fov * (PI / 180));
-    }
-    gltf_number(&text, "znear", is_orthographic ? 0 : far / 10000);
-    gltf_close(&text, '}');
-    gltf_close(&text, '}');
-    uint32_t number = gltf_add(&scene->file, GLTF_CAMERAS, &text);
-    list_destroy(&text.bytes);
-    return number;
+    if (is_orthographic)
+        return gltf_element(&scene->file, GLTF_CAMERAS,
+                            "{'type':'orthographic','orthographic':{'xmag':%g,'ymag':%g,'zfar':%g,'znear':0}}",
+                            lens->view_height / 2 * moment->aspect, lens->view_height / 2, 2 * far);
+    return gltf_element(&scene->file, GLTF_CAMERAS,
+                        "{'type':'perspective','perspective':{'aspectRatio':%g,'yfov':%g,'znear':%g}}", moment->aspect,
+                        moment->camera->fov * (PI / 180), far / 10000);
 }
 
 /* A light as the file has it. */
@@ -677,7 +647,8 @@ static bool punctual_of(struct gltf_scene *scene, const struct light *light, str
         out->strength = light->kind == LIGHT_PARALLELOGRAM ? vec3_length(vec3_cross(light->edge1, light->edge2)) / PI
                                                            : light->radius * light->radius;
         out->kind = light->one_sided && light->kind != LIGHT_SPHERE ? LIGHT_SPOT : LIGHT_POINT;
-        out->along = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
+        if (light->kind != LIGHT_SPHERE) /* which has no direction */
+            out->along = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
         return true;
     case LIGHT_MESH:
         lacks(scene, "the light of a mesh is left out; its surface emits it", "");
@@ -692,25 +663,14 @@ static bool punctual_of(struct gltf_scene *scene, const struct light *light, str
 static uint32_t put_light(struct gltf_scene *scene, const struct light *light, const struct punctual *punctual) {
     double largest = colour_max_abs(light->colour);
     struct colour colour = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
-    struct gltf_text text = {0};
-    gltf_open(&text, NULL, '{');
-    gltf_tuple(&text, "color", (const double[3]){colour.r, colour.g, colour.b}, 3);
-    gltf_number(&text, "intensity", lumens * largest * punctual->strength);
-    gltf_string(&text, "type",
-                punctual->kind == LIGHT_POINT  ? "point"
-                : punctual->kind == LIGHT_SPOT ? "spot"
-                                               : "directional");
-    if (punctual->kind == LIGHT_SPOT) {
-        gltf_open(&text, "spot", '{');
-        gltf_number(&text, "innerConeAngle", math_min(punctual->inner, 0.9999 * punctual->outer));
-        gltf_number(&text, "outerConeAngle", punctual->outer);
-        gltf_close(&text, '}');
-    }
-    gltf_close(&text, '}');
-    gltf_use(&scene->file, GLTF_PUNCTUAL);
-    uint32_t number = gltf_add(&scene->file, GLTF_LIGHTS, &text);
-    list_destroy(&text.bytes);
-    return number;
+    const double intensity = lumens * largest * punctual->strength;
+    if (punctual->kind == LIGHT_SPOT)
+        return gltf_element(
+            &scene->file, GLTF_LIGHTS,
+            "{'color':%3,'intensity':%g,'type':'spot','spot':{'innerConeAngle':%g,'outerConeAngle':%g}}", &colour.r,
+            intensity, math_min(punctual->inner, 0.9999 * punctual->outer), punctual->outer);
+    return gltf_element(&scene->file, GLTF_LIGHTS, "{'color':%3,'intensity':%g,'type':%s}", &colour.r, intensity,
+                        punctual->kind == LIGHT_POINT ? "point" : "directional");
 }
 
 static void add_lights(struct visit *visit, uint32_t root) {
@@ -781,7 +741,6 @@ static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input,
     const struct key *keys = at->keys.items;
     const size_t count = at->keys.count;
     float *numbers = mem_alloc((count * (size_t)width + 1) * sizeof *numbers);
-    struct gltf_text text = {0};
     bool moves = false;
     for (size_t i = 0; numbers && i < count; i++) {
         const double *from = (const double *)(const void *)((const char *)&keys[i].pose + offset);
@@ -792,21 +751,10 @@ static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input,
     scene->file.failed = scene->file.failed || !numbers;
     if (numbers && moves) {
         uint32_t output = gltf_add_floats(&scene->file, numbers, count, width, GLTF_NO_TARGET);
-        gltf_open(&text, NULL, '{');
-        gltf_number(&text, "input", input);
-        gltf_string(&text, "interpolation", "LINEAR");
-        gltf_number(&text, "output", output);
-        gltf_close(&text, '}');
-        uint32_t sampler = gltf_add(&scene->file, GLTF_SAMPLERS, &text);
-        gltf_open(&text, NULL, '{');
-        gltf_number(&text, "sampler", sampler);
-        gltf_open(&text, "target", '{');
-        gltf_number(&text, "node", node);
-        gltf_string(&text, "path", path);
-        gltf_close(&text, '}');
-        gltf_close(&text, '}');
-        (void)gltf_add(&scene->file, GLTF_CHANNELS, &text);
-        list_destroy(&text.bytes);
+        uint32_t sampler = gltf_element(&scene->file, GLTF_SAMPLERS,
+                                        "{'input':%u,'interpolation':'LINEAR','output':%u}", input, output);
+        (void)gltf_element(&scene->file, GLTF_CHANNELS, "{'sampler':%u,'target':{'node':%u,'path':%s}}", sampler, node,
+                           path);
     }
     mem_free(numbers);
 }
@@ -830,33 +778,24 @@ static void put_animation(struct gltf_scene *scene, uint32_t node) {
 static void put_node(struct gltf_scene *scene, uint32_t number, struct gltf_text *text) {
     static const struct pose rest = {.turn = {0, 0, 0, 1}, .size = {1, 1, 1}};
     const struct out_node *at = node_at(scene, number);
-    gltf_open(text, NULL, '{');
+    gltf_put(text, "{");
     if (at->name[0])
-        gltf_string(text, "name", at->name);
+        gltf_put(text, "'name':%s", at->name);
     if (memcmp(at->pose.move, rest.move, sizeof rest.move) != 0)
-        gltf_tuple(text, "translation", at->pose.move, 3);
+        gltf_put(text, "'translation':%3", at->pose.move);
     if (memcmp(at->pose.turn, rest.turn, sizeof rest.turn) != 0)
-        gltf_tuple(text, "rotation", at->pose.turn, 4);
+        gltf_put(text, "'rotation':%4", at->pose.turn);
     if (memcmp(at->pose.size, rest.size, sizeof rest.size) != 0)
-        gltf_tuple(text, "scale", at->pose.size, 3);
+        gltf_put(text, "'scale':%3", at->pose.size);
     if (at->mesh != GLTF_NONE)
-        gltf_number(text, "mesh", at->mesh);
+        gltf_put(text, "'mesh':%u", at->mesh);
     if (at->camera != GLTF_NONE)
-        gltf_number(text, "camera", at->camera);
-    if (at->light != GLTF_NONE) {
-        gltf_open(text, "extensions", '{');
-        gltf_open_extension(&scene->file, text, GLTF_PUNCTUAL);
-        gltf_number(text, "light", at->light);
-        gltf_close(text, '}');
-        gltf_close(text, '}');
-    }
-    if (at->first_child != GLTF_NONE) {
-        gltf_open(text, "children", '[');
-        for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
-            gltf_number(text, NULL, child);
-        gltf_close(text, ']');
-    }
-    gltf_close(text, '}');
+        gltf_put(text, "'camera':%u", at->camera);
+    if (at->light != GLTF_NONE)
+        gltf_put(text, "'extensions':{'KHR_lights_punctual':{'light':%u}}", at->light);
+    for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
+        gltf_put(text, child == at->first_child ? "'children':[%u" : "%u", child);
+    gltf_put(text, at->first_child != GLTF_NONE ? "]}" : "}");
     (void)gltf_add(&scene->file, GLTF_NODES, text);
 }
 

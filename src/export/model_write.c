@@ -220,35 +220,17 @@ static uint32_t add_floats(struct gltf_file *file, const struct coloured_mesh *m
 /* One mesh of colours that are light already (KHR_materials_unlit). */
 static bool write_coloured_glb(const struct coloured_mesh *mesh, struct list *out) {
     struct gltf_file file = {0};
-    struct gltf_text text = {0};
     struct list roots = {0};
-    gltf_open(&text, NULL, '{');
-    gltf_true(&text, "doubleSided");
-    gltf_open(&text, "extensions", '{');
-    gltf_open_extension(&file, &text, GLTF_UNLIT);
-    for (int i = 0; i < 3; i++)
-        gltf_close(&text, '}');
-    const uint32_t material = gltf_add(&file, GLTF_MATERIALS, &text);
-    gltf_open(&text, NULL, '{');
-    gltf_open(&text, "primitives", '[');
-    gltf_open(&text, NULL, '{');
-    gltf_open(&text, "attributes", '{');
-    gltf_number(&text, "POSITION", add_floats(&file, mesh, false));
-    gltf_number(&text, "COLOR_0", add_floats(&file, mesh, true));
-    gltf_close(&text, '}');
-    gltf_number(&text, "indices",
-                gltf_add_indices(&file, (const uint32_t *)mesh->triangles, 3 * mesh->triangle_count,
-                                 (uint32_t)mesh->point_count));
-    gltf_number(&text, "material", material);
-    gltf_close(&text, '}');
-    gltf_close(&text, ']');
-    gltf_close(&text, '}');
-    const uint32_t number = gltf_add(&file, GLTF_MESHES, &text);
-    gltf_open(&text, NULL, '{');
-    gltf_number(&text, "mesh", number);
-    gltf_close(&text, '}');
-    bool ok = list_add_index(&roots, gltf_add(&file, GLTF_NODES, &text)) && gltf_file_write(&file, true, &roots, out);
-    list_destroy(&text.bytes);
+    const uint32_t material =
+        gltf_element(&file, GLTF_MATERIALS, "{'doubleSided':true,'extensions':{'KHR_materials_unlit':{}}}");
+    const uint32_t points = add_floats(&file, mesh, false), colours = add_floats(&file, mesh, true);
+    const uint32_t indices = gltf_add_indices(&file, (const uint32_t *)mesh->triangles, 3 * mesh->triangle_count,
+                                              (uint32_t)mesh->point_count);
+    const uint32_t number = gltf_element(
+        &file, GLTF_MESHES, "{'primitives':[{'attributes':{'POSITION':%u,'COLOR_0':%u},'indices':%u,'material':%u}]}",
+        points, colours, indices, material);
+    bool ok = list_add_index(&roots, gltf_element(&file, GLTF_NODES, "{'mesh':%u}", number)) &&
+              gltf_file_write(&file, true, &roots, out);
     list_destroy(&roots);
     gltf_file_destroy(&file);
     return ok;

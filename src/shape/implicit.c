@@ -52,6 +52,28 @@ static double implicit_gradient(const struct expr_program *program, struct vec3 
     return outputs[0];
 }
 
+/* The same from the values at the corners of a small tetrahedron. */
+static double implicit_difference(const struct implicit *solid, const struct expr_program *program, struct vec3 point,
+                                  struct vec3 *gradient) {
+    enum { CORNERS = 4 };
+    static const double signs[3][CORNERS] = {{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
+    unsigned char memory[expr_batch_size(program) + IMPLICIT_ALIGNMENT];
+    double points[3][CORNERS], values[CORNERS], *const outputs[EXPR_OUTPUTS] = {values};
+    const double *const inputs[EXPR_INPUT_COUNT] = {
+        [EXPR_POINT_X] = points[0], [EXPR_POINT_Y] = points[1], [EXPR_POINT_Z] = points[2]};
+    const double step = solid->size * 0x1p-18 + vec3_max_abs(point) * 0x1p-24;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < CORNERS; i++)
+            points[k][i] = vec3_get(point, k) + signs[k][i] * step;
+    expr_evaluate_batch(program, CORNERS, inputs, outputs, implicit_aligned(memory));
+    double sums[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < CORNERS; i++)
+            sums[k] += signs[k][i] * values[i];
+    *gradient = vec3_scale(vec3_make(sums[0], sums[1], sums[2]), 1 / (CORNERS * step));
+    return (values[0] + values[1] + values[2] + values[3]) / CORNERS;
+}
+
 /* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side.
  * Without a normal, it is the direction of the ray. */
 static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
@@ -154,12 +176,15 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
     if (crossing->part >= IMPLICIT_PART_BOX) {
         describe_cap(solid, ray, crossing, out);
     } else {
-        uint32_t program = crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0;
+        const bool is_preview = crossing->u > 0;
+        const struct expr_program *program =
+            &solid->programs[crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0];
         struct vec3 point = ray_at(ray, crossing->t), gradient;
-        double off = implicit_gradient(&solid->programs[program], point, &gradient);
+        double off = is_preview ? implicit_difference(solid, program, point, &gradient)
+                                : implicit_gradient(program, point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
         double error = solid->size * 2 * implicit_accuracy(solid);
-        if (square > 0 && (fabs(off) < room * sqrt(square) || crossing->u > 0)) {
+        if (square > 0 && (fabs(off) < room * sqrt(square) || is_preview)) {
             /* One step along the gradient removes the rounding error of the ray, or what the tolerance allows. */
             point = vec3_add_scaled(point, gradient, -off / square);
         } else {

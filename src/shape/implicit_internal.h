@@ -8,6 +8,7 @@
 /* A node of the octree over the bounds is a number. Its lowest two bits are the kind. The other bits are, for
  * REGION_SPLIT, the index of the first of its eight parts, and for REGION_SURFACE the index of the region. Bit k of the
  * number of a part is set in the upper half of axis k; the halves meet at region_middle. */
+enum { IMPLICIT_LEVELS = 8 }; /* at most, below the root */
 enum region_kind { REGION_OUTSIDE, REGION_INSIDE, REGION_SURFACE, REGION_SPLIT };
 
 /* A region in which the sign may change. Slopes bound the derivatives along the axes, rounded outwards. */

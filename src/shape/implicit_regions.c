@@ -16,7 +16,7 @@
 
 /* Limits of the work and of the memory: nodes, instructions that are evaluated over regions, and instructions of
  * shortened programs. Beyond KEPT, regions use the program of a larger region, up to twice KEPT in all. */
-enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
+enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, FIRST_LEVELS = 2 };
 /* With a Lipschitz bound, regions are bounded by values at their centres. Bounds over boxes only shorten programs; they
  * are computed until a program has not become shorter for as many levels. A point costs less than a box. */
 enum { MARCH_LEVELS = 7, SHORTENING_LEVELS = 2, POINTS_OF_A_BOX = 8 };
@@ -261,7 +261,7 @@ static bool decide(struct building *b, uint32_t node, const struct box *box, con
     bool is_shorter = shorten(b, program, lane, &shorter);
     uint32_t before = program->count, after = is_shorter ? shorter.count : before;
     bool is_simple = is_flat(slopes) && (after < 32 || after > before - before / 8);
-    bool has_room = here->level < LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
+    bool has_room = here->level < IMPLICIT_LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
     if (has_room && (here->level < FIRST_LEVELS || !is_simple)) {
         b->evaluated += 8 * (uint64_t)after;
         return (!is_shorter || add_candidate(b, &shorter, here->candidate, here->level, &here->candidate)) &&

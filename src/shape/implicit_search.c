@@ -629,3 +629,217 @@ bool implicit_any(const struct implicit *solid, const struct ray *ray, struct ge
     struct crossing ignored;
     return find_first(solid, ray, scratch, true, &ignored);
 }
+
+/* --- rays of a preview together ---
+ *
+ * Each ray marches on its own, from leaf to leaf of the octree; the function is evaluated at the places of all rays at
+ * once. A step may leave the region. Hits may differ from those of rays alone by the tolerance. */
+
+struct lane {
+    struct search search;
+    struct part part; /* a: the last place, if has_value; b: the next one */
+    double step, smallest;
+    double last;     /* where the search ends */
+    uint32_t number; /* of the region */
+    uint32_t ray;
+    int smallest_steps;
+    /* The finest cells: how many in a unit of length, their size, and that of the place; the nodes that contain it. */
+    double cells[3], widths[3];
+    uint32_t cell[3], level, path[IMPLICIT_LEVELS + 1];
+    bool has_value, is_longer;
+};
+
+/* The leaf just behind s, its box, and where the line leaves it. Nodes that contain the place before, too, are known.
+ */
+static uint32_t find_leaf(struct lane *lane, double s, struct node_box *box, double *leaves) {
+    const struct search *search = &lane->search;
+    const struct box *bounds = &search->solid->in.bounds;
+    uint32_t cell[3], changed = 0;
+    for (int k = 0; k < 3; k++) {
+        const double above_min = search->origin[k] + vec3_get(search->line.direction, k) * s - vec3_get(bounds->min, k);
+        cell[k] = (uint32_t)math_min(math_max(above_min * lane->cells[k], 0), (1 << IMPLICIT_LEVELS) - 1);
+        changed |= cell[k] ^ lane->cell[k];
+        lane->cell[k] = cell[k];
+    }
+    while (changed >> (IMPLICIT_LEVELS - lane->level))
+        lane->level--;
+    while ((lane->path[lane->level] & 3) == REGION_SPLIT) {
+        const uint32_t first = lane->path[lane->level] >> 2, shift = IMPLICIT_LEVELS - ++lane->level;
+        const uint32_t part = (cell[0] >> shift & 1) | (cell[1] >> shift & 1) << 1 | (cell[2] >> shift & 1) << 2;
+        lane->path[lane->level] = search->solid->nodes[first + part];
+    }
+    const uint32_t above = IMPLICIT_LEVELS - lane->level;
+    *leaves = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const double inverse = search->inverse[k], size = (double)(1U << above) * lane->widths[k];
+        box->lo[k] = vec3_get(bounds->min, k) + (double)(cell[k] >> above) * size;
+        box->hi[k] = box->lo[k] + size;
+        if (inverse != 0)
+            *leaves = math_min(*leaves, ((inverse > 0 ? box->hi[k] : box->lo[k]) - search->origin[k]) * inverse);
+    }
+    return lane->path[lane->level];
+}
+
+static uint32_t number_of_leaf(uint32_t value) {
+    return (value & 3) == REGION_SURFACE ? value >> 2 : IMPLICIT_PART_WHOLE;
+}
+
+/* Goes on from part.b to a place where the value is needed. False: the search has ended. */
+static bool lane_advance(struct lane *lane) {
+    struct search *search = &lane->search;
+    const struct implicit *solid = search->solid;
+    const double margin = solid->size * IMPLICIT_MARGIN / 2;
+    for (;;) {
+        const double s = lane->part.b, t = line_t(&search->line, s);
+        if (search->has_waiting && search->waiting.t < t)
+            give_out(search);
+        if (search->is_done)
+            return false;
+        if (s >= search->end || t >= search->ray->t_max) {
+            if (s >= search->end && search->inside)
+                cross(search, search->end, search->end_part);
+            give_out(search);
+            return false;
+        }
+        struct node_box box;
+        double leaves;
+        const uint32_t value = find_leaf(lane, s + margin, &box, &leaves), before = lane->number;
+        enum side side = (value & 3) == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
+        lane->number = number_of_leaf(value);
+        if ((value & 3) == REGION_SURFACE)
+            side = side_by_sphere(search, &solid->regions[value >> 2], &box, s, math_max(s, leaves));
+        if (side == SIDE_UNKNOWN && lane->number != before) {
+            lane->smallest = room_at(search, march_resolution, s);
+            lane->smallest_steps = 0;
+        }
+        if (side == SIDE_UNKNOWN || (lane->has_value && lane->is_longer))
+            return true;
+        settle(search, side == SIDE_INSIDE, s, lane->number, search->begin_part);
+        lane->has_value = false;
+        lane->part.b = math_max(s, leaves) + margin;
+    }
+}
+
+/* See march. */
+static void lane_take(struct lane *lane, double value) {
+    struct search *search = &lane->search;
+    struct part *part = &lane->part;
+    const double lipschitz = search->solid->in.lipschitz;
+    const bool changes = lane->has_value && (part->fa < 0) != (value < 0);
+    double trend = -1;
+    part->fb = value;
+    if (lane->has_value) {
+        if (lane->is_longer && (changes || !(fabs(part->fa) + fabs(value) >= lipschitz * (part->b - part->a)))) {
+            part->b = part->a + lane->step;
+            lane->is_longer = false;
+            return;
+        }
+        trend = (fabs(value) - fabs(part->fa)) / (lipschitz * (part->b - part->a));
+        trend = trend > -1 && !changes ? math_min(trend, 0.8) : -1; /* or NaN */
+        if (changes) {
+            double s = find_change(search, search->solid->programs, part->a, part->fa, part->b, value), leaves;
+            struct node_box box;
+            cross(search, s, number_of_leaf(find_leaf(lane, s, &box, &leaves)));
+        }
+    } else {
+        settle(search, value < 0, part->b, lane->number, search->begin_part);
+    }
+    double clear = fabs(value) / lipschitz;
+    clear = clear < INFINITY ? clear : 0; /* or NaN */
+    lane->step = math_max(clear, lane->smallest);
+    const double longer = 1.9 * clear / (1 - trend);
+    *part = (struct part){.a = part->b, .fa = value};
+    lane->is_longer = longer > lane->step && part->a + longer < lane->last;
+    part->b = part->a + (lane->is_longer ? longer : lane->step);
+    lane->has_value = true;
+    lane->smallest_steps += lane->step <= lane->smallest;
+    if (lane->smallest_steps == MARCH_SMALLEST) {
+        lane->smallest *= 2;
+        lane->smallest_steps = 0;
+    }
+}
+
+/* The function at the places of lanes: as it is shortened for the region of all of them; else the whole one, or each
+ * its own, whichever is less work. */
+static void evaluate_lanes(struct lane *const *lanes, uint32_t count, double points[3][EXPR_BATCH], double *values,
+                           void *rows) {
+    const struct implicit *solid = lanes[0]->search.solid;
+    const double *const inputs[EXPR_INPUT_COUNT] = {
+        [EXPR_POINT_X] = points[0], [EXPR_POINT_Y] = points[1], [EXPR_POINT_Z] = points[2]};
+    double *const outputs[EXPR_OUTPUTS] = {values};
+    const struct expr_program *programs[EXPR_BATCH], *whole = solid->programs;
+    uint64_t work = 0;
+    bool is_same = true;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t number = lanes[i]->number;
+        programs[i] = &whole[number < solid->region_count ? solid->regions[number].program : 0];
+        work += expr_work(programs[i]);
+        is_same = is_same && programs[i] == programs[0];
+    }
+    if (is_same) {
+        expr_evaluate_batch(programs[0], count, inputs, outputs, rows);
+    } else if (work > expr_work(whole) * (count + 3) / 4) {
+        expr_evaluate_batch(whole, count, inputs, outputs, rows);
+    } else {
+        for (uint32_t i = 0; i < count; i++)
+            values[i] = evaluate(&lanes[i]->search, programs[i], lanes[i]->part.b);
+    }
+}
+
+bool implicit_takes_packets(const struct implicit *solid, const struct geom_scratch *scratch) {
+    return solid->in.lipschitz > 0 && scratch->tolerance > 0 && expr_batch_size(solid->programs) <= IMPLICIT_STACK;
+}
+
+uint64_t implicit_nearest_packet(const struct implicit *solid, const struct ray *rays, uint64_t active,
+                                 struct geom_scratch *scratch, struct crossing *out) {
+    unsigned char memory[expr_batch_size(solid->programs) + IMPLICIT_ALIGNMENT];
+    struct lane lanes[EXPR_BATCH], *alive[EXPR_BATCH];
+    double points[3][EXPR_BATCH], values[EXPR_BATCH];
+    const struct vec3 edges = vec3_sub(solid->in.bounds.max, solid->in.bounds.min);
+    uint32_t count = 0;
+    uint64_t found = 0;
+    for (; active; active &= active - 1) {
+        struct lane *lane = &lanes[count];
+        const uint32_t i = (uint32_t)__builtin_ctzll(active);
+        if (!search_begin(&lane->search, solid, &rays[i], scratch))
+            continue;
+        const double first = (rays[i].t_min - lane->search.line.t0) * lane->search.line.speed;
+        lane->search.ray = &rays[i];
+        lane->search.found = &out[i];
+        lane->search.is_unknown = first > lane->search.begin;
+        lane->part.b = math_max(first, lane->search.begin);
+        lane->last = math_min((rays[i].t_max - lane->search.line.t0) * lane->search.line.speed, lane->search.end);
+        lane->ray = i;
+        lane->number = IMPLICIT_PART_WHOLE;
+        lane->level = 0;
+        lane->path[0] = solid->nodes[0];
+        for (int k = 0; k < 3; k++) {
+            lane->widths[k] = vec3_get(edges, k) / (1 << IMPLICIT_LEVELS);
+            lane->cells[k] = 1 / lane->widths[k];
+            lane->cell[k] = 0;
+        }
+        lane->has_value = false;
+        alive[count++] = lane;
+    }
+    while (count > 0) {
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            struct lane *lane = alive[i];
+            if (!lane_advance(lane)) {
+                found |= (uint64_t)lane->search.has_found << lane->ray;
+                continue;
+            }
+            const struct vec3 p = line_at(&lane->search.line, lane->part.b);
+            points[0][kept] = p.x;
+            points[1][kept] = p.y;
+            points[2][kept] = p.z;
+            alive[kept++] = lane;
+        }
+        count = kept;
+        if (count > 0)
+            evaluate_lanes(alive, count, points, values, implicit_aligned(memory));
+        for (uint32_t i = 0; i < count; i++)
+            lane_take(alive[i], values[i]);
+    }
+    return found;
+}

@@ -356,6 +356,16 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
     return false;
 }
 
+bool shape_takes_packets(const struct shape *shape, const struct geom_scratch *scratch) {
+    return shape->kind == SHAPE_IMPLICIT && implicit_takes_packets(shape->implicit, scratch);
+}
+
+uint64_t shape_nearest_packet(const struct shape *shape, const struct ray *rays, uint64_t active,
+                              struct geom_scratch *scratch, struct crossing *out) {
+    scratch->shape_tests += (uint64_t)__builtin_popcountll(active);
+    return implicit_nearest_packet(shape->implicit, rays, active, scratch, out);
+}
+
 bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
     struct crossing ignored;
     if (shape->kind == SHAPE_MESH)

@@ -110,6 +110,12 @@ enum hit_convexity shape_convexity(const struct shape *shape);
 /* Why it is not closed, as the end of a sentence; NULL if it is closed. Of a mesh, mesh_describe_open_edges says more.
  */
 const char *shape_why_open(const struct shape *shape);
+/* Whether the nearest crossings of rays are found faster together: only within the tolerance of a preview. */
+bool shape_takes_packets(const struct shape *shape, const struct geom_scratch *scratch);
+/* The nearest crossings of the rays of which `active` has the bits; returns those that have one. Only of a shape that
+ * takes packets. */
+uint64_t shape_nearest_packet(const struct shape *shape, const struct ray *rays, uint64_t active,
+                              struct geom_scratch *scratch, struct crossing *out);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first
  * in the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */
 bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,

@@ -115,7 +115,28 @@ static void try_mesh(struct packet_search *s, uint32_t index, uint64_t active) {
     }
 }
 
+static void try_together(struct packet_search *s, uint32_t index, const struct shape *shape, uint64_t active) {
+    struct ray rays[PACKET_RAYS];
+    struct crossing crossings[PACKET_RAYS];
+    for (uint64_t rest = active; rest; rest &= rest - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(rest);
+        rays[i] = ray_packet_get(s->rays, i);
+        rays[i].t_max = s->limit[i];
+        rays[i] = primitive_ray(s->world, index, &rays[i]);
+    }
+    uint64_t met = shape_nearest_packet(shape, rays, active, &s->scratch->geom, crossings);
+    for (; met; met &= met - 1) {
+        unsigned i = (unsigned)__builtin_ctzll(met);
+        better(s, i, index, &crossings[i]);
+    }
+}
+
 static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) {
+    const struct geometry *geometry = primitive_geometry(s->world, index);
+    if (!geometry->csg && shape_takes_packets(&geometry->shape, &s->scratch->geom)) {
+        try_together(s, index, &geometry->shape, active);
+        return;
+    }
     for (; active; active &= active - 1) {
         unsigned i = (unsigned)__builtin_ctzll(active);
         struct crossing crossing;

@@ -213,6 +213,23 @@ TEST(the_camera_and_the_lights_come_back_from_a_glb) {
     model_destroy(&model);
 }
 
+TEST(a_ball_of_light_is_a_point_light_in_its_middle_in_a_glb) {
+    struct model model;
+    const double lumens = 683 * PI;
+    expect("gr.render{node = gr.sphere{}, width = 8, height = 8, colour = 'linear', lights = {\n"
+           "gr.spherical_light{position = {1, 2, 3}, radius = 0.5, emission = {4, 2, 1}}}}\n",
+           "-o x.glb scene.lua", 0, "a light with an extent is a point in its middle");
+    read_file(&model, "x.glb", -1);
+    const struct model_light *light = model_lights(&model);
+    CHECK_EQ_INT(model.lights.count, 1);
+    if (model.lights.count == 1) {
+        struct vec3 at = affine_point(&light->model_from_light, vec3_all(0));
+        check_colour("ball", light->intensity, lumens, lumens / 2, lumens / 4);
+        CHECK(at.x == 1 && at.y == 2 && at.z == 3);
+    }
+    model_destroy(&model);
+}
+
 static struct vec3 position_of(const char *file, const char *name, double time) {
     struct model model;
     read_file(&model, file, time);

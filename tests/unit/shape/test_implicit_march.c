@@ -152,6 +152,76 @@ TEST(crossings_with_a_tolerance_are_within_it_and_their_normals_are_those_of_the
     CHECK_TEXT(said, "");
 }
 
+/* --- rays together --- */
+
+/* Of rays that begin before, in and behind a solid: the exact nearest crossing; certain: the stretches before and
+ * behind it are too long to be missed with the tolerance. Returns the rays that have one as bits. */
+static uint64_t search_exactly(const struct shape *shape, const struct ray *rays, struct geom_scratch *scratch,
+                               double share, struct crossing *out, uint64_t *certain) {
+    uint64_t found = 0;
+    *certain = 0;
+    for (uint32_t i = 0; i < EXPR_BATCH; i++) {
+        const bool met = shape_nearest(shape, &rays[i], scratch, &out[i]);
+        const double room = met ? 2 * share * out[i].t : 0;
+        const bool is_long =
+            !met || (out[i].t - rays[i].t_min > room && rays[i].t_max - out[i].t > room &&
+                     shape_contains(shape, ray_at(&rays[i], out[i].t + room), scratch) == out[i].enter);
+        found |= (uint64_t)met << i;
+        *certain |= (uint64_t)is_long << i;
+    }
+    return found;
+}
+
+static void search_together(struct listener *listener, const struct render_request *request) {
+    const double share = 0x1p-11;
+    struct geom_scratch scratch;
+    struct test_random random = {20};
+    int number = 0;
+    (void)listener;
+    CHECK(geom_scratch_init(&scratch, 100000));
+    for (const struct node_child *link = request->root->first_child; link; link = link->next, number++) {
+        const struct shape *shape = &link->node->shape;
+        int compared = 0, wrong = 0;
+        for (int round = 0; round < 20; round++) {
+            struct ray rays[EXPR_BATCH];
+            struct crossing exact[EXPR_BATCH], got[EXPR_BATCH];
+            const uint64_t active = round == 0 ? 1 : ~(UINT64_C(1) << round);
+            uint64_t certain;
+            for (int i = 0; i < EXPR_BATCH; i++) {
+                rays[i] = random_line(&random, 1.2);
+                rays[i].t_min = i % 4 == 0 ? 20 + test_uniform(&random, -1, 1) : 0;
+                rays[i].t_max = i % 5 == 0 ? 21 : INFINITY;
+            }
+            scratch.tolerance = 0;
+            CHECK(!shape_takes_packets(shape, &scratch));
+            const uint64_t want = search_exactly(shape, rays, &scratch, share, exact, &certain);
+            scratch.tolerance = (float)share;
+            CHECK(shape_takes_packets(shape, &scratch));
+            const uint64_t found = shape_nearest_packet(shape, rays, active, &scratch, got);
+            CHECK((found & ~active) == 0);
+            for (int i = 0; i < EXPR_BATCH; i++) {
+                if (!((active & certain) >> i & 1))
+                    continue;
+                const bool met = found >> i & 1;
+                compared += met;
+                wrong +=
+                    met != (want >> i & 1) ||
+                    (met && (fabs(got[i].t - exact[i].t) > 2 * share * exact[i].t || got[i].enter != exact[i].enter));
+                if (met && number == 0) {
+                    struct surface surface;
+                    shape_describe(shape, &rays[i], &got[i], &surface);
+                    CHECK_NEAR(vec3_length(surface.point), 0.9, 1e-6);
+                    CHECK(vec3_dot(surface.normal, surface.point) > 0.9 * (1 - 1e-6));
+                }
+            }
+        }
+        if (compared < 100 || wrong > 0)
+            test_fail(__FILE__, __LINE__, "solid %d: %d crossings, %d differ", number, compared, wrong);
+    }
+    CHECK_EQ_INT(number, 13);
+    geom_scratch_destroy(&scratch);
+}
+
 /* --- fractals --- */
 
 static long samples, wrong_samples, crossings;
@@ -208,6 +278,29 @@ static void check_sides(struct listener *listener, const struct render_request *
     "local d, s = max(x, y, z) - 1, 1 for k = 1, levels do local function fold(u) u = (u * s) % 2 - 1 "                \
     "return abs(1 - 3 * abs(u)) end local a, b, c = fold(p.x), fold(p.y), fold(p.z) s = 3 * s "                        \
     "d = max(d, (min(max(a, b), max(b, c), max(c, a)) - 1) / s) end return d end end "
+
+TEST(rays_that_are_searched_together_have_the_exact_crossings_within_the_tolerance) {
+    char said[8192];
+    see_solids(
+        BEGIN MENGER
+        "local sdf = require 'sdf' local ball = sdf.sphere(0.9) local box = sdf.box{0.5, 0.8, 0.3} local many = {} "
+        "for i = 1, 30 do many[i] = sdf.translate(sdf.sphere(0.3), {math.sin(i), math.sin(2 * i), math.cos(3 * i)}) "
+        "end "
+        "for _, f in ipairs{ball, box, sdf.torus(0.8, 0.3), sdf.difference(ball, box), sdf.shell(ball, 0.1), "
+        "sdf.union(table.unpack(many)), menger(2), "
+        /* a jump, and an estimate that knows nothing of the inside */
+        "function(p) return gr.where(gr.length(p) - 0.9, -0.5, gr.length(p) - 0.9) end, "
+        "function(p) return max(0.5 * (gr.length(p) - 0.9), 0) - 0.001 end} do "
+        "root:add_child(gr.implicit{f = f, " CUBE ", distance = true}) end "
+        /* caps on the bounds, and none */
+        "root:add_child(gr.implicit{f = sdf.plane({1, 2, 0}, 0.2), " CUBE ", distance = true}) "
+        "root:add_child(gr.implicit{f = sdf.plane({1, 2, 0}, 0.2), radius = 1.2, lipschitz = 1}) "
+        "root:add_child(gr.implicit{f = sdf.plane({1, 2, 0}, 0.2), radius = 1.2, lipschitz = 1, open = true}) "
+        "root:add_child(gr.implicit{f = function(p) return 5 * (gr.length(p * gr.vec(1, 2, 3)) - 1) end, " CUBE
+        ", lipschitz = 15})" END,
+        search_together, said, sizeof said);
+    CHECK_TEXT(said, "");
+}
 
 TEST(lines_are_inside_of_folded_fractals_where_their_distance_is_below_zero) {
     char said[8192];

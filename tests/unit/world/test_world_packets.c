@@ -117,6 +117,44 @@ static void check_packets(const struct world *world, const char *what) {
     world_scratch_destroy(&scratch);
 }
 
+/* Rays that pass through a ball for longer than its surface may be off. */
+static void check_tolerance(const struct world *world, const char *what) {
+    const double share = 0x1p-12;
+    struct test_random random = {21};
+    struct world_scratch scratch;
+    uint32_t compared = 0, wrong = 0;
+    CHECK(world_scratch_init(&scratch, world));
+    for (int packet = 0; packet < 100; packet++) {
+        struct ray rays[PACKET_RAYS];
+        struct packet_answer answers[PACKET_RAYS];
+        make_rays(&random, rays, PACKET_RAYS);
+        scratch.geom.tolerance = (float)share;
+        const uint64_t met = trace_packet(world, rays, PACKET_RAYS, &scratch, answers);
+        scratch.geom.tolerance = 0;
+        for (uint32_t i = 0; i < PACKET_RAYS; i++) {
+            struct ray rest = rays[i];
+            struct hit hit, exact;
+            if (!world_nearest(world, &rays[i], &scratch, &exact))
+                continue;
+            const double room = 2 * share * exact.t;
+            rest.t_min = exact.t;
+            rest.t_max = exact.t + 2 * room;
+            if (exact.t - rays[i].t_min < room || world_nearest(world, &rest, &scratch, &hit))
+                continue;
+            compared++;
+            if (met >> i & 1)
+                world_describe(world, &rays[i], answers[i].primitive, &answers[i].crossing, &hit);
+            wrong += !(met >> i & 1) || fabs(hit.t - exact.t) > room || hit.primitive != exact.primitive ||
+                     vec3_dot(hit.normal_geometric, exact.normal_geometric) < 0.999;
+        }
+    }
+    if (wrong > 0 || compared < 500)
+        test_fail(__FILE__, __LINE__, "%s: %u of %u rays differ by more than the tolerance", what, wrong, compared);
+    world_scratch_destroy(&scratch);
+}
+
+static void (*check_world)(const struct world *world, const char *what);
+
 static void hear_of_scene(void *context, const char *text) {
     (void)context, (void)text;
 }
@@ -141,7 +179,7 @@ static void check_scene(struct listener *listener, const struct render_request *
                                           .warn = hear_of_scene};
         if (world_build(&world, &input, &arena, pool, &error)) {
             (void)snprintf(what, sizeof what, "accelerator %d", (int)accels[k]);
-            check_packets(&world, what);
+            check_world(&world, what);
             world_destroy(&world);
         } else {
             test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -157,11 +195,30 @@ TEST(packets_of_rays_meet_what_single_rays_meet_with_every_accelerator) {
     static const float holes[12] = {0, 0, 0, 1, 1, 1, 0.7F, 0.7F, 0.7F, 0.25F, 0.25F, 0.25F};
     char path[600], bytes[64];
     struct error error = {0};
+    check_world = check_packets;
     int head = snprintf(bytes, sizeof bytes, "PF\n2 2\n-1.0\n");
     memcpy(bytes + head, holes, 48);
     (void)snprintf(path, sizeof path, "%s/holes.pfm", test_folder());
     test_write_file(path, bytes, (size_t)head + 48);
     if (!listen_to_text(&listener, scene, NULL, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
+    CHECK_EQ_INT(listener.renders, 1);
+}
+
+TEST(packets_with_a_tolerance_meet_moved_solids_by_functions_within_it) {
+    static struct listener listener = {.seen = check_scene};
+    struct error error = {0};
+    check_world = check_tolerance;
+    bool done = listen_to_text(
+        &listener,
+        "local root = gr.node 'root' for i = 1, 40 do "
+        "local ball = gr.implicit{f = function(p) return gr.length(p) - 1 end, radius = 1.2, distance = true} "
+        "ball:scale(1 + i % 3, 1, 2) ball:rotate('z', 30 * i) "
+        "ball:translate(7 * math.sin(i), 7 * math.sin(2 * i), 7 * math.cos(3 * i)) root:add_child(ball) end "
+        "root:add_child(gr.plane{normal = {0, 1, 0}, distance = -8}) "
+        "gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}, lights = {}}",
+        NULL, &error);
+    CHECK_TEXT(error.text, "");
+    CHECK(done);
     CHECK_EQ_INT(listener.renders, 1);
 }
