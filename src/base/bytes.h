@@ -1,7 +1,8 @@
-/* Numbers as bytes of a file, little-endian. The position moves behind them. */
+/* Numbers as bytes of a file, little-endian (the position moves behind them), and bytes as base64. */
 #ifndef GRAY_BASE_BYTES_H
 #define GRAY_BASE_BYTES_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -28,6 +29,18 @@ static inline double bytes_get_number(const uint8_t **at) {
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
+}
+
+/* The characters for the first three of `left` bytes, at least one; those without a byte are '=' (RFC 4648). */
+static inline void bytes_base64(const uint8_t *bytes, size_t left, char out[4]) {
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    uint32_t word = 0;
+    for (size_t k = 0; k < 3; k++)
+        word = word << 8 | (k < left ? bytes[k] : 0U);
+    for (size_t k = 0; k < 4; k++)
+        out[k] = '=';
+    for (size_t k = 0; k < 4 && k <= left; k++)
+        out[k] = letters[word >> (18 - 6 * k) & 63];
 }
 
 #endif

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE /* memmem */
 #include "export/gltf_file_internal.h"
 
+#include "base/bytes.h"
 #include "base/hash.h"
 #include "base/json_write.h"
 #include "base/list.h"
@@ -180,21 +181,6 @@ static bool uses(const struct gltf_file *file, const char *extension) {
     return found;
 }
 
-static void put_base64(struct gltf_text *text, const uint8_t *bytes, size_t size) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    gltf_put(text, "'uri':");
-    put(text, "\"data:application/octet-stream;base64,", 38);
-    for (size_t i = 0; i < size; i += 3) {
-        uint32_t word = (uint32_t)bytes[i] << 16;
-        word |= i + 1 < size ? (uint32_t)bytes[i + 1] << 8 : 0;
-        word |= i + 2 < size ? bytes[i + 2] : 0;
-        const char four[4] = {digits[word >> 18], digits[word >> 12 & 63], i + 1 < size ? digits[word >> 6 & 63] : '=',
-                              i + 2 < size ? digits[word & 63] : '='};
-        put(text, four, sizeof four);
-    }
-    put(text, "\"", 1);
-}
-
 static void put_buffer(struct gltf_text *text, const struct gltf_file *file, bool binary) {
     const struct gltf_view *views = file->views.items;
     if (file->bytes.count == 0)
@@ -208,8 +194,16 @@ static void put_buffer(struct gltf_text *text, const struct gltf_file *file, boo
     }
     gltf_put(text, "]");
     gltf_put(text, "'buffers':[{'byteLength':%g", (double)file->bytes.count);
-    if (!binary)
-        put_base64(text, file->bytes.items, file->bytes.count);
+    if (!binary) {
+        gltf_put(text, "'uri':");
+        put(text, "\"data:application/octet-stream;base64,", 38);
+        for (size_t i = 0; i < file->bytes.count; i += 3) {
+            char four[4];
+            bytes_base64((const uint8_t *)file->bytes.items + i, file->bytes.count - i, four);
+            put(text, four, sizeof four);
+        }
+        put(text, "\"", 1);
+    }
     gltf_put(text, "}]");
 }
 

@@ -37,10 +37,10 @@ static struct gltf_vertex vertex_make(struct vec3 point, struct vec3 normal, dou
 }
 
 /* Triangles with a side of no length are left out. */
-static bool add_triangle(struct gltf_surface *s, uint32_t a, uint32_t b, uint32_t c, uint32_t material) {
+static bool add_triangle(struct gltf_surface *s, uint32_t a, uint32_t b, uint32_t c) {
     const struct gltf_vertex *v = gltf_vertices(s);
     const size_t size = sizeof v->point;
-    const struct gltf_triangle triangle = {{a, b, c}, material};
+    const struct gltf_triangle triangle = {{a, b, c}, s->material};
     return memcmp(v[a].point, v[b].point, size) == 0 || memcmp(v[b].point, v[c].point, size) == 0 ||
            memcmp(v[c].point, v[a].point, size) == 0 || list_add(&s->triangles, &triangle, 1, sizeof triangle);
 }
@@ -52,26 +52,23 @@ typedef void grid_function(const void *context, double u, double v, struct vec3 
 struct surface_grid {
     grid_function *at;
     const void *context;
-    uint32_t columns, rows, material;
-    double corner[2], size[2]; /* in the unit square */
-    bool falls;                /* the diagonal of a cell, from the left */
+    uint32_t columns, rows;
 };
+static const double whole[4] = {0, 0, 1, 1}; /* of the unit square: a corner, and the size */
 
-static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid) {
+static bool add_grid(struct gltf_surface *s, const struct surface_grid *grid, const double part[4]) {
     uint32_t first = (uint32_t)s->vertices.count, width = grid->columns + 1;
     bool ok = true;
     for (uint32_t i = 0; ok && i < width * (grid->rows + 1); i++) {
         double u = (double)(i % width) / grid->columns, v = (double)(i / width) / grid->rows;
         struct vec3 point, normal;
         grid->at(grid->context, u, v, &point, &normal);
-        struct gltf_vertex vertex =
-            vertex_make(point, normal, grid->corner[0] + u * grid->size[0], grid->corner[1] + v * grid->size[1]);
+        struct gltf_vertex vertex = vertex_make(point, normal, part[0] + u * part[2], part[1] + v * part[3]);
         ok = list_add(&s->vertices, &vertex, 1, sizeof vertex);
     }
     for (uint32_t i = 0; ok && i < grid->columns * grid->rows; i++) {
         uint32_t a = first + i / grid->columns * width + i % grid->columns, d = a + width;
-        ok = add_triangle(s, a, a + 1, grid->falls ? d : d + 1, grid->material) &&
-             add_triangle(s, grid->falls ? a + 1 : a, d + 1, d, grid->material);
+        ok = add_triangle(s, a, a + 1, s->falls ? d : d + 1) && add_triangle(s, s->falls ? a + 1 : a, d + 1, d);
     }
     s->has_normals = s->is_unfolded = true;
     return ok;
@@ -91,11 +88,21 @@ static struct vec3 circle_at(double u, struct vec3 x, struct vec3 y) {
 
 static const struct vec3 x_axis = {1, 0, 0}, y_axis = {0, 1, 0}, back = {0, 0, -1};
 
+struct ball {
+    struct vec3 centre;
+    double radius;
+};
+
 static void ball_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
-    (void)context;
+    const struct ball *ball = context;
     struct vec3 side = circle_at(v == 1 ? 0.25 : v / 2 - 0.25, x_axis, y_axis);
     double radius = v == 0 || v == 1 ? 0 : side.x;
-    *normal = *point = vec3_add_scaled(vec3_scale(y_axis, side.y), circle_at(u == 1 ? 0 : u, x_axis, back), radius);
+    *normal = vec3_add_scaled(vec3_scale(y_axis, side.y), circle_at(u == 1 ? 0 : u, x_axis, back), radius);
+    *point = vec3_add_scaled(ball->centre, *normal, ball->radius);
+}
+
+static bool add_ball(struct gltf_surface *s, const struct ball *ball, uint32_t columns) {
+    return ball->radius == 0 || add_grid(s, &(struct surface_grid){ball_at, ball, columns, columns / 2}, whole);
 }
 
 static void torus_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
@@ -135,34 +142,20 @@ static void end_at(const void *context, double u, double v, struct vec3 *point, 
     *point = vec3_add_scaled(vec3_add_scaled(t->shape->base, t->shape->axis, t->height), out, t->radius * (1 - v));
 }
 
-static bool add_turned(struct gltf_surface *s, const struct revolved_quadric *q, double share, uint32_t material) {
+static bool add_turned(struct gltf_surface *s, const struct revolved_quadric *q, uint32_t columns) {
     struct vec3 x, y;
     frame_tangents(q->axis, &x, &y);
     y = vec3_cross(q->axis, x);
     struct turned turned = {.shape = q, .x = x, .y = y};
     bool straight = fabs(q->b * q->b - 4 * q->a * q->c) <= 1e-12 * (q->b * q->b + fabs(4 * q->a * q->c));
-    const double rim = q->open ? 0 : 0.25;
-    const uint32_t n = chords(share);
-    struct surface_grid grid = {.at = side_at,
-                                .context = &turned,
-                                .columns = n,
-                                .rows = straight ? 1 : n,
-                                .material = material,
-                                .corner = {0, 0},
-                                .size = {1, 1 - rim}};
-    bool ok = add_grid(s, &grid);
+    const double rim = q->open ? 0 : 0.25, side[4] = {0, 0, 1, 1 - rim};
+    bool ok = add_grid(s, &(struct surface_grid){side_at, &turned, columns, straight ? 1 : columns}, side);
     for (int end = 0; ok && end < 2 && !q->open; end++) {
+        const double part[4] = {end / 2.0, 1 - rim, 0.5, rim};
         turned.height = end ? q->hi : q->lo;
         turned.radius = sqrt(math_max((q->a * turned.height + q->b) * turned.height + q->c, 0));
         turned.y = end ? y : vec3_negate(y);
-        grid = (struct surface_grid){.at = end_at,
-                                     .context = &turned,
-                                     .columns = n,
-                                     .rows = 1,
-                                     .material = material,
-                                     .corner = {end / 2.0, 1 - rim},
-                                     .size = {0.5, rim}};
-        ok = turned.radius == 0 || add_grid(s, &grid);
+        ok = turned.radius == 0 || add_grid(s, &(struct surface_grid){end_at, &turned, columns, 1}, part);
     }
     s->is_open = q->open;
     return ok;
@@ -175,49 +168,36 @@ static void rectangle_at(const void *context, double u, double v, struct vec3 *p
     *point = vec3_add_scaled(vec3_add_scaled(corner[0], corner[1], u), corner[2], v);
 }
 
-static bool add_box(struct gltf_surface *s, uint32_t material) {
+static bool add_rectangle(struct gltf_surface *s, const struct vec3 corner[3], const double part[4]) {
+    return add_grid(s, &(struct surface_grid){rectangle_at, corner, 1, 1}, part);
+}
+
+static bool add_box(struct gltf_surface *s) {
     bool ok = true;
     for (int side = 0; ok && side < 6; side++) {
         const int i = side / 2;
+        const double part[4] = {side % 3 / 3.0, side / 3 / 2.0, 1 / 3.0, 1 / 2.0};
         struct vec3 u = vec3_make(i == 2, i == 0, i == 1), v = vec3_make(i == 1, i == 2, i == 0);
         const struct vec3 corner[3] = {side % 2 ? vec3_sub(vec3_all(1), vec3_add(u, v)) : vec3_all(0), side % 2 ? u : v,
                                        side % 2 ? v : u};
-        ok = add_grid(s, &(struct surface_grid){.at = rectangle_at,
-                                                .context = corner,
-                                                .columns = 1,
-                                                .rows = 1,
-                                                .material = material,
-                                                .corner = {side % 3 / 3.0, side / 3 / 2.0},
-                                                .size = {1 / 3.0, 1 / 2.0}});
+        ok = add_rectangle(s, corner, part);
     }
     return ok;
 }
 
 /* --- flat shapes --- */
 
-static bool add_planar_vertex(struct gltf_surface *s, const struct planar *p, double a, double b,
-                              const double scale[2]) {
+static bool add_planar_vertex(struct gltf_surface *s, const struct planar *p, double a, double b) {
     struct vec3 point = vec3_add_scaled(vec3_add_scaled(p->origin, p->u, a), p->v, b);
-    struct gltf_vertex vertex = vertex_make(point, p->normal, scale[0] + scale[1] * a, scale[0] + scale[1] * b);
+    struct gltf_vertex vertex = vertex_make(point, p->normal, a, b);
     return list_add(&s->vertices, &vertex, 1, sizeof vertex);
 }
 
-/* The ring from the hole to the edge. */
-static bool add_disc(struct gltf_surface *s, const struct planar *p, double share, uint32_t material) {
-    const uint32_t n = chords(share);
-    const double scale[2] = {0.5, 0.5};
-    bool ok = true;
-    for (uint32_t i = 0; ok && i < n; i++) {
-        double cosine, sine;
-        el_sincos(2 * PI * i / n, &sine, &cosine);
-        ok = add_planar_vertex(s, p, p->inner * cosine, p->inner * sine, scale) &&
-             add_planar_vertex(s, p, cosine, sine, scale);
-    }
-    for (uint32_t i = 0; ok && i < 2 * n; i += 2) {
-        uint32_t next = (i + 2) % (2 * n);
-        ok = add_triangle(s, i, i + 1, next + 1, material) && add_triangle(s, i, next + 1, next, material);
-    }
-    return ok;
+/* The ring from the hole to the edge, which u follows. */
+static void ring_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
+    const struct planar *p = context;
+    *normal = p->normal;
+    *point = vec3_add_scaled(p->origin, circle_at(u == 1 ? 0 : u, p->u, p->v), p->inner * v + 1 - v);
 }
 
 struct edge {
@@ -244,10 +224,8 @@ static double along_edge(const struct edge *edge, double b) {
 }
 
 /* Between two levels of b next to each other, the outlines are lines: the even ones begin trapezoids. */
-static bool add_slab(struct gltf_surface *s, const struct planar *p, const struct list *edges, const double levels[2],
-                     uint32_t material) {
+static bool add_slab(struct gltf_surface *s, const struct planar *p, const struct list *edges, const double levels[2]) {
     const struct edge *edge = edges->items;
-    const double scale[2] = {0, 1};
     struct list found = {0};
     bool ok = true;
     for (size_t i = 0; ok && i < edges->count; i++) {
@@ -260,18 +238,15 @@ static bool add_slab(struct gltf_surface *s, const struct planar *p, const struc
         qsort(found.items, found.count, sizeof *at, by_middle);
     for (size_t i = 0; ok && i + 1 < found.count; i += 2) {
         uint32_t first = (uint32_t)s->vertices.count;
-        ok = add_planar_vertex(s, p, at[i].low, levels[0], scale) &&
-             add_planar_vertex(s, p, at[i + 1].low, levels[0], scale) &&
-             add_planar_vertex(s, p, at[i + 1].high, levels[1], scale) &&
-             add_planar_vertex(s, p, at[i].high, levels[1], scale) &&
-             add_triangle(s, first, first + 1, first + 2, material) &&
-             add_triangle(s, first, first + 2, first + 3, material);
+        ok = add_planar_vertex(s, p, at[i].low, levels[0]) && add_planar_vertex(s, p, at[i + 1].low, levels[0]) &&
+             add_planar_vertex(s, p, at[i + 1].high, levels[1]) && add_planar_vertex(s, p, at[i].high, levels[1]) &&
+             add_triangle(s, first, first + 1, first + 2) && add_triangle(s, first, first + 2, first + 3);
     }
     list_destroy(&found);
     return ok;
 }
 
-static bool add_polygon(struct gltf_surface *s, const struct planar *p, uint32_t material) {
+static bool add_polygon(struct gltf_surface *s, const struct planar *p) {
     struct list edges = {0}, levels = {0};
     uint32_t count;
     bool ok = true;
@@ -288,34 +263,35 @@ static bool add_polygon(struct gltf_surface *s, const struct planar *p, uint32_t
     if (levels.count > 1)
         qsort(level, levels.count, sizeof *level, by_number);
     for (size_t i = 0; ok && i + 1 < levels.count; i++)
-        ok = level[i] == level[i + 1] || add_slab(s, p, &edges, &level[i], material);
+        ok = level[i] == level[i + 1] || add_slab(s, p, &edges, &level[i]);
     list_destroy(&edges);
     list_destroy(&levels);
     return ok;
 }
 
-static bool add_planar(struct gltf_surface *s, const struct planar *p, double share, uint32_t material) {
-    const double scale[2] = {0, 1};
+static bool add_planar(struct gltf_surface *s, const struct planar *p, uint32_t columns) {
     const struct vec3 corner[3] = {p->origin, p->u, p->v};
-    s->has_normals = s->is_unfolded = s->is_open = true;
+    bool ok = true;
     switch (p->kind) {
     case PLANAR_PLANE:
-        return true;
+        break;
     case PLANAR_PARALLELOGRAM:
         s->has_uv = true;
-        return add_grid(
-            s,
-            &(struct surface_grid){
-                .at = rectangle_at, .context = corner, .columns = 1, .rows = 1, .material = material, .size = {1, 1}});
+        ok = add_rectangle(s, corner, whole);
+        break;
     case PLANAR_DISC:
-        return add_disc(s, p, share, material);
+        ok = add_grid(s, &(struct surface_grid){ring_at, p, columns, 1}, whole);
+        break;
     case PLANAR_TRIANGLE:
-        return add_planar_vertex(s, p, 0, 0, scale) && add_planar_vertex(s, p, 1, 0, scale) &&
-               add_planar_vertex(s, p, 0, 1, scale) && add_triangle(s, 0, 1, 2, material);
+        ok = add_planar_vertex(s, p, 0, 0) && add_planar_vertex(s, p, 1, 0) && add_planar_vertex(s, p, 0, 1) &&
+             add_triangle(s, 0, 1, 2);
+        break;
     case PLANAR_POLYGON:
-        return add_polygon(s, p, material);
+        ok = add_polygon(s, p);
+        break;
     }
-    return true;
+    s->has_normals = s->is_unfolded = s->is_open = true;
+    return ok;
 }
 
 /* --- other shapes --- */
@@ -354,8 +330,8 @@ static bool add_mesh(struct gltf_surface *s, const struct mesh *mesh, const stru
             s->has_colours = s->has_colours || at.has_colour;
             ok = find_vertex(s, &known, &own, &vertex[k]);
         }
-        ok = ok && add_triangle(s, vertex[0], vertex[1], vertex[2],
-                                prototype->material + (prototype->slot_count > 1 ? slot : 0));
+        s->material = prototype->material + (prototype->slot_count > 1 ? slot : 0);
+        ok = ok && add_triangle(s, vertex[0], vertex[1], vertex[2]);
     }
     key_map_destroy(&known);
     return ok;
@@ -393,38 +369,23 @@ static void wall_at(const void *context, double u, double v, struct vec3 *point,
 }
 
 static bool add_height_field(struct gltf_surface *s, const struct height_field *field, struct arena *arena,
-                             uint32_t material, struct error *error) {
+                             struct error *error) {
     struct heights h = {.corner = {0, 0, 0}};
     if (!height_field_refine(field, 1, arena, &h.field, error))
         return false;
-    struct surface_grid grid = {.at = height_field_at,
-                                .context = &h,
-                                .columns = h.field.columns - 1,
-                                .rows = h.field.rows - 1,
-                                .material = material,
-                                .size = {1, h.field.open ? 1 : 0.75},
-                                .falls = true};
-    bool ok = add_grid(s, &grid);
+    const uint32_t columns = h.field.columns - 1, rows = h.field.rows - 1;
+    const double top[4] = {0, 0, 1, h.field.open ? 1 : 0.75}, below[4] = {0.8, 0.75, 0.2, 0.25};
+    const struct vec3 floor[3] = {{0, h.field.floor, 0}, x_axis, vec3_negate(back)};
+    s->falls = true;
+    bool ok = add_grid(s, &(struct surface_grid){height_field_at, &h, columns, rows}, top);
+    s->falls = false;
     for (int i = 0; ok && i < 4 && !h.field.open; i++) {
+        const double part[4] = {0.2 * i, 0.75, 0.2, 0.25};
         h.corner = vec3_make(i == 1 || i == 2, 0, i < 2);
         h.along = i == 0 ? x_axis : i == 1 ? back : i == 2 ? vec3_negate(x_axis) : vec3_negate(back);
-        grid = (struct surface_grid){.at = wall_at,
-                                     .context = &h,
-                                     .columns = (i % 2 ? h.field.rows : h.field.columns) - 1,
-                                     .rows = 1,
-                                     .material = material,
-                                     .corner = {0.2 * i, 0.75},
-                                     .size = {0.2, 0.25}};
-        ok = add_grid(s, &grid);
+        ok = add_grid(s, &(struct surface_grid){wall_at, &h, i % 2 ? rows : columns, 1}, part);
     }
-    const struct vec3 floor[3] = {{0, h.field.floor, 0}, x_axis, vec3_negate(back)};
-    ok = ok && (h.field.open || add_grid(s, &(struct surface_grid){.at = rectangle_at,
-                                                                   .context = floor,
-                                                                   .columns = 1,
-                                                                   .rows = 1,
-                                                                   .material = material,
-                                                                   .corner = {0.8, 0.75},
-                                                                   .size = {0.2, 0.25}}));
+    ok = ok && (h.field.open || add_rectangle(s, floor, below));
     s->is_open = h.field.open;
     s->has_normals = h.field.smooth;
     return ok || error_no_memory(error, "a height field");
@@ -462,28 +423,8 @@ static void tube_at(const void *context, double u, double v, struct vec3 *point,
     *point = vec3_add_scaled(*point, *normal, radius);
 }
 
-struct ball {
-    struct vec3 centre;
-    double radius;
-};
-
-static void end_ball_at(const void *context, double u, double v, struct vec3 *point, struct vec3 *normal) {
-    const struct ball *ball = context;
-    ball_at(NULL, u, v, point, normal);
-    *point = vec3_add_scaled(ball->centre, *normal, ball->radius);
-}
-
-static bool add_ball(struct gltf_surface *s, const struct ball *ball, uint32_t columns, uint32_t material) {
-    return ball->radius == 0 || add_grid(s, &(struct surface_grid){.at = end_ball_at,
-                                                                   .context = ball,
-                                                                   .columns = columns,
-                                                                   .rows = columns / 2,
-                                                                   .material = material,
-                                                                   .size = {1, 1}});
-}
-
 /* Tubes; a sweep has balls where its path ends or turns. */
-static bool add_tubes(struct gltf_surface *s, const struct shape *shape, double tolerance, uint32_t material) {
+static bool add_tubes(struct gltf_surface *s, const struct shape *shape, double tolerance) {
     const bool is_sweep = shape->kind == SHAPE_SWEEP;
     struct vec3 before = {0, 0, 0};
     struct ball last = {.radius = 0};
@@ -500,16 +441,11 @@ static bool add_tubes(struct gltf_surface *s, const struct shape *shape, double 
         bool goes_on = vec3_length(vec3_sub(first.centre, last.centre)) <= 1e-9 * first.radius &&
                        vec3_dot(before, along) > 0.999 * vec3_length(before) * vec3_length(along);
         if (is_sweep && !goes_on)
-            ok = add_ball(s, &last, columns, material) && add_ball(s, &first, columns, material);
-        ok = ok && add_grid(s, &(struct surface_grid){.at = tube_at,
-                                                      .context = &tube,
-                                                      .columns = columns,
-                                                      .rows = 4,
-                                                      .material = material,
-                                                      .size = {1, 1}});
+            ok = add_ball(s, &last, columns) && add_ball(s, &first, columns);
+        ok = ok && add_grid(s, &(struct surface_grid){tube_at, &tube, columns, 4}, whole);
         last.centre = tube_ball(&tube, 1, &last.radius, &before, &unused);
     }
-    ok = ok && (!is_sweep || add_ball(s, &last, chords(tolerance / math_max(2 * last.radius, tolerance)), material));
+    ok = ok && (!is_sweep || add_ball(s, &last, chords(tolerance / math_max(2 * last.radius, tolerance))));
     s->is_unfolded = false;
     s->is_open = !is_sweep;
     return ok;
@@ -544,8 +480,8 @@ static bool add_solid_mesh(struct gltf_surface *s, const struct solid_mesh *mesh
             struct gltf_vertex own = vertex_make(at->point, normal_for(at, triangle->surface, facet), 0, 0);
             ok = find_vertex(s, &known, &own, &vertex[k]);
         }
-        ok =
-            ok && add_triangle(s, vertex[0], vertex[1], vertex[2], csg->leaves[solid_leaf(triangle->surface)].material);
+        s->material = csg->leaves[solid_leaf(triangle->surface)].material;
+        ok = ok && add_triangle(s, vertex[0], vertex[1], vertex[2]);
     }
     s->has_normals = true;
     key_map_destroy(&known);
@@ -636,48 +572,45 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
     const struct prototype *prototype = primitive_prototype(source->world, source->primitive);
     const double share = source->share;
     const struct shape *shape = &prototype->geometry.shape;
-    const uint32_t material = prototype->material;
     const struct box box = geometry_bounds(&prototype->geometry);
     struct arena arena = {0};
     bool ok = true, is_solid = prototype->geometry.csg != NULL;
-    *out =
-        (struct gltf_surface){.object_from_surface = transform_identity(), .why = why_left_out(&prototype->geometry)};
-    struct surface_grid grid = {.material = material, .size = {1, 1}, .columns = chords(share)};
-    grid.rows = grid.columns / 2;
+    const uint32_t columns = chords(share);
+    uint32_t rows;
+    *out = (struct gltf_surface){.object_from_surface = transform_identity(),
+                                 .why = why_left_out(&prototype->geometry),
+                                 .material = prototype->material};
     if (out->why)
         return true;
     out->is_unit = gltf_surface_is_unit(&prototype->geometry, &out->object_from_surface);
     switch (is_solid ? SHAPE_BLOB : shape->kind) {
     case SHAPE_SPHERE:
     case SHAPE_ELLIPSOID:
-        grid.at = ball_at;
-        ok = add_grid(out, &grid);
+        ok = add_ball(out, &(struct ball){{0, 0, 0}, 1}, columns);
         break;
     case SHAPE_BOX:
-        ok = add_box(out, material);
+        ok = add_box(out);
         break;
     case SHAPE_REVOLVED_QUADRIC:
         is_solid = !is_whole(&shape->revolved_quadric);
         if (is_solid && shape->revolved_quadric.open)
             out->why = "has no caps";
-        ok = is_solid || add_turned(out, &shape->revolved_quadric, share, material);
+        ok = is_solid || add_turned(out, &shape->revolved_quadric, columns);
         break;
     case SHAPE_TORUS:
         is_solid = shape->torus.minor > shape->torus.major;
-        grid.at = torus_at;
-        grid.context = &shape->torus;
-        grid.rows = chords(share * (shape->torus.major + shape->torus.minor) / shape->torus.minor);
-        ok = is_solid || add_grid(out, &grid);
+        rows = chords(share * (shape->torus.major + shape->torus.minor) / shape->torus.minor);
+        ok = is_solid || add_grid(out, &(struct surface_grid){torus_at, &shape->torus, columns, rows}, whole);
         break;
     case SHAPE_PLANAR:
-        ok = add_planar(out, &shape->planar, share, material);
+        ok = add_planar(out, &shape->planar, columns);
         break;
     case SHAPE_HEIGHT_FIELD:
-        ok = add_height_field(out, shape->height_field, &arena, material, error);
+        ok = add_height_field(out, shape->height_field, &arena, error);
         break;
     case SHAPE_CURVE:
     case SHAPE_SWEEP:
-        ok = add_tubes(out, shape, share * vec3_max_abs(vec3_sub(box.max, box.min)), material);
+        ok = add_tubes(out, shape, share * vec3_max_abs(vec3_sub(box.max, box.min)));
         break;
     case SHAPE_MESH:
         ok = add_mesh(out, shape->mesh, prototype);

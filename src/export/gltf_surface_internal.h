@@ -24,8 +24,10 @@ struct gltf_surface {
     bool is_open;
     bool is_unit; /* in a space of its own: spheres of all sizes are one */
     struct transform object_from_surface;
-    const char *why;  /* it is left out: the end of a sentence; or NULL */
-    double tolerance; /* about the largest distance from the exact one, in its space */
+    uint32_t material; /* of triangles that are added */
+    bool falls;        /* likewise of grids: the diagonal of a cell, from the left */
+    const char *why;   /* it is left out: the end of a sentence; or NULL */
+    double tolerance;  /* about the largest distance from the exact one, in its space */
 };
 void gltf_surface_destroy(struct gltf_surface *surface);
 

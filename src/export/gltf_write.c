@@ -124,27 +124,18 @@ static struct vec3 column(const struct affine *map, int k) {
     return vec3_make(map->m[0][k], map->m[1][k], map->m[2][k]);
 }
 
-/* Of a rotation by its columns (K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985): from the
- * largest of its components. */
-static void quaternion_of(const struct vec3 c[3], double out[4]) {
-    const double m[3][3] = {{c[0].x, c[1].x, c[2].x}, {c[0].y, c[1].y, c[2].y}, {c[0].z, c[1].z, c[2].z}};
-    double trace = m[0][0] + m[1][1] + m[2][2], length = 0;
-    int i = m[1][1] > m[0][0] ? 1 : 0;
-    i = m[2][2] > m[i][i] ? 2 : i;
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = 1 + m[i][i] - m[j][j] - m[k][k];
-    out[j] = m[j][i] + m[i][j];
-    out[k] = m[k][i] + m[i][k];
-    out[3] = m[k][j] - m[j][k];
-    if (trace > 0) {
-        for (int n = 0; n < 3; n++)
-            out[n] = m[(n + 2) % 3][(n + 1) % 3] - m[(n + 1) % 3][(n + 2) % 3];
-        out[3] = 1 + trace;
-    }
+static struct affine of_columns(const struct vec3 c[3], struct vec3 move) {
+    return (struct affine){
+        {{c[0].x, c[1].x, c[2].x, move.x}, {c[0].y, c[1].y, c[2].y, move.y}, {c[0].z, c[1].z, c[2].z, move.z}}};
+}
+
+/* Of a rotation by its columns. */
+static void quaternion_of(const struct vec3 columns[3], double out[4]) {
+    const struct affine turn = of_columns(columns, vec3_all(0));
+    affine_quaternion(&turn, out);
+    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3]);
     for (int n = 0; n < 4; n++)
-        length += out[n] * out[n];
-    for (int n = 0; n < 4; n++)
-        out[n] = out[n] / sqrt(length) + 0.0;
+        out[n] = out[n] / length + 0.0;
 }
 
 /* Turns the columns of `left` until they are at right angles; `right` is turned with them. */
@@ -184,11 +175,9 @@ static bool pose_of(const struct affine *map, struct pose *outer, struct pose *i
         left[i] = vec3_scale(left[i], 1 / outer->size[i]);
     }
     quaternion_of(left, outer->turn);
-    if (!is_plain) { /* the transpose */
-        const struct vec3 rows[3] = {vec3_make(right[0].x, right[1].x, right[2].x),
-                                     vec3_make(right[0].y, right[1].y, right[2].y),
-                                     vec3_make(right[0].z, right[1].z, right[2].z)};
-        quaternion_of(rows, inner->turn);
+    if (!is_plain) {
+        quaternion_of(right, inner->turn);
+        inner->turn[3] = 0.0 - inner->turn[3]; /* the turn back */
     }
     return is_plain;
 }
@@ -571,8 +560,7 @@ static struct affine looking(struct vec3 from, struct vec3 along, struct vec3 up
         x = vec3_normalize(x);
     else
         frame_tangents(z, &x, &other);
-    struct vec3 y = vec3_cross(z, x);
-    return (struct affine){{{x.x, y.x, z.x, from.x}, {x.y, y.y, z.y, from.y}, {x.z, y.z, z.z, from.z}}};
+    return of_columns((const struct vec3[3]){x, vec3_cross(z, x), z}, from);
 }
 
 static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *moment) {

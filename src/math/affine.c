@@ -124,6 +124,30 @@ struct transform transform_rotate_quaternion(double w, struct vec3 v) {
     return out;
 }
 
+void affine_quaternion(const struct affine *turn, double xyzw[4]) {
+    const double(*m)[4] = turn->m;
+    double trace = m[0][0] + m[1][1] + m[2][2], largest = trace;
+    int k = 3;
+    for (int i = 0; i < 3; i++) {
+        if (m[i][i] > largest) {
+            largest = m[i][i];
+            k = i;
+        }
+    }
+    if (k == 3) {
+        xyzw[3] = 1 + trace;
+        xyzw[0] = m[2][1] - m[1][2];
+        xyzw[1] = m[0][2] - m[2][0];
+        xyzw[2] = m[1][0] - m[0][1];
+    } else {
+        int a = (k + 1) % 3, b = (k + 2) % 3;
+        xyzw[k] = 1 + m[k][k] - m[a][a] - m[b][b];
+        xyzw[a] = m[a][k] + m[k][a];
+        xyzw[b] = m[b][k] + m[k][b];
+        xyzw[3] = m[b][a] - m[a][b];
+    }
+}
+
 double transform_stretch(const struct transform *t) {
     double stretch = 0;
     for (int i = 0; i < 3; i++) {

@@ -48,6 +48,9 @@ struct transform transform_rotate(int axis, double degrees);
 struct transform transform_rotate_about(struct vec3 axis, double degrees);
 /* The turn of the quaternion w + x i + y j + z k of any length but 0: about {x, y, z} by 2 atan2(|xyz|, w). */
 struct transform transform_rotate_quaternion(double w, struct vec3 xyz);
+/* The quaternion of a turn, not of unit length; the largest component is computed first (Shepperd, "Quaternion from
+ * Rotation Matrix", 1978). */
+void affine_quaternion(const struct affine *turn, double xyzw[4]);
 /* The largest row sum of absolute values of the linear part: a bound on the growth of any coordinate. */
 double transform_stretch(const struct transform *t);
 /* Whether all numbers of the map and of its inverse are finite. */

@@ -71,30 +71,10 @@ static struct affine scaled(const struct affine *a, double factor) {
     return out;
 }
 
-/* Axis and angle of a rotation, through the quaternion, of which the largest component is computed first (Shepperd,
- * "Quaternion from Rotation Matrix", 1978). */
+/* Axis and angle of a rotation. */
 static double turn_about(const struct affine *turn, struct vec3 *axis) {
-    const double(*m)[4] = turn->m;
-    double trace = m[0][0] + m[1][1] + m[2][2], q[4], largest = trace;
-    int k = 3;
-    for (int i = 0; i < 3; i++) {
-        if (m[i][i] > largest) {
-            largest = m[i][i];
-            k = i;
-        }
-    }
-    if (k == 3) {
-        q[3] = 1 + trace;
-        q[0] = m[2][1] - m[1][2];
-        q[1] = m[0][2] - m[2][0];
-        q[2] = m[1][0] - m[0][1];
-    } else {
-        int a = (k + 1) % 3, b = (k + 2) % 3;
-        q[k] = 1 + m[k][k] - m[a][a] - m[b][b];
-        q[a] = m[a][k] + m[k][a];
-        q[b] = m[b][k] + m[k][b];
-        q[3] = m[b][a] - m[a][b];
-    }
+    double q[4];
+    affine_quaternion(turn, q);
     /* The shorter one of the two ways around. */
     double sign = q[3] < 0 ? -1 : 1;
     struct vec3 v = {sign * q[0], sign * q[1], sign * q[2]};

@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "output/terminal.h"
 
+#include "base/bytes.h"
 #include "base/mem.h"
 #include "image/png_write.h"
 #include "session/standard_streams.h"
@@ -85,15 +86,11 @@ void terminal_blocks(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t 
     }
 }
 
-/* RFC 4648. Three bytes become four characters; the last group is padded with '='. */
-static void base64(FILE *stream, const uint8_t *bytes, size_t size) {
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+static void put_base64(FILE *stream, const uint8_t *bytes, size_t size) {
+    char four[4];
     for (size_t i = 0; i < size; i += 3) {
-        unsigned word = (unsigned)bytes[i] << 16;
-        word |= i + 1 < size ? (unsigned)bytes[i + 1] << 8 : 0;
-        word |= i + 2 < size ? bytes[i + 2] : 0;
-        for (unsigned k = 0; k < 4; k++)
-            (void)fputc(i + k > size ? '=' : letters[word >> (18 - 6 * k) & 63], stream);
+        bytes_base64(bytes + i, size - i, four);
+        (void)fwrite(four, 1, sizeof four, stream);
     }
 }
 
@@ -106,7 +103,7 @@ void terminal_kitty(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t h
                           rows, more);
         else
             (void)fprintf(stream, "\033_Gq=2,m=%d;", more);
-        base64(stream, rgb + at, more ? piece : size - at);
+        put_base64(stream, rgb + at, more ? piece : size - at);
         (void)fputs("\033\\", stream);
     }
     for (int i = 0; i < rows; i++)

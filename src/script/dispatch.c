@@ -308,6 +308,13 @@ void dispatch_push(lua_State *L, const struct script_function *function) {
     lua_pushcclosure(L, dispatch, 1);
 }
 
+const struct script_function *dispatch_function(lua_State *L) {
+    (void)lua_getupvalue(L, -1, 1);
+    const struct script_function *function = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return function;
+}
+
 static void push_functions(lua_State *L, enum function_owner owner) {
     lua_createtable(L, 0, function_count());
     for (int k = 0; k < function_count(); k++) {

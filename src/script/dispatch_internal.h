@@ -8,5 +8,7 @@
 
 void dispatch_open(lua_State *L); /* the global gr */
 void dispatch_push(lua_State *L, const struct script_function *function);
+/* The one on top, which dispatch_push has pushed. */
+const struct script_function *dispatch_function(lua_State *L);
 
 #endif

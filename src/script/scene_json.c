@@ -42,15 +42,14 @@ struct position {
     size_t index;
 };
 
-/* made: stack index of the table of what `define` has made; true while it is being made. calls: those of the tables of
- * the rows that a file may name. */
+/* Stack indices. made: the table of what `define` has made; true while it is being made. calls: those of the functions
+ * that a file may name, by their names. */
 struct scene_reader {
     lua_State *L;
     struct script *script;
     json_t *defined;
     const struct position *position;
-    int depth, made, calls[2];
-    const struct script_function *add_child;
+    int depth, made, calls[2], add_child;
 };
 
 /* --- messages --- */
@@ -212,13 +211,11 @@ static bool is_object_or_method(const struct script_function *function, enum fun
     return function->owner == owner && (owner == OWNER_GR ? makes_object(function) : function->result == RESULT_SELF);
 }
 
+/* Pushes the function, too. */
 static const struct script_function *find_function(struct scene_reader *r, enum function_owner owner,
                                                    const char *name) {
-    lua_getfield(r->L, r->calls[owner], name);
-    const struct script_function *function = lua_touserdata(r->L, -1);
-    lua_pop(r->L, 1);
-    if (function)
-        return function;
+    if (lua_getfield(r->L, r->calls[owner], name) == LUA_TFUNCTION)
+        return dispatch_function(r->L);
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
     for (int k = 0; k < function_count(); k++)
@@ -234,9 +231,8 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
     const struct position position = {r->position, name, 0};
     int count = 1;
     r->position = &position;
-    const struct script_function *function = find_function(r, OWNER_NODE, name);
     luaL_checkstack(L, 20, NULL);
-    dispatch_push(L, function);
+    const struct script_function *function = find_function(r, OWNER_NODE, name);
     lua_pushvalue(L, -2);
     if (json_is_array(value)) {
         enum { ARGUMENTS = 8 };
@@ -276,7 +272,7 @@ static void add_children(struct scene_reader *r, const char *key, const json_t *
     if (!json_is_array(children))
         sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
     for (size_t i = 0; i < json_array_size(children); i++) {
-        dispatch_push(L, r->add_child);
+        lua_pushvalue(L, r->add_child);
         lua_pushvalue(L, -2);
         push_node(r, children, i);
         lua_call(L, 2, 0);
@@ -302,15 +298,13 @@ static void transform(struct scene_reader *r, const json_t *calls) {
 }
 
 /* The object that a function of gr makes. */
-static void push_object(struct scene_reader *r, const json_t *object) {
+static void push_object(struct scene_reader *r, const json_t *object, const char *type) {
     static const char *const own[] = {"type", "transform", "children", NULL};
     static const char *const of_group[] = {"type", "transform", NULL}, *const type_only[] = {"type", NULL};
     lua_State *L = r->L;
-    const struct script_function *function =
-        find_function(r, OWNER_GR, json_string_value(json_object_get(object, "type")));
-    bool is_node = function->result == RESULT_NODE, is_group = has_parameter(function, "children", 8);
+    const struct script_function *function = find_function(r, OWNER_GR, type);
     const json_t *children = json_object_get(object, "children"), *calls = json_object_get(object, "transform");
-    dispatch_push(L, function);
+    bool is_node = function->result == RESULT_NODE, is_group = children && has_parameter(function, "children", 8);
     push_fields(r, function, object, !is_node ? type_only : is_group ? of_group : own);
     lua_call(L, 1, 1);
     if (is_node && !is_group && children)
@@ -358,19 +352,20 @@ static void push_value(struct scene_reader *r, const json_t *json) {
         sandbox_raise(sandbox_enter(L), "more than %d values are in each other", DEPTH);
     luaL_checkstack(L, 20, NULL);
     switch (json_typeof(json)) {
-    case JSON_OBJECT:
-        if (json_is_string(json_object_get(json, "ref"))) {
-            if (json_object_size(json) > 1)
-                sandbox_raise(sandbox_enter(L), "an object with ref has no other fields");
-            push_reference(r, json_string_value(json_object_get(json, "ref")));
-        } else if (is_call(json)) {
-            push_object(r, json);
-        } else if (json_object_get(json, "type") || json_object_get(json, "ref")) {
+    case JSON_OBJECT: {
+        const json_t *ref = json_object_get(json, "ref"), *type = json_object_get(json, "type");
+        if (json_is_string(ref) && json_object_size(json) > 1)
+            sandbox_raise(sandbox_enter(L), "an object with ref has no other fields");
+        else if (json_is_string(ref))
+            push_reference(r, json_string_value(ref));
+        else if (json_is_string(type))
+            push_object(r, json, json_string_value(type));
+        else if (type || ref)
             sandbox_raise(sandbox_enter(L), "type and ref must be words, as in {\"type\": \"sphere\"}");
-        } else {
+        else
             push_fields(r, NULL, json, none);
-        }
         break;
+    }
     case JSON_ARRAY:
         push_list(r, json);
         break;
@@ -529,12 +524,13 @@ void scene_json_run(lua_State *L) {
         for (int k = 0; k < function_count(); k++) {
             if (!is_object_or_method(function_at(k), (enum function_owner)owner))
                 continue;
-            lua_pushlightuserdata(L, (void *)(uintptr_t)function_at(k));
+            dispatch_push(L, function_at(k));
             lua_setfield(L, -2, function_at(k)->name);
         }
     }
+    dispatch_push(L, function_find(OWNER_NODE, "add_child"));
+    reader.add_child = lua_gettop(L);
     reader.defined = json_object_get(root, "define");
-    reader.add_child = function_find(OWNER_NODE, "add_child");
     script->reader = &reader;
     script->context.sandbox.locate = locate;
     check_top(&reader, root);

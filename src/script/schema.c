@@ -4,96 +4,13 @@
 #include "script/schema.h"
 
 #include "base/document.h"
-#include "base/unreachable.h"
 #include "script/scene_json_internal.h"
 #include "script/table_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-#define REF(name) "{\"$ref\": \"#/$defs/" name "\"}"
-#define LIST_OF(item) "{\"type\": \"array\", \"items\": " item "}"
-#define TUPLE(count)                                                                                                   \
-    "{\"type\": \"array\", \"items\": {\"type\": \"number\"}, \"minItems\": " count ", \"maxItems\": " count "}"
-#define ANY_OF(...) "{\"anyOf\": [" __VA_ARGS__ "]}"
-#define NUMBER "{\"type\": \"number\"}"
-#define STRING "{\"type\": \"string\"}"
-#define NUMBERS LIST_OF(NUMBER)
-
-/* The kinds with one schema for all parameters; NULL: the others. */
-static const char *schema_of_kind(enum argument_kind kind) {
-    switch (kind) {
-    case KIND_NUMBER:
-    case KIND_WHOLE:
-    case KIND_CHOICE:
-    case KIND_AXIS:
-        return NULL;
-    case KIND_BOOLEAN:
-        return "{\"type\": \"boolean\"}";
-    case KIND_TEXT:
-        return "{\"type\": [\"string\", \"number\"]}";
-    case KIND_FILE:
-    case KIND_OUTPUT:
-        return STRING;
-    case KIND_POINT:
-    case KIND_DIRECTION:
-    case KIND_TRIPLE:
-        return REF("triple");
-    case KIND_COLOUR:
-        return ANY_OF(REF("triple") ", " STRING);
-    case KIND_SIZE:
-        return ANY_OF(NUMBER ", " REF("triple") ", " STRING);
-    case KIND_INTERVAL:
-        return TUPLE("2");
-    case KIND_QUATERNION:
-        return TUPLE("4");
-    case KIND_PAIR:
-        return ANY_OF(NUMBER ", " TUPLE("2"));
-    case KIND_NODE:
-        return REF("node");
-    case KIND_MATERIAL:
-        return REF("material");
-    case KIND_MATERIALS:
-        return ANY_OF(
-            LIST_OF(REF("material")) ", {\"type\": \"object\", \"additionalProperties\": " REF("material") "}");
-    case KIND_IMAGE:
-        return ANY_OF(STRING ", " REF("texture"));
-    case KIND_BACKGROUND:
-        return ANY_OF(REF("triple") ", " STRING ", " REF("sky") ", " REF("texture"));
-    case KIND_FOG:
-        return REF("fog");
-    case KIND_MEDIUM:
-        return REF("medium");
-    case KIND_CAUSTICS:
-        return ANY_OF(NUMBER ", {\"type\": \"object\", \"properties\": {\"photons\": " NUMBER ", \"radius\": " NUMBER
-                             "}, \"additionalProperties\": false}");
-    case KIND_NODES:
-        return LIST_OF(REF("node"));
-    case KIND_LIGHTS:
-        return LIST_OF(REF("light"));
-    case KIND_POINTS:
-        return LIST_OF(REF("triple"));
-    case KIND_PAIRS:
-        return LIST_OF(TUPLE("2"));
-    case KIND_STOPS:
-        return LIST_OF(TUPLE("4"));
-    case KIND_FACES:
-        return LIST_OF(LIST_OF("{\"type\": \"number\", \"minimum\": 0}"));
-    case KIND_NUMBERS:
-        return ANY_OF(NUMBER ", " NUMBERS);
-    case KIND_ROWS:
-        return LIST_OF(NUMBERS);
-    case KIND_CURVES:
-        return LIST_OF(LIST_OF(TUPLE("2")));
-    case KIND_FUNCTION:
-        return REF("texture");
-    case KIND_CALLBACK:
-        return "false";
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
-}
+extern const char *const schema_txt[];
 
 static void add_words(struct document *document, const struct script_parameter *p) {
     const char *separator = "";
@@ -116,33 +33,42 @@ static void add_scalar(struct document *document, const struct script_parameter 
     document_add(document, "}");
 }
 
+static void add_reference(struct document *document, const char *name) {
+    document_add(document, "{\"$ref\": \"#/$defs/%s\"}", name);
+}
+
 /* {"description": ..., "anyOf": [...]}: the kind, and what its flags accept beside it. */
 static void add_parameter(struct document *document, const struct script_parameter *p) {
+#define KIND_NAME(kind, word, ...) [kind] = "kind." word,
+    static const char *const kinds[] = {KIND_LIST(KIND_NAME)};
     static const struct {
         unsigned flag;
-        const char *schema;
-    } others[] = {{OR_TEXTURE, REF("texture")},
-                  {OR_PROFILE | OR_FUNCTION, REF("texture")},
-                  {OR_NUMBER, NUMBER},
-                  {OR_FILE, STRING},
-                  {OR_COMPASS, "{\"type\": \"object\", \"required\": [\"azimuth\", \"elevation\"]}"},
-                  {OR_PAIR, TUPLE("2")},
-                  {OR_SKY, REF("sky")}};
-    const char *schema = schema_of_kind(p->kind);
-    bool has_words = p->choices && p->choices[0];
+        const char *name;
+    } others[] = {{OR_TEXTURE, "texture"},
+                  {OR_PROFILE | OR_FUNCTION, "texture"},
+                  {OR_NUMBER, "kind.number"},
+                  {OR_FILE, "kind.file"},
+                  {OR_COMPASS, "compass"},
+                  {OR_PAIR, "kind.interval"},
+                  {OR_SKY, "sky"}};
+    const bool is_number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE;
+    const bool is_word = p->kind == KIND_CHOICE || p->kind == KIND_AXIS;
     document_add(document, "\"%s\": {\"anyOf\": [", strcmp(p->name, "type") == 0 ? SCENE_JSON_FIELD_TYPE : p->name);
-    if (schema)
-        document_add(document, "%s", schema);
-    else if (p->kind == KIND_NUMBER || p->kind == KIND_WHOLE)
+    if (is_number)
         add_scalar(document, p);
-    if (!schema && has_words) {
-        document_add(document, p->kind == KIND_NUMBER ? ", {\"enum\": [" : "{\"enum\": [");
+    else if (!is_word)
+        add_reference(document, kinds[p->kind]);
+    if ((is_number || is_word) && p->choices && p->choices[0]) {
+        document_add(document, is_number ? ", {\"enum\": [" : "{\"enum\": [");
         add_words(document, p);
         document_add(document, "]}");
     }
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (p->flags & others[i].flag)
-            document_add(document, ", %s", others[i].schema);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        if (!(p->flags & others[i].flag))
+            continue;
+        document_add(document, ", ");
+        add_reference(document, others[i].name);
+    }
     document_add(document, "], \"description\": \"");
     for (const char *c = p->help; *c; c++)
         document_add(document, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
@@ -161,9 +87,9 @@ static void add_fields(struct document *document, const struct script_function *
         add_parameter(document, p);
     }
     if (function->result == RESULT_NODE && !has_children)
-        document_add(document, ",\n   \"children\": " LIST_OF(REF("node")));
+        document_add(document, ",\n   \"children\": {\"$ref\": \"#/$defs/kind.nodes\"}");
     if (function->result == RESULT_NODE)
-        document_add(document, ",\n   \"transform\": " REF("transform"));
+        document_add(document, ",\n   \"transform\": {\"$ref\": \"#/$defs/transform\"}");
     document_add(document, "},\n  \"additionalProperties\": false");
 }
 
@@ -179,31 +105,42 @@ static void add_function(struct document *document, const struct script_function
     document_add(document, "]}");
 }
 
+/* The names of the functions of that owner and result, with what stands around each. */
+static void add_names(struct document *document, enum function_owner owner, enum result_kind result, const char *before,
+                      const char *after) {
+    const char *separator = "";
+    for (int k = 0; k < function_count(); k++) {
+        const struct script_function *function = function_at(k);
+        bool renders = result == RESULT_NOTHING && function_renders(function);
+        if (function->owner != owner || !(renders || (result != RESULT_NOTHING && function->result == result)))
+            continue;
+        document_add(document, "%s%s%s%s", separator, before, function->name, after);
+        separator = ",\n   ";
+    }
+}
+
 /* A kind of object: a reference, or one of the functions that make it. The type chooses its definition, so a checker
  * tries no other. */
 static void add_result(struct document *document, const char *name, enum result_kind result) {
-    const char *separator = "";
-    document_add(document,
-                 ",\n \"%s\": {\"if\": {\"required\": [\"ref\"]}, \"then\": " REF(
-                     "ref") ", \"else\": {\"type\": \"object\", "
-                            "\"required\": [\"type\"], \"properties\": {\"type\": {\"enum\": [",
-                 name);
-    for (int k = 0; k < function_count(); k++)
-        if (function_at(k)->owner == OWNER_GR && function_at(k)->result == result) {
-            document_add(document, "%s\"%s\"", separator, function_at(k)->name);
-            separator = ", ";
-        }
+    document_add(document, ",\n \"%s\": {\"if\": {\"required\": [\"ref\"]}, \"then\": ", name);
+    add_reference(document, "ref");
+    document_add(document, ", \"else\": {\"type\": \"object\", \"required\": [\"type\"], \"properties\": {\"type\": "
+                           "{\"enum\": [");
+    add_names(document, OWNER_GR, result, "\"", "\"");
     document_add(document, "]}}, \"allOf\": [");
-    separator = "";
-    for (int k = 0; k < function_count(); k++)
-        if (function_at(k)->owner == OWNER_GR && function_at(k)->result == result) {
-            document_add(document,
-                         "%s\n  {\"if\": {\"properties\": {\"type\": {\"const\": \"%s\"}}}, \"then\": {\"$ref\": "
-                         "\"#/$defs/gr.%s\"}}",
-                         separator, function_at(k)->name, function_at(k)->name);
-            separator = ",";
-        }
+    for (int k = 0, count = 0; k < function_count(); k++) {
+        const struct script_function *function = function_at(k);
+        if (function->owner != OWNER_GR || function->result != result)
+            continue;
+        document_add(document,
+                     "%s\n  {\"if\": {\"properties\": {\"type\": {\"const\": \"%s\"}}}, \"then\": {\"$ref\": "
+                     "\"#/$defs/gr.%s\"}}",
+                     count++ ? "," : "", function->name, function->name);
+    }
     document_add(document, "]}}");
+    for (int k = 0; k < function_count(); k++)
+        if (function_at(k)->owner == OWNER_GR && function_at(k)->result == result)
+            add_function(document, function_at(k));
 }
 
 void script_json_schema(struct document *document) {
@@ -213,56 +150,21 @@ void script_json_schema(struct document *document) {
     } results[] = {{RESULT_NODE, "node"},       {RESULT_MATERIAL, "material"}, {RESULT_LIGHT, "light"},
                    {RESULT_TEXTURE, "texture"}, {RESULT_FOG, "fog"},           {RESULT_MEDIUM, "medium"},
                    {RESULT_SKY, "sky"}};
-    const char *separator = "";
-    document_add(document,
-                 "{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
-                 "\"title\": \"A scene of gray\", \"type\": \"object\", \"required\": [\"gray\", \"nodes\"],\n"
-                 "\"additionalProperties\": false, \"properties\": {\n"
-                 " \"gray\": {\"const\": %d},\n"
-                 " \"define\": {\"type\": \"object\", \"additionalProperties\": {\"type\": \"object\", "
-                 "\"required\": [\"type\"]}},\n"
-                 " \"nodes\": {\"type\": \"array\", \"minItems\": 1, \"items\": " REF(
-                     "node") "},\n"
-                             " \"transform_order\": {\"enum\": [",
-                 SCENE_JSON_VERSION);
-    add_words(document, &function_find(OWNER_GR, "transform_order")->parameters[0]);
-    document_add(document, "]},\n"
-                           " \"defaults\": {\"enum\": [\"light\", \"classic\"]},\n"
-                           " \"time\": {\"type\": \"number\", \"minimum\": 0},\n"
-                           " \"picture\": {\"type\": \"object\", \"properties\": {\n"
-                           "   \"type\": {\"enum\": [");
-    for (int k = 0; k < function_count(); k++)
-        if (function_at(k)->owner == OWNER_GR && function_renders(function_at(k))) {
-            document_add(document, "%s\"%s\"", separator, function_at(k)->name);
-            separator = ", ";
-        }
-    document_add(document, "]}");
-    add_fields(document, function_find(OWNER_GR, "render"), "node");
-    document_add(
-        document,
-        "}},\n\"$defs\": {\n"
-        " \"ref\": {\"type\": \"object\", \"properties\": {\"ref\": " STRING "}, \"required\": [\"ref\"], "
-        "\"additionalProperties\": false},\n"
-        " \"triple\": " ANY_OF(TUPLE(
-            "3") ", {\"type\": \"object\", \"minProperties\": 3, \"maxProperties\": 3, "
-                 "\"additionalProperties\": " NUMBER
-                 "}") ",\n"
-                      " \"transform\": {\"type\": \"array\", \"items\": {\"type\": \"object\", \"minProperties\": 1, "
-                      "\"maxProperties\": 1, \"additionalProperties\": false, \"properties\": {");
-    separator = "\n   ";
-    for (int k = 0; k < function_count(); k++) {
-        const struct script_function *function = function_at(k);
-        if (function->owner != OWNER_NODE || function->result != RESULT_SELF)
-            continue;
-        document_add(document, "%s\"%s\": true", separator, function->name);
-        separator = ",\n   ";
+    for (const char *const *line = schema_txt; *line; line++) {
+        if (strcmp(*line, "@version") == 0)
+            document_add(document, "%d", SCENE_JSON_VERSION);
+        else if (strcmp(*line, "@orders") == 0)
+            add_words(document, &function_find(OWNER_GR, "transform_order")->parameters[0]);
+        else if (strcmp(*line, "@pictures") == 0)
+            add_names(document, OWNER_GR, RESULT_NOTHING, "\"", "\"");
+        else if (strcmp(*line, "@picture") == 0)
+            add_fields(document, function_find(OWNER_GR, "render"), "node");
+        else if (strcmp(*line, "@methods") == 0)
+            add_names(document, OWNER_NODE, RESULT_SELF, "\"", "\": true");
+        else if (strcmp(*line, "@results") == 0)
+            for (size_t i = 0; i < sizeof results / sizeof *results; i++)
+                add_result(document, results[i].name, results[i].kind);
+        else
+            document_add(document, "%s\n", *line);
     }
-    document_add(document, "}}}");
-    for (size_t i = 0; i < sizeof results / sizeof *results; i++) {
-        add_result(document, results[i].name, results[i].kind);
-        for (int k = 0; k < function_count(); k++)
-            if (function_at(k)->owner == OWNER_GR && function_at(k)->result == results[i].kind)
-                add_function(document, function_at(k));
-    }
-    document_add(document, "\n}}\n");
 }
