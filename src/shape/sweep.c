@@ -270,6 +270,19 @@ static double polish(const double *d, int degree, const double *b, int b_degree,
     return x;
 }
 
+/* D and b of the balls from lo to hi. */
+struct part_of_piece {
+    const struct view *view;
+    const double *d, *b;
+    int d_degree, b_degree;
+    double lo, hi;
+};
+
+static void consider_near(const struct part_of_piece *part, double x, double sign, struct stretch *out) {
+    x = polish(part->d, part->d_degree, part->b, part->b_degree, sign, x);
+    consider(part->view, part->lo + (part->hi - part->lo) * x, out);
+}
+
 /* In Bernstein form. */
 struct polynomial {
     const double *c;
@@ -300,21 +313,39 @@ static struct stretch cover(const struct view *view, struct polynomial d, struct
     bernstein_multiply(bb1, 2 * b.degree - 2, dd, d.degree, left);
     bernstein_multiply(d1, d.degree - 1, d1, d.degree - 1, right);
     int total = 2 * d.degree - 2; /* = 2 (b.degree - 1) + d.degree */
-    double largest = 0;
-    for (int k = 0; k <= total; k++)
+    double largest = 0, slope = 0;
+    for (int k = 0; k <= total; k++) {
+        slope = math_max(slope, 4 * fabs(left[k]));
         largest = math_max(largest, math_max(4 * fabs(left[k]), right[k]));
+    }
     for (int k = 0; k <= total; k++) {
         left[k] = 4 * left[k] - right[k];
         if (fabs(left[k]) < 0x1p-48 * largest) /* rounding: where the derivative of the path is zero, everything is zero
                                                   to the fourth order */
             left[k] = 0;
     }
+    const struct part_of_piece part = {view, dd, bb, d.degree, b.degree, lo, hi};
     int count = bernstein_roots(left, total, roots);
     for (int k = 0; k < count; k++) {
         /* f' = b' - sign D' / (2 sqrt(D)) is zero where the signs of b' and D' say so. */
         double same = bernstein_value(b1, b.degree - 1, roots[k]) * bernstein_value(d1, d.degree - 1, roots[k]);
-        double x = polish(dd, d.degree, bb, b.degree, same > 0 ? 1 : -1, roots[k]);
-        consider(view, lo + (hi - lo) * x, &out);
+        consider_near(&part, roots[k], same > 0 ? 1 : -1, &out);
+    }
+    /* Where b' and D' are zero together, the sign does not change: everywhere on a line at right angles to the plane of
+     * a path, and in the middle of a path with two equal halves. */
+    count = slope < 0x1p-30 * largest ? bernstein_roots(d1, d.degree - 1, roots) : 0;
+    if (count == 0 && b.degree > 1) {
+        double steepest = 0;
+        for (int k = 0; k < d.degree; k++)
+            steepest = math_max(steepest, fabs(d1[k]));
+        int all = bernstein_roots(b1, b.degree - 1, roots);
+        for (int k = 0; k < all; k++)
+            if (fabs(bernstein_value(d1, d.degree - 1, roots[k])) < 0x1p-8 * steepest)
+                roots[count++] = roots[k];
+    }
+    for (int k = 0; k < count; k++) {
+        consider_near(&part, roots[k], 1, &out);
+        consider_near(&part, roots[k], -1, &out);
     }
     return out;
 }

@@ -602,6 +602,20 @@ TEST_LONG(sixty_solids_become_meshes_with_their_volume_genus_and_outline_and_few
         check_row(&rows[i], 100000);
 }
 
+TEST(sweeps_along_planar_paths_become_closed_meshes) {
+    static const struct solid_row planar[] = {
+        {"arc", "gr.sweep{points = {{-1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, radii = .2}", NAN, NAN, 2, 300, 0, false},
+        {"turned arc", "turn(gr.sweep{points = {{0, 1, 0}, {0, 0, -1}, {0, -1, 0}}, radii = .2})", NAN, NAN, 2, 300, 0,
+         false},
+        {"ring",
+         "gr.sweep{points = each(8, function(i) return {cos(i * math.pi / 4), 0, sin(i * math.pi / 4)} end), radii = "
+         ".25, loop = true}",
+         NAN, NAN, 0, 300, 0, false},
+    };
+    for (size_t i = 0; i < sizeof planar / sizeof *planar; i++)
+        check_row(&planar[i], 500);
+}
+
 TEST(solids_that_touch_in_an_edge_are_separated_there) {
     struct arena arena = {0};
     const struct csg_leaf leaves[2] = {

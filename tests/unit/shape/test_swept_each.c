@@ -1,5 +1,6 @@
 /* Lathe, prism, sphere sweep, height field, blob, curve and patches one by one, against closed forms and brute force;
  * the Bernstein roots below them. */
+#include "math/frame.h"
 #include "mesh/mesh_internal.h"
 #include "tests/unit/swept_makers.h"
 
@@ -219,6 +220,91 @@ TEST(sweep_of_one_straight_piece_is_a_capsule_or_a_rounded_cone) {
     CHECK_EQ_INT(wrong, 0);
     geom_scratch_destroy(&scratch);
     arena_destroy(&arena);
+}
+
+/* Where the first ball begins and the last one ends on a line; balls are samples of the path. */
+static bool cover_by_samples(const struct sweep_path *sweep, const struct ray *ray, double *enter, double *leave) {
+    enum { SAMPLES = 3000 };
+    double tube[4][4];
+    *enter = INFINITY, *leave = -INFINITY;
+    for (uint32_t piece = 0; sweep_piece_tube(sweep, piece, tube); piece++)
+        for (int i = 0; i <= SAMPLES; i++) {
+            const double x = (double)i / SAMPLES;
+            const struct vec3 centre = {cubic_value(tube[0], x), cubic_value(tube[1], x), cubic_value(tube[2], x)};
+            const struct vec3 q = vec3_sub(centre, ray->origin);
+            const double r = cubic_value(tube[3], x), b = vec3_dot(q, ray->direction);
+            const double half = sqrt(r * r - vec3_length_squared(vec3_add_scaled(q, ray->direction, -b)));
+            if (half >= 0) { /* or NaN */
+                *enter = fmin(*enter, b - half);
+                *leave = fmax(*leave, b + half);
+            }
+        }
+    return *enter < *leave;
+}
+
+/* Paths in the planes of two axes, and in others; lines at right angles to the plane, and nearly so; lines in the plane
+ * through the middle of a path with two equal halves. */
+TEST(sweeps_of_planar_paths_are_crossed_where_their_balls_begin_and_end) {
+    struct test_random random = {44};
+    struct geom_scratch scratch;
+    int met = 0;
+    CHECK(geom_scratch_init(&scratch, 256));
+    for (int round = 0; round < 120; round++) {
+        const bool is_even = round % 3 == 0;
+        struct arena arena = {0};
+        struct error error = {0};
+        double points[4][3], radii[4], tilt = round % 5 == 0 ? 0 : pow(10, test_uniform(&random, -14, -2));
+        struct vec3 u, v,
+            normal = {round % 4 == 0 || round % 4 == 3,
+                      round % 4 == 1   ? 1
+                      : round % 4 == 3 ? 0.3
+                                       : 0,
+                      round % 4 >= 2};
+        normal = vec3_normalize(normal);
+        frame_tangents(normal, &u, &v);
+        for (int i = 0; i < 4; i++) {
+            const int twin = is_even && i > 1 ? 3 - i : i;
+            double x = twin != i ? -1 : (i - 1.5) * test_uniform(&random, 0.3, 0.7),
+                   y = test_uniform(&random, -0.7, 0.7);
+            const struct vec3 p = vec3_add_scaled(vec3_scale(u, x), v, y);
+            points[i][0] = p.x, points[i][1] = p.y, points[i][2] = p.z;
+            radii[i] = round % 2 == 0 ? 0.3 : test_uniform(&random, 0.2, 0.4);
+            if (twin != i) {
+                const struct vec3 other = {points[twin][0], points[twin][1], points[twin][2]};
+                const struct vec3 mirrored = vec3_add_scaled(other, u, -2 * vec3_dot(other, u));
+                points[i][0] = mirrored.x, points[i][1] = mirrored.y, points[i][2] = mirrored.z;
+                radii[i] = radii[twin];
+            }
+        }
+        const struct sweep_input in = {.kind = round % 2 == 1 && !is_even ? SPLINE_LINEAR : SPLINE_CATMULL_ROM,
+                                       .points = (const double(*)[3])points,
+                                       .radii = radii,
+                                       .count = 4};
+        const struct sweep_path *sweep = sweep_build(&arena, &in, &error);
+        CHECK_TEXT(error.text, "");
+        for (int i = 0; i < 30; i++) {
+            const bool is_in_plane = is_even && i % 2 == 0;
+            const double across = is_in_plane ? 0 : test_uniform(&random, -1, 1), height = test_uniform(&random, -1, 1);
+            struct vec3 foot = vec3_add_scaled(vec3_scale(u, across), is_in_plane ? normal : v, 0.3 * height);
+            struct vec3 direction = vec3_normalize(vec3_add_scaled(is_in_plane ? v : normal, u, tilt));
+            const struct ray ray = ray_from(vec3_add_scaled(foot, direction, -3), direction);
+            struct crossing_list list;
+            double enter, leave;
+            if (!cover_by_samples(sweep, &ray, &enter, &leave))
+                continue;
+            scratch.used = 0;
+            CHECK(sweep_crossings(sweep, &ray, &scratch, &list));
+            CHECK(list.count >= 2);
+            if (list.count < 2)
+                continue;
+            met++;
+            CHECK_NEAR(scratch.items[list.first].t, enter, 1e-5);
+            CHECK_NEAR(scratch.items[list.first + list.count - 1].t, leave, 1e-5);
+        }
+        arena_destroy(&arena);
+    }
+    CHECK(met > 1000);
+    geom_scratch_destroy(&scratch);
 }
 
 TEST(sweep_bounds_are_tight) {
