@@ -1,25 +1,27 @@
 -- TITLE: Chess: turned and cut pieces, each one solid
--- OPTIONS: -al-samples 3
+-- OPTIONS: --spp 8
 -- A chess set whose pieces are unions, differences and intersections of lathes, cones and boxes.
 
-local plaster = {0.9, 0.86, 0.76}
-local ebony = {0.13, 0.09, 0.07}
-local function wood(colour, grain)
-    local base = gr.rr_material(colour, {0.35, 0.35, 0.35}, 70, 0.06, 0, 1)
-    return gr.wood_pnd_material(base, 1.6, 9, 1, grain)
+local patterns = require 'patterns'
+-- Wood of a trunk along y, turned and polished: rings across, fibres along.
+local function wood(light, dark, gloss)
+    return gr.openpbr_material {coat_weight = 0.5, coat_roughness = gloss, specular_roughness = 0.35, base_color = function(p)
+        local rings = patterns.wood(gr.vec(p.x * 1.5 + 2.1, p.z * 1.5 + 0.7, p.y * 0.2))
+        local fibre = gr.noise(p.x * 30, p.y * 2, p.z * 30)
+        return gr.mix(light, dark, gr.clamp(0.7 * rings + 0.12 * fibre, 0, 1))
+    end}
 end
-local light, dark = wood(plaster, {0.78, 0.66, 0.46}), wood(ebony, {0.26, 0.16, 0.10})
-local felt = gr.material({0.20, 0.23, 0.27}, {0, 0, 0}, 1)
-local frame = gr.wood_pnd_material(gr.rr_material({0.36, 0.19, 0.09}, {0.3, 0.3, 0.3}, 50, 0.05, 0, 1), 1.1, 7, 1, {0.22, 0.10, 0.05})
-local white_square = gr.rr_material({0.80, 0.74, 0.62}, {0.2, 0.2, 0.2}, 50, 0.10, 0, 1)
-local black_square = gr.rr_material({0.16, 0.11, 0.09}, {0.3, 0.3, 0.3}, 50, 0.14, 0, 1)
+local light, dark = wood(gr.vec(0.68, 0.48, 0.24), gr.vec(0.48, 0.29, 0.12), 0.15), wood(gr.vec(0.055, 0.032, 0.022), gr.vec(0.022, 0.012, 0.009), 0.10)
+local white_square, black_square = wood(gr.vec(0.52, 0.36, 0.19), gr.vec(0.40, 0.25, 0.12), 0.08), wood(gr.vec(0.12, 0.055, 0.028), gr.vec(0.06, 0.026, 0.014), 0.08)
+local frame = wood(gr.vec(0.16, 0.055, 0.024), gr.vec(0.07, 0.022, 0.01), 0.12)
+local felt = gr.openpbr_material {base_color = {0.02, 0.06, 0.075}, fuzz_weight = 0.7, fuzz_color = {0.10, 0.22, 0.26}, specular_weight = 0}
 
 -- Foot and stem of every piece, as one turned profile up to the collar at `height`.
 local function turned(height, width)
-    return gr.lathe {spline = 'linear', points = {
-        {0, 0}, {width, 0}, {width, 0.07}, {width * 0.92, 0.12}, {width * 0.95, 0.17}, {width * 0.80, 0.25}, {width * 0.55, 0.34},
-        {width * 0.40, 0.50}, {width * 0.33, height * 0.75}, {width * 0.42, height - 0.10}, {width * 0.72, height - 0.07},
-        {width * 0.72, height - 0.03}, {width * 0.45, height}, {0, height},
+    return gr.lathe {spline = 'catmull-rom', points = {
+        {0, 0}, {width * 0.93, 0.01}, {width, 0.06}, {width * 0.98, 0.10}, {width * 0.88, 0.14}, {width * 0.86, 0.17}, {width * 0.92, 0.20},
+        {width * 0.84, 0.25}, {width * 0.58, 0.34}, {width * 0.42, 0.46}, {width * 0.33, height * 0.76}, {width * 0.36, height - 0.11},
+        {width * 0.68, height - 0.08}, {width * 0.74, height - 0.05}, {width * 0.66, height - 0.02}, {width * 0.45, height}, {0, height},
     }}
 end
 local function ball(y, r) return gr.sphere {centre = {0, y, 0}, radius = r} end
@@ -89,8 +91,10 @@ local blacks = {{'rook', 1, 8}, {'bishop', 3, 8}, {'queen', 4, 8}, {'king', 5, 8
 for _, p in ipairs(whites) do put(p[1], light, p[2], p[3], p[1] == 'knight' and 25 or 90) end
 for _, p in ipairs(blacks) do put(p[1], dark, p[2], p[3], p[1] == 'knight' and 205 or 90) end
 
+local sky = gr.sky_gradient {{-1, 0.03, 0.03, 0.035}, {0, 0.12, 0.13, 0.16}, {1, 0.42, 0.50, 0.62}}
 gr.render {
-    node = scene, file = 'chess.png', width = 480, height = 300, eye = {-5.0, 4.4, 8.6}, target = {0.05, 0.1, 0.35}, fov = 33,
-    ambient = {0.30, 0.30, 0.33}, background = {0.20, 0.23, 0.27},
-    lights = {gr.area_light({-7, 9, 3}, {2.4, 0, 0}, {0, 0, 2.4}, {0.85, 0.80, 0.70}, {1, 0, 0}), gr.light({8, 6, 8}, {0.20, 0.22, 0.28}, {1, 0, 0})},
+    node = scene, file = 'chess.png', width = 480, height = 300, eye = {-5.0, 4.0, 8.6}, target = {0.05, 0.15, 0.35}, fov = 31,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = 0.3, clamp = 12, max_depth = 5, background = {0.05, 0.06, 0.075},
+    aperture = 0.05, focus_point = {0.4, 0.5, 2.4},
+    lights = {gr.spherical_light {position = {-30, 22, -6}, radius = 1.6, emission = {620, 500, 350}}, gr.sky_light {sky = sky}},
 }

@@ -1,6 +1,7 @@
 -- TITLE: Functions: a planet
 -- One function is the height of the ground: it displaces an icosahedron, and the colours depend on it. The clouds are a
--- shell whose opacity is a second function. The stars of the sky are a third one.
+-- shell whose opacity is a second function, and so is the air, as thick as the way of the view through it. The stars of
+-- the sky are a third function.
 -- Author: gray project
 
 local function fbm(p, octaves)
@@ -34,7 +35,7 @@ local globe = gr.mesh {
 globe:displace {
     f = function(p)
         local d = p:normalize()
-        return d * (1 + 0.06 * gr.max(height(d), 0)) - p
+        return d * (1 + 0.025 * gr.max(height(d), 0)) - p
     end,
     level = quick and 4 or 7, -- -D quick=true makes a draft
 }
@@ -52,14 +53,29 @@ end
 local function shine(p) return 0.45 * gr.step(height(p:normalize()), 0) * gr.vec(1, 1, 0.95) end
 globe:set_material(gr.material { kd = ground, ks = shine, shininess = 35 })
 
--- The far side of the shell is not visible through the near side. Towards the rim the opacity decreases: at grazing
--- angles the clouds would be streaks.
+-- Weather: fronts turn around lows, whose places are those of a slow noise. Towards the rim clouds hide each other, and the
+-- fine ones are lost in the air.
 local function clouds(p, s)
     local d = p:normalize()
-    local swirl = d * 2.2 + 0.8 * gr.vec(gr.noise(d * 1.5), gr.noise(d * 1.5 + 5), gr.noise(d * 1.5 + 9))
-    return 0.92 * gr.smoothstep(0.08, 0.62, fbm(gr.vec(swirl.x, swirl.y * 1.7, swirl.z), 6) + 0.1) * gr.smoothstep(0.02, 0.4, s.normal:dot(s.view))
+    local low, _, id = gr.cells(d * 1.7 + 4)
+    local turn = 2.6 * gr.smoothstep(0.55, 0.0, low) * (id - 0.4)
+    local x, z = d.x * math.cos(turn) - d.z * math.sin(turn), d.x * math.sin(turn) + d.z * math.cos(turn)
+    local q = gr.vec(x, d.y, z) + 0.16 * gr.vec(gr.noise(d * 4), gr.noise(d * 4 + 5), gr.noise(d * 4 + 9))
+    local cover = fbm(q * 1.9 + 2, 3) + 0.30 * gr.turbulence(q * 9, 5) - 0.12
+    return 0.95 * gr.smoothstep(0.02, 0.5, cover) * gr.smoothstep(0.0, 0.25, s.normal:dot(s.view))
 end
-local sky = gr.sphere { radius = 1.05, material = gr.material { kd = { 0.96, 0.97, 1 }, opacity = clouds } }
+local sky = gr.sphere { radius = 1.025, material = gr.material { kd = { 0.96, 0.97, 1 }, opacity = clouds } }
+
+-- The air is a ball of radius r around the planet: the view has the distance b from the centre, and a way through the ball,
+-- which ends on the ground or leaves it; above the ground the air is thinner by the height.
+local r = 1.06
+local function air(p, s)
+    local c = gr.clamp(s.normal:dot(s.view), 0, 1)
+    local b = r * (1 - c * c) ^ 0.5
+    local way = r * c + gr.mix(-gr.max(1 - b * b, 0) ^ 0.5, r * c, gr.step(1, b))
+    return 1 - math.exp(-1.5 * way * math.exp(-gr.max(b - 1, 0) / 0.014))
+end
+local blue = gr.sphere { radius = r, material = gr.material { kd = { 0.30, 0.55, 1.0 }, opacity = air } }
 
 local function stars(d)
     local near, _, id = gr.cells(d * 45)
@@ -70,7 +86,8 @@ end
 local scene = gr.node 'space'
 scene:add_child(globe)
 scene:add_child(sky)
+scene:add_child(blue)
 gr.render {
-    node = scene, file = 'planet.png', width = 640, height = 480, eye = { 1.2, 0.85, 3.1 }, target = { 0.03, 0, 0 }, fov = 40, ambient = { 0.03, 0.035, 0.05 },
-    background = stars, lights = { gr.directional_light { direction = { -0.75, -0.35, -0.8 }, colour = { 1.05, 1.0, 0.92 } } },
+    node = scene, file = 'planet.png', width = 640, height = 480, eye = { 1.2, 0.85, 3.1 }, target = { 0.03, 0, 0 }, fov = 40, ambient = { 0.004, 0.005, 0.008 },
+    background = stars, tone = 'filmic', exposure = 0.25, lights = { gr.directional_light { direction = { -1.0, -0.30, -0.12 }, colour = { 1.25, 1.18, 1.05 } } },
 }

@@ -91,13 +91,15 @@ local function bar(u0, u1, v0, v1)
     scene:add_child(gr.rectangle{material = dark, corner = c + side * u0 + up * v0, along = side * (u1 - u0), up = up * (v1 - v0)})
 end
 bar(-30, -5.2, -30, 30) bar(6.2, 30, -30, 30) bar(-5.2, 6.2, 3.6, 30) bar(-5.2, 6.2, -30, -6) bar(.3, .75, -6, 3.6) bar(-5.2, 6.2, -1.1, -.75)
--- a lamp and books far behind
+-- candles and books far behind
 for k = 1, 60 do
     local h = dice:range(1.6, 2.6)
-    scene:add_child(gr.box{material = gr.openpbr_material{base_color = gr.vec(.25, .12, .06) * (.3 + dice:number()) + gr.vec(.02, .02, .05) * dice:number()}, min = {-13 + .42 * k, 0, -15}, max = {-13 + .42 * k + .38, h, -14}}:translate(0, -.42, 0))
+    scene:add_child(gr.box{material = gr.openpbr_material{base_color = gr.vec(.42, .2, .09) * (.3 + dice:number()) + gr.vec(.02, .02, .05) * dice:number()}, min = {-13 + .42 * k, 0, -15}, max = {-13 + .42 * k + .38, h, -14}}:translate(0, -.42, 0))
 end
-scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {5, 2.6, .9}}, centre = {5.0, 2.2, -15}, radius = .6})
+for _, c in ipairs{{5.0, 2.2, .34, 1}, {3.4, 1.5, .15, .8}, {-5.6, 2.7, .2, .5}, {-6.3, 2.3, .13, .6}} do
+    scene:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = gr.vec(2.6, 1.05, .28) * c[4]}, centre = {c[1], c[2], -13.8}, radius = c[3]})
+end
 scene:add_child(gr.box{material = gr.openpbr_material{base_color = {.10, .085, .07}}, min = {-17, -1, -16.2}, max = {40, 30, -16}})
 gr.render{node = scene, file = 'endgame.png', width = 1600, height = 1000, eye = {.9, 2.75, 8.6}, target = {.05, .55, 0}, fov = 29, aperture = .09, focus_point = {-.2, .8, .2}, blades = 9,
-    integrator = 'path', denoise = true, tone = 'filmic', exposure = .35, clamp = 12, max_depth = 6, vignette = .2, background = {.03, .035, .05},
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .5, clamp = 12, max_depth = 6, vignette = .2, background = {.03, .035, .05},
     lights = {gr.spherical_light{position = sun * 60, radius = .7, emission = {16000, 9600, 4400}}, gr.sky_light{sky = {.10, .12, .17}}}}

@@ -13,7 +13,7 @@ local function stripes(direction, width)
     return gr.bump(function(p)
         local s = (p.x * direction[1] + p.z * direction[2]) / width
         local t = s - s // 1
-        return width * .085 * (t - t * t) + .0006 * gr.noise(p.x * direction[2] * 90 - p.z * direction[1] * 90 + 40 * t, s * .2, 0)
+        return width * .055 * (t - t * t) + .0006 * gr.noise(p.x * direction[2] * 90 - p.z * direction[1] * 90 + 40 * t, s * .2, 0)
     end, 1)
 end
 local nickel = gr.metal_material{metal = 'nickel', roughness = scratched(.20, .05), normal = stripes({.8, .6}, .52)}

@@ -50,23 +50,23 @@ local function birch(x, z, height, lean)
         radii[k + 1] = .11 * (1 - t) ^ .8 + .008
     end
     tree:add_child(gr.sweep(bark, points, radii))
-    for _ = 1, 46 do
-        local t = dice:range(.28, .97)
-        local base = points[math.floor(t * 8) + 1]
-        local a, length = dice:range(0, 2 * math.pi), (1 - t) * height * .45 + .3
-        local dx, dz = math.cos(a), math.sin(a)
-        local branch, widths = {}, {}
-        for j = 0, 4 do
-            local s = j / 4
-            branch[j + 1] = {base[1] + dx * length * s ^ .8 * .55 + .09 * dice:range(-1, 1) * s, base[2] + length * (1.05 * s - .18 * s * s), base[3] + dz * length * s ^ .8 * .55 + .09 * dice:range(-1, 1) * s}
-            widths[j + 1] = .016 * (1 - s) * (1.2 - t) + .003
+    -- a branch bends towards the light, its tip hangs; branches leave it on both sides
+    local function grow(p, d, length, radius, depth)
+        local branch, widths, sideways = {p}, {radius}, d:cross(gr.vec(0, 1, 0)):normalize()
+        for k = 1, 4 do
+            d = (d + gr.vec(dice:range(-.14, .14), .16 - .11 * k, dice:range(-.14, .14))):normalize()
+            branch[k + 1], widths[k + 1] = branch[k] + d * (length / 4), radius * (1 - .21 * k)
+            for side = -1, depth > 0 and k < 4 and 1 or -2, 2 do
+                grow(branch[k + 1], (d + sideways * side * dice:range(.5, 1)):normalize(), length * dice:range(.4, .6) * (1 - .12 * k), widths[k + 1] * .7, depth - 1)
+            end
         end
         tree:add_child(gr.sweep(twig, branch, widths))
-        for j = 3, 5 do                            -- twigs that hang
-            local b, out = branch[j], dice:range(-.25, .25) * length
-            tree:add_child(gr.sweep(twig, {b, {b[1] + dx * .12 * length + out * dz, b[2] + .10 * length, b[3] + dz * .12 * length - out * dx},
-                {b[1] + dx * .22 * length + 1.6 * out * dz, b[2] - dice:range(.0, .22) * length, b[3] + dz * .22 * length - 1.6 * out * dx}}, {.006, .004, .0025}))
-        end
+    end
+    for k = 0, 23 do
+        local t, a = .24 + .031 * k, 2.4 * k + dice:range(-.3, .3)
+        local q = t * 8 // 1 + 1
+        local base = gr.mix(gr.vec(points[q]), gr.vec(points[q + 1]), t * 8 % 1)
+        grow(base, gr.vec(math.cos(a), .7 + .9 * t, math.sin(a)):normalize(), (1.08 - t) * height * .32, .028 * (1.15 - t), 2)
     end
     scene:add_child(tree:translate(x, ground(x, z), z))
 end

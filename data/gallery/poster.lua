@@ -49,5 +49,5 @@ scene:add_child(gr.box{material = red, min = {left + 2.05, 2.4, 0}, max = {left 
 scene:add_child(gr.torus(ink, .40, .13):rotate('x', 90):translate(left + 4.2, 2.85, .14))
 
 gr.render{node = scene, file = 'poster.png', width = 1200, height = 1600, eye = {0, -.16, 20}, view = {0, 0, -1}, projection = 'orthographic', view_height = 9.9,
-    integrator = 'path', denoise = true, tone = 'filmic', exposure = .55, background = {.2, .3, .5},
-    lights = {gr.spherical_light{position = {-24, 14, 8.5}, radius = .55, emission = {1900, 1240, 620}}, gr.sky_light{sky = {.12, .16, .25}}}}
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = .45, background = {.2, .3, .5},
+    lights = {gr.spherical_light{position = {-25, 13, 13}, radius = .55, emission = {2300, 1480, 720}}, gr.sky_light{sky = {.085, .12, .20}}}}

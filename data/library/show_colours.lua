@@ -40,5 +40,5 @@ for row, item in ipairs(functions) do
 end
 
 studio.render {
-    node = scene, file = 'show_colours.png', eye = { 0, 7.4, 15 }, target = { 0.1, 0.85, -0.9 }, fov = 26, floor = { 0.42, 0.42, 0.45 },
+    node = scene, file = 'show_colours.png', eye = { 0, 7.4, 15 }, target = { 0.1, 0.85, -0.9 }, fov = 26, floor = { 0.30, 0.30, 0.31 },
 }

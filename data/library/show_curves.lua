@@ -11,13 +11,13 @@ local function at(x, y, z, turn, node) studio.place(scene, node, x, y, z, turn) 
 
 local vase = lathe.spline({ { 0, 0 }, { 0.52, 0 }, { 0.52, 0 }, { 0.62, 0.12 }, { 1.02, 0.95 }, { 0.85, 1.75 }, { 0.40, 2.35 }, { 0.36, 2.7 },
     { 0.58, 3.05 }, { 0.55, 3.07 }, { 0.30, 2.7 }, { 0.34, 2.35 }, { 0, 2.2 } }, 12)
-at(-4.7, 0, 0, 0, gr.vn_mesh(studio.glaze({ 0.10, 0.32, 0.42 }, 0.14), lathe.turn(vase, 96)))
+at(-4.7, 0, 0, 0, gr.vn_mesh(studio.glaze { 0.10, 0.32, 0.42 }, lathe.turn(vase, 96)))
 
 local body = { loft.mesh({
     loft.superellipse(0.85, 0.85, 6), loft.superellipse(0.92, 0.92, 5), loft.polygon(8, 1.0, 0.72, 22), loft.polygon(8, 0.62, 0.46, 30),
     loft.superellipse(0.24, 0.24), loft.superellipse(0.30, 0.30),
 }, { heights = { 0, 0.35, 1.5, 2.3, 2.9, 3.3 }, around = 192, along = 14 }) }
-at(-2.0, 0, -0.4, 20, gr.vn_mesh(gr.rr_material({ 0.36, 0.10, 0.20 }, { 0.7, 0.6, 0.65 }, 120, 0.18, 0, 1.5), table.unpack(body)))
+at(-2.0, 0, -0.4, 20, gr.vn_mesh(studio.glaze { 0.34, 0.05, 0.13 }, table.unpack(body)))
 
 -- A column of four leaves that turns as it rises, thicker in its middle.
 local line = {}
@@ -64,4 +64,5 @@ control, patches = bezier.b_spline(cushion, true, false)
 local verts, normals, faces, face_normals = bezier.mesh(control, patches, 14, true)
 at(5.0, 0, -0.2, 25, gr.vn_mesh(studio.matt { 0.45, 0.22, 0.44 }, verts, normals, faces, face_normals))
 
-studio.render { node = scene, file = 'show_curves.png', eye = { 0.3, 5.2, 17.5 }, target = { 0.1, 1.35, 0 }, fov = 22 }
+studio.render { node = scene, file = 'show_curves.png', eye = { 0.3, 5.2, 17.5 }, target = { 0.1, 1.35, 0 }, fov = 22, floor = { 0.09, 0.20, 0.32 },
+    key = { 10, 10, 8 }, lamp = 3, light = { 1.7, 1.35, 0.9 } }

@@ -17,10 +17,11 @@ put(sponge, -0.3, 1.5, -1.2, 1.5, -45)
 
 local balls = {}
 for k, c in ipairs { { 0.55, 0.06, 0.09 }, { 0.62, 0.22, 0.07 }, { 0.70, 0.46, 0.10 }, { 0.72, 0.66, 0.36 } } do
-    balls[k] = gr.rr_material(c, { 0.5, 0.5, 0.5 }, 120, 0.22, 0, 1.5)
+    balls[k] = studio.glaze(c)
 end
 put(fractals.sphere_flake(4, balls), 3.9, 1.0, 0.6, 1.0, 12)
 
 put(fractals.sierpinski(6, studio.matt { 0.30, 0.52, 0.62 }, 'pyramid'), -4.0, 0, 0.3, 1.75, 25)
 
-studio.render { node = scene, file = 'show_fractals.png', eye = { 0.6, 5.2, 15 }, target = { 0.05, 1.4, -0.3 }, fov = 25 }
+studio.render { node = scene, file = 'show_fractals.png', eye = { 0.6, 5.2, 15 }, target = { 0.05, 1.4, -0.3 }, fov = 25, floor = { 0.09, 0.085, 0.08 },
+    key = { 8, 11, -3 }, lamp = 3, light = { 2.2, 2.0, 1.7 }, sky = { 0.14, 0.15, 0.18 } }

@@ -7,10 +7,10 @@ local studio = require 'studio'
 local gear = require 'gear'
 
 local scene = gr.node 'gears'
-local brass = gr.rr_material({ 0.40, 0.29, 0.10 }, { 0.92, 0.78, 0.45 }, 60, 0.35, 0, 1)
-local steel = gr.rr_material({ 0.27, 0.28, 0.31 }, { 0.75, 0.77, 0.80 }, 50, 0.30, 0, 1)
-local blue = gr.rr_material({ 0.13, 0.18, 0.28 }, { 0.60, 0.68, 0.80 }, 60, 0.30, 0, 1)
-local red = gr.rr_material({ 0.42, 0.08, 0.06 }, { 0.70, 0.55, 0.5 }, 60, 0.15, 0, 1.5)
+local brass = gr.metal_material { metal = 'brass', roughness = 0.28 }
+local steel = gr.metal_material { metal = 'iron', roughness = 0.35 }
+local blue = studio.glaze { 0.035, 0.085, 0.25 }
+local red = studio.glaze { 0.40, 0.03, 0.02 }
 
 --- A wheel with an axle, with holes if it is large, rotated and at its position; the axis of wheels is z.
 local function wheel(g, material, x, y, z, angle, options)
@@ -63,4 +63,5 @@ rack:add_child(lying)
 rack:add_child(wheel(pinion, red, 0, pinion.radius, 0, -90, { width = 0.5, bore = 0.3 }))
 stand(rack, 3.9, 0.12 * 3.25, 0.4, -24)
 
-studio.render { node = scene, file = 'show_gears.png', eye = { -0.2, 4.4, 16.5 }, target = { -0.4, 2.2, 0 }, fov = 26, floor = { 0.52, 0.54, 0.58 } }
+studio.render { node = scene, file = 'show_gears.png', eye = { -0.2, 4.4, 16.5 }, target = { -0.4, 2.2, 0 }, fov = 26, floor = { 0.10, 0.12, 0.15 },
+    key = { -11, 8, 7 }, light = { 1.9, 1.5, 1.05 }, sky = { 0.10, 0.13, 0.19 } }

@@ -29,10 +29,10 @@ local middle = { (flake.low[1] + flake.high[1]) / 2, (flake.low[2] + flake.high[
 for k = 1, #rim - 1 do outline[k] = { rim[k][1] - middle[1], rim[k][2] - middle[2] } end
 local tray = gr.node 'tray'
 tray:rotate('y', 12)
-tray:add_child(gr.prism { outline = outline, from = 0, to = 0.4, material = gr.rr_material({ 0.10, 0.11, 0.13 }, { 0.7, 0.7, 0.7 }, 120, 0.25, 0, 1.5) })
+tray:add_child(gr.prism { outline = outline, from = 0, to = 0.4, material = studio.glaze { 0.05, 0.055, 0.07 } })
 scene:add_child(tray)
 
 studio.render {
     node = scene, file = 'show_hilbert.png', eye = { 0, 13.5, 26 }, target = { 0, 3.2, 0 }, fov = 30, key = { -14, 22, 12 }, lamp = 8,
-    floor = { 0.70, 0.68, 0.64 }, back = -16,
+    floor = { 0.44, 0.41, 0.36 }, back = -16, light = { 1.5, 1.25, 0.95 },
 }

@@ -36,10 +36,10 @@ local list = {
 }
 
 local scene = gr.node 'patterns'
-local ink = studio.matt { 0.08, 0.08, 0.1 }
+local ink = gr.material { kd = { 0, 0, 0 }, emission = { 0.75, 0.74, 0.70 } } -- shines, so no shadow covers a word
 for k, entry in ipairs(list) do
     local name, f = entry[1], entry[2]
-    local material = gr.material { kd = f, ks = { 0.18, 0.18, 0.18 }, shininess = 60 }
+    local material = gr.openpbr_material { base_color = f, specular_roughness = 0.35 }
     local x, y = ((k - 1) % 5 - 2) * 2.3, (2 - (k - 1) // 5) * 2.15
     local item = gr.node { name = name }
     item:add_child(gr.box { min = { -0.75, -0.75, -0.3 }, max = { 0.75, 0.75, -0.05 }, material = material })
@@ -50,6 +50,6 @@ for k, entry in ipairs(list) do
 end
 
 studio.render {
-    node = scene, file = 'show_patterns.png', eye = { 0, 3.4, 17 }, target = { 0, 3.22, 0 }, fov = 24, key = { -9, 9, 16 }, lamp = 2,
-    light = { 0.62, 0.60, 0.55 },
+    node = scene, file = 'show_patterns.png', size = { 960, 540 }, spp = 3, eye = { 0, 3.4, 17 }, target = { 0, 3.22, 0 }, fov = 24, key = { -9, 9, 16 }, lamp = 2,
+    light = { 0.95, 0.90, 0.82 }, floor = { 0.24, 0.24, 0.25 },
 }

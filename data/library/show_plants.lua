@@ -100,6 +100,6 @@ for _, p in ipairs { { -2.6, 0.9 }, { -3.3, 1.5 }, { 3.4, 1.2 }, { 2.9, 1.9 }, {
 end
 
 studio.render {
-    node = scene, file = 'show_plants.png', eye = { 0, 3.2, 15 }, target = { 0, 1.9, 0 }, fov = 24, floor = { 0.66, 0.64, 0.58 },
-    key = { -8, 13, 9 },
+    node = scene, file = 'show_plants.png', eye = { 0, 3.2, 15 }, target = { 0, 1.9, 0 }, fov = 24, floor = { 0.50, 0.47, 0.38 },
+    key = { -15, 9, 6 }, lamp = 1.4, light = { 2.1, 1.6, 0.95 }, sky = { 0.28, 0.36, 0.50 },
 }

@@ -25,7 +25,7 @@ at(-2.9, 1.11, 0, gr.sphere(studio.glaze { 0.12, 0.22, 0.42 }), scatter.place(sc
 local path = knot.curve(2, 3, 160)
 verts, _, faces = knot.tube(path, 0.24, 12)
 local beads = {}
-for k = 1, 5 do beads[k] = gr.sphere { radius = 0.075, material = studio.glaze(colour.palette('sunset', k / 5), 0.15) } end
+for k = 1, 5 do beads[k] = gr.sphere { radius = 0.075, material = studio.glaze(colour.palette('sunset', k / 5)) } end
 local upright = gr.node 'upright'
 upright:rotate('x', 78)
 upright:add_child(gr.vn_mesh(studio.matt { 0.20, 0.17, 0.26 }, knot.tube(path, 0.24, 24)))
@@ -45,4 +45,5 @@ end
 bed(-1.9, chance, pale)
 bed(0.45, spread, blade)
 
-studio.render { node = scene, file = 'show_scatter.png', eye = { 0.1, 5.4, 12.5 }, target = { 0.35, 0.95, 0 }, fov = 25 }
+studio.render { node = scene, file = 'show_scatter.png', eye = { 0.1, 5.4, 12.5 }, target = { 0.35, 0.95, 0 }, fov = 25, key = { 3, 16, 6 }, lamp = 10,
+    floor = { 0.36, 0.34, 0.30 }, sky = { 0.34, 0.38, 0.44 } }

@@ -40,16 +40,16 @@ local list = {
 }
 
 local scene = gr.node 'solids'
-local ink = studio.matt { 0.08, 0.08, 0.1 }
+local ink = gr.material { kd = { 0, 0, 0 }, emission = { 0.75, 0.74, 0.70 } } -- shines, so no shadow covers a word
 for k, entry in ipairs(list) do
     local name, f = entry[1], entry[2]
     local x, y = ((k - 1) % 7 - 3) * 2.1, (3 - (k - 1) // 7) * 2.15
-    local material = gr.material { kd = colour.hsv(47 * k, 0.55, 0.8), ks = { 0.2, 0.2, 0.2 }, shininess = 60 }
+    local material = studio.glaze(colour.hsv(47 * k, 0.7, 0.6))
     local item = gr.implicit { f = f, bounds = { { -0.9, -0.9, -0.9 }, { 0.9, 0.9, 0.9 } }, material = material }
     scene:add_child(item:rotate('Y', -25):rotate('X', 15):translate(x, y + 1.35, 0))
     scene:add_child(text.node(name, { size = 0.24, depth = 0.05, align = 'centre', material = ink }):translate(x, y + 0.14, 0))
 end
 studio.render {
-    node = scene, file = 'show_sdf.png', eye = { 0, 4.6, 24 }, target = { 0, 4.4, 0 }, fov = 22.5, key = { -9, 12, 16 }, lamp = 2,
-    light = { 0.62, 0.60, 0.55 },
+    node = scene, file = 'show_sdf.png', size = { 960, 540 }, spp = 3, eye = { 0, 4.6, 24 }, target = { 0, 4.4, 0 }, fov = 22.5, key = { -9, 12, 16 }, lamp = 2,
+    light = { 1.0, 0.88, 0.72 }, floor = { 0.20, 0.17, 0.22 }, sky = { 0.22, 0.22, 0.30 },
 }

@@ -46,4 +46,5 @@ for k, word in ipairs(steps) do
     stand(verts, faces, studio.silver, 2.25 * (k - 4), -4.1, 0.9, 10 * k)
 end
 
-studio.render { node = scene, file = 'show_solids.png', eye = { 0, 11.5, 17 }, target = { 0, 0.2, -0.5 }, fov = 22.5 }
+studio.render { node = scene, file = 'show_solids.png', eye = { 0, 11.5, 17 }, target = { 0, 0.2, -0.5 }, fov = 22.5, key = { 9, 13, -7 }, lamp = 3,
+    light = { 1.8, 1.65, 1.4 }, floor = { 0.30, 0.30, 0.31 } }

@@ -79,4 +79,5 @@ for k = 7, #star_verts do -- the tips of the pyramids, extended
 end
 show(polyhedra.loop, star_verts, star_faces, 2.6, 8, 1.0, quick and 3 or 4)
 
-studio.render { node = scene, file = 'show_subdivision.png', eye = { 0, 8.5, 17.5 }, target = { 0, 0.9, 0.2 }, fov = 26 }
+studio.render { node = scene, file = 'show_subdivision.png', eye = { 0, 8.5, 17.5 }, target = { 0, 0.9, 0.2 }, fov = 26, key = { 1, 16, 3 }, lamp = 7,
+    floor = { 0.34, 0.36, 0.38 }, sky = { 0.20, 0.23, 0.28 } }

@@ -6,16 +6,16 @@ local colour, meshes = require 'colour', require 'meshes'
 local M = {}
 
 --- A glazed material of a colour.
-function M.glaze(c, shine)
-    return gr.rr_material(c, { 0.45, 0.45, 0.45 }, 90, shine or 0.08, 0, 1.5)
+function M.glaze(c)
+    return gr.openpbr_material { base_color = c, specular_roughness = 0.35, coat_weight = 0.6, coat_roughness = 0.08 }
 end
 
 --- A matt one.
-function M.matt(c) return gr.material(c, { 0.06, 0.06, 0.06 }, 12) end
+function M.matt(c) return gr.openpbr_material { base_color = c, specular_roughness = 0.6, specular_weight = 0.3 } end
 
-M.gold = gr.rr_material({ 0.42, 0.28, 0.07 }, { 0.95, 0.74, 0.36 }, 90, 0.55, 0, 1)
-M.silver = gr.rr_material({ 0.30, 0.31, 0.33 }, { 0.85, 0.87, 0.90 }, 90, 0.55, 0, 1)
-M.copper = gr.rr_material({ 0.40, 0.17, 0.09 }, { 0.90, 0.56, 0.42 }, 70, 0.45, 0, 1)
+M.gold = gr.metal_material { metal = 'gold', roughness = 0.2 }
+M.silver = gr.metal_material { metal = 'silver', roughness = 0.22 }
+M.copper = gr.metal_material { metal = 'copper', roughness = 0.25 }
 
 --- Puts a node into a scene: scaled by `size` (1), turned about y by `turn` degrees, then moved.
 function M.place(scene, node, x, y, z, turn, size)
@@ -43,25 +43,25 @@ function M.backdrop(c, back)
     return gr.vn_mesh(M.matt(c), table.unpack(sheet))
 end
 
---- Renders a scene in the studio. `options`: node, file, eye, target, fov; size {960, 540}, floor: its colour, back: z of the
---- wall, key: where the large lamp is, lamp: its size, light: its colour; side, fill: place (the camera's) and colour of a
---- second one; lights: more of them; ambient.
+--- Renders a scene in the studio. `options`: node, file, eye, target, fov; size {640, 360}; floor: its colour, back: z of the
+--- wall; key: where the large lamp is, lamp: the length of its side, light: what it gives the middle of the picture; sky:
+--- the light from everywhere else; exposure.
 function M.render(options)
     local root = gr.node 'studio'
     root:add_child(options.node)
-    root:add_child(M.backdrop(options.floor or { 0.60, 0.60, 0.62 }, options.back))
-    local key, size = options.key or { -7, 13, 8 }, options.lamp or 4
-    local lights = {
-        gr.area_light({ key[1] - size / 2, key[2], key[3] - size / 2 }, { size, 0, 0 }, { 0, 0.4 * size, size },
-            options.light or { 0.86, 0.82, 0.74 }, { 1, 0, 0 }),
-        gr.light(options.side or options.eye, options.fill or { 0.20, 0.23, 0.29 }, { 1, 0, 0 }),
-    }
-    for _, light in ipairs(options.lights or {}) do lights[#lights + 1] = light end
-    local picture = options.size or { 960, 540 }
+    root:add_child(M.backdrop(options.floor or { 0.46, 0.46, 0.48 }, options.back))
+    local key, size, target = gr.vec(options.key or { -7, 13, 8 }), options.lamp or 4, gr.vec(options.target)
+    local towards = (target - key):normalize()
+    local across = towards:cross(gr.vec(0, 1, 0)):normalize()
+    local emission = gr.vec(options.light or { 1.25, 1.12, 0.94 }) * (math.pi * gr.length(target - key) ^ 2 / size ^ 2)
+    local sky = options.sky or { 0.26, 0.29, 0.34 }
+    local picture = options.size or { 640, 360 }
     gr.render {
         node = root, file = options.file, width = picture[1], height = picture[2], eye = options.eye, target = options.target,
-        fov = options.fov or 30, ambient = options.ambient or { 0.26, 0.27, 0.30 }, lights = lights,
-        background = { 0.62, 0.66, 0.72 },
+        fov = options.fov or 30, background = sky, integrator = 'path', spp = options.spp or 6, denoise = true, tone = 'filmic',
+        exposure = options.exposure or -0.25, max_depth = 5, clamp = 12,
+        lights = { gr.area_light { corner = key - (across + across:cross(towards)) * (size / 2), v1 = across * size, v2 = across:cross(towards) * size, emission = emission },
+            gr.sky_light { sky = sky } },
     }
 end
 

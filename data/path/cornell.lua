@@ -35,5 +35,5 @@ block(1.65, 3.3, 1.86, -3.51, 17)
 
 gr.render {
     node = room, file = 'cornell.png', width = 400, height = 400, integrator = 'path',
-    eye = { 2.78, 2.73, 8 }, target = { 2.78, 2.73, 0 }, fov = 39.3, background = { 0, 0, 0 },
+    eye = { 2.78, 2.73, 8 }, target = { 2.78, 2.73, 0 }, fov = 39.3, background = { 0, 0, 0 }, exposure = 1, tone = 'filmic',
 }

@@ -3,7 +3,7 @@
 cd "$(dirname "$0")/../.." || exit 1
 ./gray -q docs/functions/steps.lua || exit 1
 while read -r name size; do
-    ./gray -q --size "$size" -o "docs/functions/$name.png" "data/functions/$name.lua" || exit 1
+    ./gray -q --size "$size" --spp 24 -o "docs/functions/$name.png" "data/functions/$name.lua" || exit 1
 done <<END
 planet 360x270
 landscape 400x240

@@ -19,6 +19,6 @@ for name in "$@"; do
     size=480x270
     [ "$name" = shapes ] && size=720x480
     [ "$name" = sdf ] && size=720x405
-    ./gray -q --size $size -ss 3 -o "docs/library/$name.png" "$scene" || exit 1
+    ./gray -q --size $size -ss 3 --spp 24 -o "docs/library/$name.png" "$scene" || exit 1
     reduce "docs/library/$name.png" 128
 done

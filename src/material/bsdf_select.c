@@ -79,6 +79,14 @@ bool bsdf_branch_is_layered(const struct bsdf *bsdf, const struct bsdf_branch *b
     return lobe_flags(bsdf->lobes[branch->lobe].kind) & BSDF_ROUGH;
 }
 
+/* About what the lobe reflects and transmits of light from everywhere. The weights of layered lobes are those of light
+ * that meets their facets: the white ones of a gloss would hide the colours below it. */
+static struct colour expected_albedo(const struct bsdf *bsdf, const struct lobe *lobe) {
+    if (lobe->kind == LOBE_METAL || lobe->kind == LOBE_FILM)
+        return colour_mul(lobe->weight, bsdf->facets[lobe->facets].f0);
+    return lobe->share > 0 ? colour_scale(lobe->weight, lobe->share) : lobe->weight;
+}
+
 struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow) {
     struct bsdf_guide guide = {.albedo = glow};
     for (int i = 0; i < bsdf->count; i++) {
@@ -89,7 +97,7 @@ struct bsdf_guide bsdf_guide(const struct bsdf *bsdf, struct colour glow) {
         bool smooth = ((flags & BSDF_DELTA) && !(flags & BSDF_BELOW)) ||
                       (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
         guide.scatters = guide.scatters || (!smooth && !colour_is_black(lobe->weight));
-        guide.albedo = colour_add(guide.albedo, lobe->weight);
+        guide.albedo = colour_add(guide.albedo, expected_albedo(bsdf, lobe));
         *(flags & BSDF_TRANSMITS ? &guide.refracted : &guide.reflected) += colour_max_abs(lobe->weight);
     }
     return guide;

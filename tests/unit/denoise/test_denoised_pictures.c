@@ -119,6 +119,36 @@ TEST(denoising_leaves_less_than_a_fifth_of_the_error_of_glass_between_bright_and
     CHECK(denoised < raw / 5);
 }
 
+/* The guides have the colours under a gloss, a coat and on a metal. Without them, these squares had 4 to 11 times the
+ * error of matt ones. */
+TEST(a_texture_under_gloss_or_coat_or_of_a_metal_is_denoised_as_sharply_as_a_matt_one) {
+    static const char *const layers[] = {"specular_weight = 0", "specular_roughness = .35",
+                                         "coat_weight = 1, coat_roughness = .3",
+                                         "base_metalness = 1, specular_roughness = .6"};
+    double errors[4];
+    for (int i = 0; i < 4; i++) {
+        char text[2048];
+        (void)snprintf(
+            text, sizeof text,
+            "local function squares(p) return gr.mix(gr.vec(.8, .8, .7), gr.vec(.1, .2, .5), gr.step(.5, (p.x * 6 // 1 "
+            "+ "
+            "p.y * 6 // 1) %% 2)) end\n"
+            "gr.render{node = gr.rectangle{corner = {-2, -2, 0}, along = {4, 0, 0}, up = {0, 4, 0}, material = "
+            "gr.openpbr_material{base_color = squares, %s}}, file = 'g.png', width = 40, height = 40, integrator "
+            "= 'path', max_depth = 3, eye = {0, 0, 5}, target = {0, 0, 0}, fov = 20, background = {0, 0, 0}, lights = "
+            "{gr.area_light{corner = {-5, 3, 5}, v1 = {3, 0, 0}, v2 = {0, 2, 1}, emission = {9, 8, 7}}, "
+            "gr.sky_light{sky = {.3, .3, .4}}}}\n",
+            layers[i]);
+        test_write_text(test_path("squares.lua"), text);
+        test_shell_errors("$gray -q squares.lua --spp 128 --seed 9 -o reference.pfm && $gray -q squares.lua --spp 4 "
+                          "--denoise -o a.pfm",
+                          0, NULL);
+        errors[i] = error_of("a.pfm", "reference.pfm", 40);
+    }
+    for (int i = 1; i < 4; i++)
+        CHECK(errors[i] < 1.5 * errors[0]);
+}
+
 TEST(denoise_none_leaves_the_noise_of_a_scene_that_asks_for_denoising) {
     test_write_text(test_path("scene.lua"), PLAIN);
     test_write_text(test_path("asks.lua"), DENOISED);
@@ -150,11 +180,12 @@ TEST(a_signal_ends_denoising_at_once) {
     for (int i = 0; i < 2; i++) {
         static const char *const names[] = {"TERM", "HUP"};
         char line[512];
-        (void)snprintf(line, sizeof line,
-                       "rm -f said; $gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; "
-                       "await 'grep -q \"per pixel\" said'; kill -%s $p; wait "
-                       "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
-                       names[i]);
+        (void)snprintf(
+            line, sizeof line,
+            "rm -f said; $gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; "
+            "await 'grep -q \"per pixel\" said'; kill -%s $p; wait "
+            "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
+            names[i]);
         test_shell_errors(line, 130, "gray: interrupted, big.png is not written\n");
     }
 }

@@ -92,6 +92,26 @@ TEST(the_guide_of_a_surface_with_light_under_it_has_its_colour) {
     CHECK(colour_equal(bsdf.albedo, layers.subsurface_colour));
 }
 
+TEST(the_guide_of_a_surface_has_the_colours_under_its_gloss_and_those_of_its_metal) {
+    struct openpbr layers = openpbr_defaults();
+    struct material paint = {.kind = MATERIAL_OPENPBR, .depth = 1, .openpbr = &layers};
+    const struct material_context context = {0};
+    const struct vec3 up = {0, 0, 1};
+    const struct colour colours_of[] = {{0.8, 0.5, 0.2}, {0.1, 0.3, 0.6}};
+    struct hit hit = {.view = up, .front = true, .dpdu = {1, 0, 0}, .normal = up, .normal_geometric = up};
+    for (int metal = 0; metal < 2; metal++)
+        for (int i = 0; i < 2; i++) {
+            struct bsdf bsdf;
+            layers.base_metalness = metal;
+            paint.phong.kd = colours_of[i];
+            surface_eval(&paint, &hit, NULL, &context, &bsdf);
+            struct colour found = bsdf_guide(&bsdf, colour_all(0)).albedo;
+            CHECK_NEAR(found.r, paint.phong.kd.r, 0.12);
+            CHECK_NEAR(found.g, paint.phong.kd.g, 0.12);
+            CHECK_NEAR(found.b, paint.phong.kd.b, 0.12);
+        }
+}
+
 TEST(white_is_scattered_alone_and_black_never) {
     for (double g = -0.99; g < 1; g += 0.33) {
         CHECK(subsurface_albedo(0, g) == 0);
