@@ -933,13 +933,13 @@ function gr.patch(material, points, patches) end
 
 ---@class gr.node.displace.fields
 ---@field f? function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
----@field edge? number edge (a number, > 0; default level): Longer edges are halved, until none is longer, before vertices move.
----@field level? integer level (a whole number, 0 to 12; default 0): Instead of edge: how often every edge is halved.
+---@field edge? number edge (a number, > 0; default a part of the extent): Longer edges are halved, until none is longer, before vertices move.
+---@field level? integer level (a whole number, 0 to 12; default edge): Instead of edge: how often every edge is halved.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default 60): Crease angle of the displaced mesh, as in gr.mesh; 0: all faces are flat.
 
 ---Divides meshes, patches and height fields into small triangles and moves their vertices by a function.
 ---@param f function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
----@param edge number edge (a number, > 0; default level): Longer edges are halved, until none is longer, before vertices move.
+---@param edge? number edge (a number, > 0; default a part of the extent): Longer edges are halved, until none is longer, before vertices move.
 ---@return gr.node
 ---@overload fun(self: gr.node, fields: gr.node.displace.fields): gr.node
 function node:displace(f, edge) end

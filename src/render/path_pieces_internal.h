@@ -334,6 +334,8 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     struct colour found = photon_map_light(&tracer->caustics, state->job->world, vertex->hit, vertex->at.bsdf, lobes);
     struct colour light = colour_mul(path->weight, found);
     path->light = colour_add(path->light, light);
+    if (vertex->sight)
+        path->calm += (float)math_min(colour_max_abs(light), (double)FLT_MAX);
     /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
     struct colour diffuse[PATH_SCATTERINGS];
     path_share_all(BSDF_DIFFUSE, diffuse);
@@ -655,7 +657,9 @@ static void begin(struct path *path, const struct integrator_state *state, const
     path->received = path->thrown = colour_all(0);
     path->sight = true;
     path->kind = RAY_CAMERA;
-    path->depth = path->holes = 0;
+    path->depth = 0;
+    path->holes = 0;
+    path->calm = 0;
     path->dimension = SAMPLER_FIRST_VERTEX;
     medium_stack_copy(&path->media, state->eye_medium_stack);
     path->ray.media = &path->media;
@@ -797,7 +801,8 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
  * whole sample. --clamp keeps the colour; pictures become darker where samples differ much. */
 static struct colour finish(const struct path_tracer *tracer, struct integrator_state *state, const struct path *path) {
     struct colour light = integrator_clamp_light(state, path->light, (double)FLT_MAX);
-    double found = colour_max_abs(light), limit = tracer->clamp > 0 && found > tracer->clamp ? tracer->clamp : found;
+    double found = colour_max_abs(light),
+           limit = tracer->clamp > 0 ? math_min(tracer->clamp + (double)path->calm, found) : found;
     if (limit < found)
         light = colour_scale(light, limit / found);
     if (parts_of(state))

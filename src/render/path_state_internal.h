@@ -23,10 +23,13 @@ struct path {
     struct light_receiver scatter; /* the surface that scattered the current ray */
     struct sampler sampler;
     struct medium_stack media;
-    int depth, holes;   /* scattering events and holes so far */
+    int depth;          /* scattering events so far */
     uint32_t dimension; /* of the sampler: the first dimension of the next vertex */
+    /* The largest component of the light without noise, which --clamp leaves: that of photons in sight. */
+    float calm;
     bool sight;
-    uint8_t kind; /* enum ray_kind */
+    uint8_t kind;   /* enum ray_kind */
+    uint16_t holes; /* so far */
 };
 _Static_assert(sizeof(struct path) <= 528, "a path with its ray and what it hits");
 _Static_assert(sizeof(struct path) - sizeof(struct ray) - sizeof(struct packet_answer) <= 384, "the state of a path");

@@ -6,6 +6,7 @@
 #include "record/record_bounds.h"
 #include "scene/traversal.h"
 #include "script/rows_internal.h"
+#include "script/script_internal.h"
 #include "script/table_internal.h"
 #include "shape/height_field.h"
 
@@ -19,15 +20,34 @@ struct displacing {
     struct script_context *context;
     struct mesh_displacement by;
     double smooth; /* degrees */
+    double parts;  /* neither edge nor level is given: no edge is longer than this part of the extent; else 0 */
 };
+
+/* So fine that edges of a shape as large as the picture have a few pixels. Steps, so that the same mesh serves pictures
+ * of similar sizes. */
+static double parts_for_picture(const struct script_context *context) {
+    enum { USUAL = 960, SMALL = 512, LARGE = 1024 };
+    const struct script_host *host = script_of(context)->host;
+    const double larger = host->width > host->height ? host->width : host->height, pixels = larger > 0 ? larger : USUAL;
+    return pixels <= SMALL ? 128 : pixels <= LARGE ? 256 : 512;
+}
+
+/* extent: of the shape that is displaced. */
+static struct mesh_displacement finest(const struct displacing *d, double extent) {
+    struct mesh_displacement by = d->by;
+    if (d->parts > 0)
+        by.edge = extent / d->parts;
+    return by;
+}
 
 static bool displace_mesh(const struct displacing *d, struct node *node, struct error *error) {
     struct mesh_input input;
     struct mesh_tables own = {0};
     struct mesh *mesh = NULL;
     const struct box bounds = mesh_bounds(node->shape.mesh);
+    const struct mesh_displacement by = finest(d, vec3_length(vec3_sub(bounds.max, bounds.min)));
     record_use(&d->context->sandbox, d->by.program, &bounds);
-    if (mesh_input_displace(node->shape.mesh, &d->by, &input, &own, error)) {
+    if (mesh_input_displace(node->shape.mesh, &by, &input, &own, error)) {
         input.name = node->name;
         if (mesh_input_smooth(&input, &own, d->smooth, error))
             mesh = assets_mesh(d->context->scene.assets, &input, error);
@@ -83,9 +103,10 @@ const double *gr_function_heights(struct script_context *context, const struct h
 /* The grid becomes so fine that the sides and diagonals of its cells on the ground are at most `edge` long. */
 static bool displace_field(const struct displacing *d, struct node *node, struct error *error) {
     struct height_field_input grid;
-    uint32_t n = 1U << d->by.level;
-    if (d->by.edge > 0) {
-        double steps = ceil(height_field_step(node->shape.height_field) / d->by.edge);
+    const struct mesh_displacement by = finest(d, sqrt(2)); /* of the unit square */
+    uint32_t n = 1U << by.level;
+    if (by.edge > 0) {
+        double steps = ceil(height_field_step(node->shape.height_field) / by.edge);
         n = steps < 1 ? 1 : steps < 40000 ? (uint32_t)steps : 40000;
     }
     if (!height_field_refine(node->shape.height_field, n, &d->context->sandbox.call, &grid, error))
@@ -148,9 +169,9 @@ static const struct script_parameter displace_parameters[] = {
     SELF_PARAMETER,
     [DISPLACE_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
                     "A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}."},
-    [DISPLACE_EDGE] = {"edge", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "level",
+    [DISPLACE_EDGE] = {"edge", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "a part of the extent",
                        "Longer edges are halved, until none is longer, before vertices move."},
-    [DISPLACE_LEVEL] = {"level", KIND_WHOLE, OPTIONAL, IN_RANGE(0, MAX_LEVEL), NULL, "0",
+    [DISPLACE_LEVEL] = {"level", KIND_WHOLE, OPTIONAL, IN_RANGE(0, MAX_LEVEL), NULL, "edge",
                         "Instead of edge: how often every edge is halved."},
     [DISPLACE_SMOOTH] = {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "60",
                          "Crease angle of the displaced mesh, as in gr.mesh; 0: all faces are flat."},
@@ -162,19 +183,18 @@ static bool gr_displace(struct script_context *context, const struct script_valu
     const struct script_value *edge = &args[DISPLACE_EDGE], *level = &args[DISPLACE_LEVEL];
     const struct displacing d = {.context = context,
                                  .by = {args[DISPLACE_F].program, edge->number, (int)level->number},
-                                 .smooth = args[DISPLACE_SMOOTH].given ? args[DISPLACE_SMOOTH].number : CREASE};
+                                 .smooth = args[DISPLACE_SMOOTH].given ? args[DISPLACE_SMOOTH].number : CREASE,
+                                 .parts = edge->given || level->given ? 0 : parts_for_picture(context)};
     if (!args[DISPLACE_F].given)
         return error_set(error, ERROR_SCENE, "f is missing, a function of a vertex");
     if (edge->given && level->given)
         return error_set(error, ERROR_SCENE, "edge and level exclude each other");
-    if (!edge->given && !level->given)
-        return error_set(error, ERROR_SCENE, "edge is missing, the largest length of edges (or level)");
     return displace_all(&d, args[SELF].node, error);
 }
 
 static const struct script_function rows[] = {
     NODE("displace", displace_parameters, RESULT_SELF, gr_displace,
          "Divides meshes, patches and height fields into small triangles and moves their vertices by a function.",
-         "f edge"),
+         "f edge?"),
 };
 const struct function_rows displace_functions = {rows, COUNT(rows)};

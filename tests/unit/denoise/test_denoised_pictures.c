@@ -149,6 +149,44 @@ TEST(a_texture_under_gloss_or_coat_or_of_a_metal_is_denoised_as_sharply_as_a_mat
         CHECK(errors[i] < 1.5 * errors[0]);
 }
 
+/* Of a PFM file of that size: the mean of its red values. */
+static double mean_of(const char *name, int width, int height) {
+    size_t count = (size_t)(3 * width * height), bytes = count * sizeof(float), size = 0;
+    char *file = test_read_file(test_path(name), &size);
+    double sum = 0;
+    CHECK(file && size > bytes);
+    for (size_t i = 0; i < count; i += 3) {
+        float x;
+        memcpy(&x, file + size - bytes + i * sizeof x, sizeof x);
+        sum += (double)x;
+    }
+    free(file);
+    return 3 * sum / (double)count;
+}
+
+/* The floor beside a ball of glass, with the light that the ball focuses. Paths that meet the lamp by chance lose a
+ * third of it to the clamp. */
+TEST(caustics_of_photons_pass_the_clamp_and_the_denoiser) {
+    test_write_text(
+        test_path("glass.lua"),
+        "local n = gr.node('n')\n"
+        "n:add_child(gr.plane{normal = {0, 1, 0}, distance = -1, material = gr.openpbr_material{base_color = {.7, .7, "
+        ".7}}})\n"
+        "n:add_child(gr.sphere{material = gr.openpbr_material{transmission_weight = 1, specular_roughness = 0}})\n"
+        "gr.render{node = n, file = 'g.png', width = 40, height = 30, integrator = 'path', spp = 16, eye = {1.35, 4, "
+        "2.2}, "
+        "target = {1.35, -1, .9}, fov = 22, background = {.05, .05, .06}, lights = {gr.spherical_light{position = {-6, "
+        "9, "
+        "-4}, radius = .5, emission = {190, 180, 160}}, gr.sky_light{sky = {.05, .05, .06}}}}\n");
+    test_shell_errors("$gray -q glass.lua --spp 128 --caustics 60000 -o reference.pfm && "
+                      "$gray -q glass.lua --caustics 60000 --clamp 3 --denoise -o photons.pfm && "
+                      "$gray -q glass.lua --clamp 3 --denoise -o paths.pfm",
+                      0, NULL);
+    const double reference = mean_of("reference.pfm", 40, 30);
+    CHECK_NEAR(mean_of("photons.pfm", 40, 30), reference, 0.03 * reference);
+    CHECK(mean_of("paths.pfm", 40, 30) < 0.9 * reference);
+}
+
 TEST(denoise_none_leaves_the_noise_of_a_scene_that_asks_for_denoising) {
     test_write_text(test_path("scene.lua"), PLAIN);
     test_write_text(test_path("asks.lua"), DENOISED);

@@ -289,7 +289,7 @@ static int compare_lines(const char *scene, const char *lines, const struct test
     return compared;
 }
 
-/* The first picture of a scene, and the traces of `count` random pixels. */
+/* The first picture of a scene, not denoised, and the traces of `count` random pixels. */
 static void print_scene(const char *path, uint32_t width, uint32_t height, int count, const char *options) {
     char root[2048], file[4096];
     struct test_random random = {7};
@@ -297,7 +297,8 @@ static void print_scene(const char *path, uint32_t width, uint32_t height, int c
     char *words = malloc(room);
     if (!words || !getcwd(root, sizeof root))
         return;
-    const char *format = "-q %s --allow-read %s --size %ux%u --shard-pictures 1/1000 -o %s/story-%%d.png %s/%s";
+    const char *format =
+        "-q --denoise=none %s --allow-read %s --size %ux%u --shard-pictures 1/1000 -o %s/story-%%d.png %s/%s";
     (void)snprintf(words, room, format, options, root, width, height, test_folder(), root, path);
     struct test_result made = test_gray(NULL, words);
     if (made.status != 0)
@@ -305,8 +306,9 @@ static void print_scene(const char *path, uint32_t width, uint32_t height, int c
     release(made);
     (void)snprintf(file, sizeof file, "%s/story-1.png", test_folder());
     struct test_picture picture = test_read_picture(file);
-    used = (size_t)snprintf(words, room, "-q --json %s --allow-read %s --size %ux%u -o story-%%d.png %s/%s", options,
-                            root, width, height, root, path);
+    used =
+        (size_t)snprintf(words, room, "-q --json --denoise=none %s --allow-read %s --size %ux%u -o story-%%d.png %s/%s",
+                         options, root, width, height, root, path);
     for (int i = 0; i < count; i++) {
         uint32_t x = (uint32_t)test_uniform(&random, 0, width), y = (uint32_t)test_uniform(&random, 0, height);
         used += (size_t)snprintf(words + used, room - used, " --pixel %u,%u", x, y);

@@ -639,7 +639,7 @@ TEST(displaced_nodes_are_errors_where_they_cannot_be) {
         {"gr.height_field{heights = {{0, 0}, {1, 0}}}:displace(f, 0.1)", NULL},
         {"gr.height_field{f = function(p) return p.x * p.z end, columns = 5, rows = 3}", NULL},
         {"gr.height_field{f = f, heights = {{0, 0}, {1, 0}}}", NULL},
-        {"mesh():displace{f = f}", "edge is missing, the largest length of edges (or level)"},
+        {"mesh():displace{f = f}", NULL},
         {"mesh():displace{edge = 1}", "f is missing, a function of a vertex"},
         {"mesh():displace{f = f, edge = 1, level = 2}", "edge and level exclude each other"},
         {"gr.sphere('x'):displace(f, 1)", "sphere 'x' has no vertices"},
@@ -652,6 +652,30 @@ TEST(displaced_nodes_are_errors_where_they_cannot_be) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         check_corner(f, &(struct corner){cases[i][0], cases[i][1]}, NULL);
+}
+
+/* The facets of a ball of 20 triangles that fills the picture are less than a tenth of a pixel away from the ball.
+ * Pictures of similar sizes have the same mesh, a part of one has that of the whole. */
+TEST(without_edge_and_level_a_displaced_ball_has_facets_below_a_tenth_of_a_pixel) {
+    static const struct {
+        const char *options;
+        int pixels;
+    } pictures[] = {{"--size 256x256", 256}, {"--size 500x300", 500}, {"--size 600x1000 --crop 0,0,4,4", 1000}};
+    test_write_text(
+        test_path("ball.lua"),
+        "local verts, _, faces = require('polyhedra').geodesic(0)\n"
+        "local ball = gr.mesh{verts = verts, faces = faces}:displace{f = function(p) return p:normalize() - p end}\n"
+        "local v, f = ball:faces()\nlocal worst = 0\n"
+        "for _, t in ipairs(f) do\n  local m = (gr.vec(v[t[1] + 1]) + gr.vec(v[t[2] + 1]) + gr.vec(v[t[3] + 1])) / 3\n"
+        "  worst = math.max(worst, 1 - m:length())\nend\n"
+        "print(#f, worst * pixels / 2)\nassert(worst * pixels / 2 < .1 and #f < 1e6)\ngr.render{node = ball}\n");
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++) {
+        char line[256];
+        (void)snprintf(line, sizeof line, "$gray -q --check %s -D pixels=%d ball.lua >%zu.txt", pictures[i].options,
+                       pictures[i].pixels, i);
+        test_shell_errors(line, 0, NULL);
+    }
+    test_shell_errors("for i in 0 1 2; do cut -f 1 $i.txt >$i; done; cmp 0 1 && ! cmp -s 1 2", 0, NULL);
 }
 
 static const char solids[] =
