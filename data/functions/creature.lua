@@ -38,7 +38,7 @@ local soil = gr.openpbr_material { specular_weight = 0, base_color = function(p)
 scene:add_child(gr.height_field { material = soil, columns = 200, smooth = true, open = true, f = function(p) return hill((p.x - 0.5) * 60, (p.z - 0.5) * 60) / 60 end }
     :translate(-0.5, 0, -0.5):scale(60, 60, 60))
 local dice = random.new(3)
-local blade = gr.openpbr_material { specular_roughness = 0.5, base_color = function(p) return gr.mix(gr.vec(0.07, 0.20, 0.02), gr.vec(0.34, 0.40, 0.08), p.y * 4) end }
+local blade = gr.openpbr_material { specular_roughness = 0.5, base_color = function(p) return gr.mix(gr.vec(0.07, 0.20, 0.02), gr.vec(0.34, 0.40, 0.08), gr.clamp(p.y * 4, 0, 1)) end }
 local tufts = {}
 for kind = 1, 6 do
     local verts, faces = {}, {}
