@@ -1,7 +1,7 @@
 -- TITLE: Functions: a creature of smooth unions
 -- OPTIONS: --spp 6
 -- Body, legs, ears and tail are balls and capsules joined by one function; its spots are a pattern in Lua. The meadow is a
--- height field by a function with copies of a few tufts of hair.
+-- height field by a function with copies of a few tufts of grass.
 -- Author: gray project
 
 local patterns, random, sdf = require 'patterns', require 'random', require 'sdf'
@@ -24,7 +24,7 @@ local function skin(p)
 end
 local scene = gr.node 'scene'
 scene:add_child(gr.implicit {
-    f = body, bounds = { { -0.8, -0.08, -1.6 }, { 0.8, 2, 1.6 } },
+    f = body, lipschitz = 1.2, bounds = { { -0.8, -0.08, -1.6 }, { 0.8, 2, 1.6 } },
     material = gr.openpbr_material { base_color = skin, specular_roughness = 0.38, coat_weight = 0.3, coat_roughness = 0.25,
         geometry_normal = gr.bump(function(p) return gr.noise(p * 40) end, 0.004) },
 })
@@ -38,16 +38,23 @@ local soil = gr.openpbr_material { specular_weight = 0, base_color = function(p)
 scene:add_child(gr.height_field { material = soil, columns = 200, smooth = true, open = true, f = function(p) return hill((p.x - 0.5) * 60, (p.z - 0.5) * 60) / 60 end }
     :translate(-0.5, 0, -0.5):scale(60, 60, 60))
 local dice = random.new(3)
+local blade = gr.openpbr_material { specular_roughness = 0.5, base_color = function(p) return gr.mix(gr.vec(0.07, 0.20, 0.02), gr.vec(0.34, 0.40, 0.08), gr.clamp(p.y * 4, 0, 1)) end }
 local tufts = {}
 for kind = 1, 6 do
-    local tuft = gr.node 'tuft'
-    for _ = 1, 70 do
+    local verts, faces = {}, {}
+    for k = 0, 5 * 69, 5 do
         local x, z, turn, tall, lean = dice:range(-0.3, 0.3), dice:range(-0.3, 0.3), dice:range(0, 6.28), dice:range(0.12, 0.26), dice:range(0.02, 0.14)
-        local dx, dz, tint = lean * math.cos(turn), lean * math.sin(turn), dice:range(0, 1)
-        tuft:add_child(gr.curve { widths = { 0.014, 0.012, 0.002 }, points = { { x, -0.02, z }, { x + 0.3 * dx, 0.6 * tall, z + 0.3 * dz }, { x + dx, tall, z + dz } },
-            material = gr.openpbr_material { base_color = gr.mix(gr.vec(0.10, 0.26, 0.03), gr.vec(0.34, 0.38, 0.07), tint), specular_roughness = 0.5 } })
+        local c, s = math.cos(turn), math.sin(turn)
+        for j, w in ipairs { 0.007, 0.006 } do
+            local out, y = 0.3 * lean * (j - 1), -0.02 + (0.6 * tall + 0.02) * (j - 1)
+            verts[#verts + 1] = { x + out * c - w * s, y, z + out * s + w * c }
+            verts[#verts + 1] = { x + out * c + w * s, y, z + out * s - w * c }
+        end
+        verts[#verts + 1] = { x + lean * c, tall, z + lean * s }
+        faces[#faces + 1] = { k, k + 1, k + 3, k + 2 }
+        faces[#faces + 1] = { k + 2, k + 3, k + 4 }
     end
-    tufts[kind] = tuft
+    tufts[kind] = gr.mesh(blade, verts, faces)
 end
 for _ = 1, 3400 do
     local x, z = dice:range(-13, 5), dice:range(-15, 4.4)

@@ -26,7 +26,7 @@ local function height(x, z)
 end
 local function water(size)                         -- ripples that are finer than the cells of the field are a bump map
     return gr.openpbr_material{base_color = {.008, .034, .036}, specular_roughness = .05, specular_ior = 1.333,
-        geometry_normal = gr.bump(function(p) local q = p * size return (gr.noise(q * 5) + .5 * gr.noise(q * 12)) / size end, .010)}
+        geometry_normal = gr.bump(function(p) local q = p * size return (gr.noise(q * 5) + .5 * gr.noise(q * 12)) / size end, .017)}
 end
 local function field(size, middle, columns, sink)
     scene:add_child(gr.height_field{material = water(size), columns = columns, smooth = true, open = true,
@@ -58,17 +58,17 @@ for k = 0, 7 do
     if k % 4 == 1 then buoy:add_child(gr.torus(iron, .10, .022):rotate('x', 90):rotate('y', 45 * k):translate(.98 * c, .30, .98 * s)) end
 end
 buoy:add_child(gr.torus(iron, .40, .016):translate(0, 1.66, 0))
-buoy:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {8, 3.2, .9}}, centre = {0, 1.60, 0}, radius = .11})
+buoy:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {3.4, 1.25, .32}}, centre = {0, 1.60, 0}, radius = .11})
 buoy:add_child(gr.cone{material = iron, from = {0, 1.95, 0}, to = {0, 1.78, 0}, radius = .23})
-scene:add_child(buoy:rotate('z', 11):rotate('x', -7):translate(-1.75, height(-1.75, -4) + .05, -4))
+scene:add_child(buoy:rotate('z', 11):rotate('x', -7):translate(-1.75, height(-1.75, -4) - .10, -4))
 
 -- gulls
 local feathers = gr.openpbr_material{base_color = {.35, .33, .33}, specular_weight = .1}
 local function gull(x, y, z, size, flap, turn)
     local bird = gr.node 'gull'
-    bird:add_child(gr.sweep(feathers, {{0, 0, -.42}, {0, .03, -.2}, {0, .04, .1}, {0, .05, .42}, {0, .04, .55}}, {.01, .08, .11, .06, .01}))
+    bird:add_child(gr.sweep(feathers, {{0, .02, -.62}, {0, .02, -.40}, {0, .01, -.12}, {0, .01, .16}, {0, .06, .40}, {0, .075, .52}, {0, .05, .62}, {0, .035, .72}}, {.05, .035, .105, .125, .075, .072, .03, .008}))
     for side = -1, 1, 2 do
-        bird:add_child(gr.sweep(feathers, {{0, .05, .1}, {side * .45, .05 + .55 * flap, .16}, {side * 1.0, .05 + .45 * flap, .02}, {side * 1.5, .05 + .18 * flap, -.2}}, {.055, .05, .035, .004}))
+        bird:add_child(gr.sweep(feathers, {{0, .05, .12}, {side * .40, .05 + .42 * flap, .20}, {side * .85, .05 + .46 * flap, .08}, {side * 1.55, .05 + .26 * flap, -.28}}, {.085, .07, .05, .004}))
     end
     scene:add_child(bird:scale(size, size, size):rotate('z', 12):rotate('y', turn):translate(x, y, z))
 end

@@ -18,8 +18,8 @@ local wall = gr.openpbr_material{specular_roughness = .8, base_color = function(
 scene:add_child(gr.plane{material = wall, normal = {0, 0, 1}, distance = -4.4})
 local linen = gr.openpbr_material{base_color = function(p)
         local weave = gr.noise(p.x * 420, 0, p.z * 60) + gr.noise(p.x * 60, 1, p.z * 420)
-        local hem = gr.smoothstep(.008, .004, gr.max(p.z - .965, .965 - p.z))
-        return gr.vec(.78, .75, .68) * (1 + .05 * weave) * (1 - .25 * hem)
+        local seam = gr.smoothstep(.0022, .0012, gr.max(p.z - .965, .965 - p.z)) * gr.smoothstep(.25, .35, p.x * 150 % 1)
+        return gr.vec(.78, .75, .68) * (1 + .05 * weave) * (1 - .3 * seam)
     end, specular_weight = .2, specular_roughness = .7, fuzz_weight = .25, fuzz_color = {.9, .88, .84}}
 local function fold(x, z)                          -- height over the table; z from the back, 0 to 4.4
     local wave = .10 * math.sin(3.1 * x + 1.1 * gr.noise(x, 3, z * .4) * 3) + .07 * math.sin(7.3 * x + 2 * gr.noise(x * .8, 5, z * .3))
@@ -50,7 +50,7 @@ goblet:add_child(gr.lathe(wine, {{0, .882}, {.188, .938}, {.382, 1.132}, {.447, 
 scene:add_child(goblet:translate(-.15, 0, -.95))
 
 -- lemons: one whole, one cut
-local pores = gr.bump(function(p) local d = gr.cells(p * 17) return gr.smoothstep(.35, .05, d) * -1 + .5 * gr.noise(p * 3) end, .008)
+local pores = gr.bump(function(p) local d = gr.cells(p * 32) return gr.smoothstep(.4, .05, d) * -1 + gr.noise(p * 3) end, .005)
 local peel = gr.openpbr_material{subsurface_weight = .6, subsurface_color = {.90, .60, .05}, subsurface_radius = .05, subsurface_radius_scale = {1, .7, .2},
     base_color = function(p) return gr.mix(gr.vec(.86, .56, .03), gr.vec(.80, .62, .10), gr.turbulence(p * 1.6, 3)) end, specular_roughness = .30, geometry_normal = pores}
 local flesh = gr.openpbr_material{subsurface_weight = .2, subsurface_color = {.92, .76, .26}, subsurface_radius = .05, specular_roughness = .15, coat_weight = .4,
@@ -98,7 +98,7 @@ scene:add_child(gr.sweep(stalk, {{-.55, .75, 1.0}, {-.25, .62, .85}, {.0, .40, .
 -- bread, and a knife over the edge
 local crust = gr.openpbr_material{specular_roughness = .55, specular_weight = .5, base_color = function(p)
         local flour = gr.smoothstep(.15, .5, gr.noise(p * 2.2) + .5 * gr.noise(p * 9))
-        return gr.mix(gr.mix(gr.vec(.42, .19, .06), gr.vec(.20, .075, .025), gr.turbulence(p * 2, 3)), gr.vec(.70, .60, .46), .55 * flour)
+        return gr.mix(gr.mix(gr.vec(.62, .34, .13), gr.vec(.36, .15, .05), gr.turbulence(p * 2, 3)), gr.vec(.70, .60, .46), .55 * flour)
     end, geometry_normal = gr.bump(function(p) return gr.turbulence(p * 3, 4) end, .05)}
 scene:add_child(gr.difference(gr.ellipsoid{material = crust, centre = {0, 0, 0}, radii = {.95, .48, .62}}, gr.torus(crust, 1.3, .07):rotate('x', 90):translate(-.25, -.93, .02), gr.torus(crust, 1.3, .07):rotate('x', 90):translate(.30, -.93, .02)):rotate('y', 24):translate(3.05, .42, -1.25))
 local steel = gr.metal_material{metal = 'chromium', roughness = function(p) return .14 + .12 * gr.noise(p.x * 4, p.y * 4, p.z * 50) end}

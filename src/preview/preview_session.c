@@ -48,8 +48,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     }
     if (!view->own) {
         job->camera = view->camera;
-        job->settings.view_is_target = false;
-        job->settings.motion = (struct camera_motion){0};
+        settings_move_camera(&job->settings, &view->camera);
     }
 }
 
@@ -77,8 +76,7 @@ static struct render_job view_job(const struct preview_state *work, const struct
     struct render_job job = *work->preview->job;
     if (!view->own) {
         job.camera = view->camera;
-        job.settings.view_is_target = false;
-        job.settings.motion = (struct camera_motion){0};
+        settings_move_camera(&job.settings, &view->camera);
     }
     return job;
 }

@@ -453,8 +453,7 @@ static void change_views(const struct script_context *context, struct render_req
             continue;
         if (view->has_camera && !camera) {
             request->camera = view->camera;
-            request->settings.view_is_target = false;
-            request->settings.motion = (struct camera_motion){0};
+            settings_move_camera(&request->settings, &view->camera);
         }
         if (view->has_exposure && !exposure)
             request->settings.tone.exposure = view->exposure;

@@ -10,11 +10,8 @@ struct integrator_traits integrator_traits(enum integrator_kind integrator) {
     case INTEGRATOR_WHITTED:
         return (struct integrator_traits){.is_classic = true, .has_styles = true};
     case INTEGRATOR_PATH:
-        return (struct integrator_traits){.progressive = true,
-                                          .has_light_parts = true,
-                                          .is_linear = true,
-                                          .sky_lights = true,
-                                          .follows_paths = true};
+        return (struct integrator_traits){
+            .progressive = true, .has_light_parts = true, .is_linear = true, .sky_lights = true, .follows_paths = true};
     case INTEGRATOR_RADIOSITY:
         return (struct integrator_traits){.is_linear = true, .sky_lights = true};
     }
@@ -44,4 +41,14 @@ void settings_set_draft(struct settings *settings, enum draft_level draft_level)
         settings->reflect_limit = settings->refract_limit = 0;
         settings->area_samples = 1;
     }
+}
+
+void settings_move_camera(struct settings *settings, const struct camera *to) {
+    const struct vec3 towards = vec3_sub(settings->lens.focus_point, to->eye);
+    const double distance = vec3_length(towards);
+    const bool in_front = vec3_dot(towards, to->view) > 0.001 * distance * vec3_length(to->view);
+    settings->view_is_target = false;
+    settings->motion = (struct camera_motion){0};
+    if (settings->lens.focus == 0 && !in_front)
+        settings->lens.focus = distance > 0 ? distance : 1;
 }

@@ -476,6 +476,9 @@ struct camera {
         up;     /* view: direction, or point with view_is_target; nothing needs to be unit or at right angles */
     double fov; /* full vertical angle, degrees, in (0, 180) */
 };
+/* Of a camera that was moved after the script placed it: it does not move while the shutter is open, and a point in
+ * focus that is no longer in front of it leaves the plane at the distance of the point. */
+void settings_move_camera(struct settings *settings, const struct camera *to);
 
 static inline double settings_line_width(const struct settings *settings) {
     double of_style = settings->style == STYLE_NONE ? 0 : LINE_WIDTH_DEFAULT;

@@ -278,3 +278,33 @@ TEST(upright_edges_have_n_squared_steps) {
         free(p.rgb);
     }
 }
+
+/* --- shadows of lamps --- */
+
+/* The lamp has 3 x 3 shadow rays for a sample, as by default. A single sample of each pixel differs by up to a fifth of
+ * the range: that is the grain. Where neighbours differ, more samples follow. */
+TEST(penumbrae_of_nine_shadow_rays_have_no_grain) {
+    static const char scene[] =
+        "local r = gr.node('r')\n"
+        "r:add_child(gr.plane{material = gr.material{kd = {.7, .7, .7}}, normal = {0, 1, 0}})\n"
+        "r:add_child(gr.box{material = gr.material{kd = {.7, .3, .2}}, min = {-3, .8, -1}, max = {0, 1, 1}})\n"
+        "gr.render{node = r, file = 't.png', width = 80, height = 60, eye = {0, 5, 6}, target = {0, 0, 0}, fov = 40, "
+        "lights = "
+        "{gr.area_light({-1.5, 5, -1}, {3, 0, 0}, {0, 0, 3}, {.9, .9, .9}, {1, 0, 0})}}\n";
+    struct test_picture pictures[3];
+    static const char *const options[] = {"scene.lua", "-full -ss 1 scene.lua",
+                                          "-full -ss 3 --default area_samples=12 scene.lua"};
+    for (int i = 0; i < 3; i++) {
+        renders(scene, options[i]);
+        pictures[i] = test_read_picture(test_path("t.png"));
+    }
+    int grain = 0, left = 0;
+    for (size_t i = 0; i < 3 * (size_t)80 * 60; i++) {
+        left = (int)fmax(left, abs(pictures[0].rgb[i] - pictures[2].rgb[i]));
+        grain = (int)fmax(grain, abs(pictures[1].rgb[i] - pictures[2].rgb[i]));
+    }
+    CHECK(grain > 40);
+    CHECK(left < 16);
+    for (int i = 0; i < 3; i++)
+        free(pictures[i].rgb);
+}

@@ -490,3 +490,13 @@ TEST(memory_may_end_while_the_transform_order_is_looked_for) {
     CHECK(failed > 2);
 }
 #endif
+
+/* In the window one walks past the point. */
+TEST(a_camera_that_was_moved_past_the_point_in_focus_focuses_at_the_distance_of_the_point) {
+    test_write_text(test_path("a.lua"),
+                    "if moved then gr.change_view('a.png', {0, 0, -3}, {0, .5, -1}, {0, 1, 0}, 40) end\n"
+                    "gr.render{node = gr.sphere{centre = {0, 3, -9}}, file = 'a.png', width = 40, height = 30, "
+                    "eye = moved and {0, 0, 9} or {0, 0, -3}, view = {0, .5, -1}, fov = 40, aperture = .4, "
+                    "focus = not moved and 5 or nil, focus_point = moved and {0, 3, 1} or nil}\n");
+    test_shell_errors("$gray -q a.lua -o b.png && $gray -q a.lua -D moved=true && cmp a.png b.png", 0, NULL);
+}
