@@ -99,10 +99,12 @@ TEST(the_guide_of_a_surface_has_the_colours_under_its_gloss_and_those_of_its_met
     const struct vec3 up = {0, 0, 1};
     const struct colour colours_of[] = {{0.8, 0.5, 0.2}, {0.1, 0.3, 0.6}};
     struct hit hit = {.view = up, .front = true, .dpdu = {1, 0, 0}, .normal = up, .normal_geometric = up};
-    for (int metal = 0; metal < 2; metal++)
+    layers.film_thickness = 0.5;
+    for (int kind = 0; kind < 4; kind++)
         for (int i = 0; i < 2; i++) {
             struct bsdf bsdf;
-            layers.base_metalness = metal;
+            layers.base_metalness = kind % 2;
+            layers.film_weight = kind / 2 * 0.2;
             paint.phong.kd = colours_of[i];
             surface_eval(&paint, &hit, NULL, &context, &bsdf);
             struct colour found = bsdf_guide(&bsdf, colour_all(0)).albedo;
