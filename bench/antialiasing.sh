@@ -16,7 +16,7 @@ grid='--aa-pattern grid'
 size=${SIZE:-320x240}
 references=$(absolute "${REFERENCES:-build/antialiasing-$size}")
 [ $# -gt 0 ] || set -- data/01demo.lua data/02demo.lua data/05demo.lua data/06demo.lua data/08demo.lua data/09demo.lua \
-    data/13demo.lua data/classic/stairs.lua data/swept.lua data/light.lua
+    data/13demo.lua data/classic/stairs.lua data/csg/machine.lua data/light.lua
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$references" || exit 1

@@ -52,7 +52,8 @@ function M.render(options)
     root:add_child(M.backdrop(options.floor or { 0.46, 0.46, 0.48 }, options.back))
     local key, size, target = gr.vec(options.key or { -7, 13, 8 }), options.lamp or 4, gr.vec(options.target)
     local towards = (target - key):normalize()
-    local across = towards:cross(gr.vec(0, 1, 0)):normalize()
+    local across = towards:cross(gr.vec(0, 1, 0)):normalize() * size
+    local up = across:cross(towards)
     local emission = gr.vec(options.light or { 1.25, 1.12, 0.94 }) * (math.pi * gr.length(target - key) ^ 2 / size ^ 2)
     local sky = options.sky or { 0.26, 0.29, 0.34 }
     local picture = options.size or { 640, 360 }
@@ -60,7 +61,7 @@ function M.render(options)
         node = root, file = options.file, width = picture[1], height = picture[2], eye = options.eye, target = options.target,
         fov = options.fov or 30, background = sky, integrator = 'path', spp = options.spp or 6, denoise = true, tone = 'filmic',
         exposure = options.exposure or -0.25, max_depth = 5, clamp = 12,
-        lights = { gr.area_light { corner = key - (across + across:cross(towards)) * (size / 2), v1 = across * size, v2 = across:cross(towards) * size, emission = emission },
+        lights = { gr.area_light { corner = key - (across + up) / 2, v1 = across, v2 = up, emission = emission },
             gr.sky_light { sky = sky } },
     }
 end

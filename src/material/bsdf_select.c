@@ -82,7 +82,8 @@ bool bsdf_branch_is_layered(const struct bsdf *bsdf, const struct bsdf_branch *b
 /* About what the lobe reflects and transmits of light from everywhere. The weights of layered lobes are those of light
  * that meets their facets: the white ones of a gloss would hide the colours below it. */
 static struct colour expected_albedo(const struct bsdf *bsdf, const struct lobe *lobe) {
-    if (lobe->kind == LOBE_METAL || lobe->kind == LOBE_FILM)
+    const bool has_facets = lobe->kind == LOBE_METAL || lobe->kind == LOBE_FILM;
+    if (has_facets && bsdf->facets[lobe->facets].kind == FACETS_METAL)
         return colour_mul(lobe->weight, bsdf->facets[lobe->facets].f0);
     return lobe->share > 0 ? colour_scale(lobe->weight, lobe->share) : lobe->weight;
 }

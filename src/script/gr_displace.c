@@ -20,7 +20,7 @@ struct displacing {
     struct script_context *context;
     struct mesh_displacement by;
     double smooth; /* degrees */
-    double parts;  /* neither edge nor level is given: no edge is longer than this part of the extent; else 0 */
+    double parts;  /* without edge and level: how many edges the extent of a shape has at least; else 0 */
 };
 
 /* So fine that edges of a shape as large as the picture have a few pixels. Steps, so that the same mesh serves pictures
@@ -32,8 +32,8 @@ static double parts_for_picture(const struct script_context *context) {
     return pixels <= SMALL ? 128 : pixels <= LARGE ? 256 : 512;
 }
 
-/* extent: of the shape that is displaced. */
-static struct mesh_displacement finest(const struct displacing *d, double extent) {
+/* For a shape of this extent. */
+static struct mesh_displacement displacement_of(const struct displacing *d, double extent) {
     struct mesh_displacement by = d->by;
     if (d->parts > 0)
         by.edge = extent / d->parts;
@@ -45,7 +45,7 @@ static bool displace_mesh(const struct displacing *d, struct node *node, struct 
     struct mesh_tables own = {0};
     struct mesh *mesh = NULL;
     const struct box bounds = mesh_bounds(node->shape.mesh);
-    const struct mesh_displacement by = finest(d, vec3_length(vec3_sub(bounds.max, bounds.min)));
+    const struct mesh_displacement by = displacement_of(d, vec3_length(vec3_sub(bounds.max, bounds.min)));
     record_use(&d->context->sandbox, d->by.program, &bounds);
     if (mesh_input_displace(node->shape.mesh, &by, &input, &own, error)) {
         input.name = node->name;
@@ -103,7 +103,7 @@ const double *gr_function_heights(struct script_context *context, const struct h
 /* The grid becomes so fine that the sides and diagonals of its cells on the ground are at most `edge` long. */
 static bool displace_field(const struct displacing *d, struct node *node, struct error *error) {
     struct height_field_input grid;
-    const struct mesh_displacement by = finest(d, sqrt(2)); /* of the unit square */
+    const struct mesh_displacement by = displacement_of(d, sqrt(2)); /* of the unit square */
     uint32_t n = 1U << by.level;
     if (by.edge > 0) {
         double steps = ceil(height_field_step(node->shape.height_field) / by.edge);

@@ -46,6 +46,7 @@ void settings_set_draft(struct settings *settings, enum draft_level draft_level)
 void settings_move_camera(struct settings *settings, const struct camera *to) {
     const struct vec3 towards = vec3_sub(settings->lens.focus_point, to->eye);
     const double distance = vec3_length(towards);
+    /* The plane of a point beside the camera would be at the lens. */
     const bool in_front = vec3_dot(towards, to->view) > 0.001 * distance * vec3_length(to->view);
     settings->view_is_target = false;
     settings->motion = (struct camera_motion){0};

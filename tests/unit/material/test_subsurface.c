@@ -99,16 +99,20 @@ TEST(the_guide_of_a_surface_has_the_colours_under_its_gloss_and_those_of_its_met
     const struct vec3 up = {0, 0, 1};
     const struct colour colours_of[] = {{0.8, 0.5, 0.2}, {0.1, 0.3, 0.6}};
     struct hit hit = {.view = up, .front = true, .dpdu = {1, 0, 0}, .normal = up, .normal_geometric = up};
-    for (int metal = 0; metal < 2; metal++)
+    layers.film_thickness = 0.5;
+    for (int kind = 0; kind < 4; kind++)
         for (int i = 0; i < 2; i++) {
             struct bsdf bsdf;
-            layers.base_metalness = metal;
-            paint.phong.kd = colours_of[i];
+            layers.base_metalness = kind % 2;
+            layers.film_weight = kind / 2 * 0.2;
+            paint.phong = (struct phong){.kd = colours_of[i], .ks = colour_all(1), .roughness = 0.3};
             surface_eval(&paint, &hit, NULL, &context, &bsdf);
             struct colour found = bsdf_guide(&bsdf, colour_all(0)).albedo;
             CHECK_NEAR(found.r, paint.phong.kd.r, 0.12);
             CHECK_NEAR(found.g, paint.phong.kd.g, 0.12);
             CHECK_NEAR(found.b, paint.phong.kd.b, 0.12);
+            /* A gloss adds its white, with a film and without one. */
+            CHECK(kind % 2 == 1 || i == 0 || found.r > paint.phong.kd.r + 0.01);
         }
 }
 
