@@ -539,7 +539,7 @@ static void nearest_changes(uint8_t row[LOCAL], int limit) {
         row[x] = (uint8_t)last;
     }
     for (int x = LOCAL - 1; x >= 0; x--) {
-        last = row[x] < last ? row[x] : last < limit ? last + 1 : limit;
+        last = row[x] <= last ? row[x] : last < limit ? last + 1 : limit;
         row[x] = (uint8_t)last;
     }
 }

@@ -354,6 +354,35 @@ TEST(a_part_is_denoised_as_the_whole_beyond_its_rim) {
             CHECK(memcmp(part[(y - 5) * (SIDE - 7) + x - 7], s.out[y * SIDE + x], sizeof *part) == 0);
 }
 
+enum { WIDE = 260, LOW = 8, LATER = 8 };
+
+/* The depth changes at every pixel from x = 170 to 211. */
+static void give_changing_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const uint32_t *x0 = context;
+    for (uint32_t i = *x0; i < WIDE; i++) {
+        float value = 0.1F * (float)((i * 7 + y * 5) % 11), depth = i > 170 && i < 212 && i % 2 ? 11 : 10;
+        row[i - *x0] = (struct denoise_pixel){
+            .colour = {{value, value, value}, {value, 0.5F, value}}, .variance = {0.1F, 0.1F, 0.1F}, .share = 0.5F};
+        row[i - *x0].features[0][DENOISE_DEPTH] = row[i - *x0].features[1][DENOISE_DEPTH] = depth;
+    }
+}
+
+TEST(a_part_is_denoised_as_the_whole_beside_pixels_that_all_have_other_features) {
+    static float whole[WIDE * LOW][3], part[(WIDE - LATER) * LOW][3];
+    char warning[256];
+    struct error error = {0};
+    uint32_t begins[] = {0, LATER};
+    struct pool *pool = pool_create(1, warning);
+    for (int i = 0; i < 2; i++) {
+        const struct denoise_source source = {WIDE - begins[i], LOW, begins[i], 0, give_changing_row, &begins[i]};
+        CHECK(denoise(&source, pool, i ? part : whole, &error));
+    }
+    pool_destroy(pool);
+    for (int y = 0; y < LOW; y++)
+        for (int x = LATER + DENOISE_RIM; x < WIDE; x++)
+            CHECK(memcmp(part[y * (WIDE - LATER) + x - LATER], whole[y * WIDE + x], sizeof *part) == 0);
+}
+
 TEST(whatever_a_film_holds_denoises_to_finite_numbers) {
     static struct synthetic s;
     static const float strange[] = {NAN, INFINITY, -INFINITY, 3e38F, -3e38F, 1e-40F, 0, -1};
