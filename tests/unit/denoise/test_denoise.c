@@ -495,7 +495,7 @@ TEST(few_bright_paths_leave_no_smears_on_walls_in_corners_and_along_frames) {
 
 /* A block of a large picture takes long; what has been computed before the stop stays. */
 TEST(kernels_of_the_denoiser_end_when_the_pool_is_cancelled) {
-    static const struct denoise_regression regression = {DENOISE_WINDOW, 2, 1, 0, false, false};
+    static const struct denoise_regression regression = {DENOISE_WINDOW, 2, 1, 0, false};
     const int middle = DENOISE_LOCAL / 2 * DENOISE_LOCAL + DENOISE_LOCAL / 2;
     struct film_rectangle bounds = {0, 0, DENOISE_LOCAL, DENOISE_LOCAL};
     char warning[256];
@@ -508,11 +508,11 @@ TEST(kernels_of_the_denoiser_end_when_the_pool_is_cancelled) {
             pool_cancel(pool);
         else
             pool_reset_cancel(pool);
-        s->distances[0][0][0] = s->sums[3][middle] = -1;
-        denoise_kernels_base.compare(s, 0);
+        s->distances[0][0][0] = s->weight_sums[middle] = -1;
+        denoise_kernels_base.compare(s, 0, bounds);
         CHECK((s->distances[0][0][0] < 0) == (cancelled != 0));
         denoise_kernels_base.regress(s, 0, regression, bounds);
-        CHECK((s->sums[3][middle] > 0) == (cancelled == 0));
+        CHECK((s->weight_sums[middle] > 0) == (cancelled == 0));
         denoise_kernels_base.filter_features(s, 1, false, bounds);
         CHECK((s->feature_sums[3][0] > 0) == (cancelled == 0));
     }
