@@ -42,7 +42,7 @@ local blade = gr.openpbr_material { specular_roughness = 0.5, base_color = funct
 local tufts = {}
 for kind = 1, 6 do
     local verts, faces = {}, {}
-    for k = 0, 5 * 69, 5 do
+    for k = 0, 5 * 249, 5 do
         local x, z, turn, tall, lean = dice:range(-0.3, 0.3), dice:range(-0.3, 0.3), dice:range(0, 6.28), dice:range(0.12, 0.26), dice:range(0.02, 0.14)
         local c, s = math.cos(turn), math.sin(turn)
         for j, w in ipairs { 0.007, 0.006 } do
@@ -56,10 +56,11 @@ for kind = 1, 6 do
     end
     tufts[kind] = gr.mesh(blade, verts, faces)
 end
-for _ = 1, 3400 do
-    local x, z = dice:range(-13, 5), dice:range(-15, 4.4)
-    local y = hill(x, z)
-    scene:add_child(gr.node { children = { tufts[dice:whole(1, 6)] } }:rotate('y', dice:range(0, 360)):scale(1, dice:range(0.6, 1.3), 1):translate(x, y, z))
+-- Squares of grass beside each other: a ray meets few of them, where tufts at random lie over each other.
+for x = -12.7, 5, 0.6 do
+    for z = -14.7, 4.4, 0.6 do
+        scene:add_child(gr.node { children = { tufts[dice:whole(1, 6)] } }:rotate('y', 90 * dice:whole(0, 3)):scale(1, dice:range(0.7, 1.2), 1):translate(x, hill(x, z), z))
+    end
 end
 
 local sun = gr.vec(0.2, 0.42, 0.75):normalize()

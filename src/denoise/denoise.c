@@ -5,11 +5,12 @@
  * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
  * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
  * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
- * on every second row and column are enough. This is done for several windows and weights, and each pixel prefers
+ * on every second row and column are enough, and every second of these where colours count: they are like the black
+ * squares of a chess board. This is done for several windows and weights, and each pixel prefers
  * those with the smallest error. A large window in which similar colours count more is for surfaces. Smaller windows
  * and weights by the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels
  * are alike; the noisy colour itself is the last candidate. Regressions for details are made only where features
- * change, and there every second centre is enough.
+ * change. Where colours do not count, both halves have the same weights, and one matrix serves both.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
@@ -55,11 +56,10 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
                "the same of features");
 
 /* Found by measurement (bench/denoise.sh). */
-static const struct denoise_regression regressions[REGRESSIONS] = {
-    {DENOISE_WINDOW, 2, 2.4F, 0, .details = false, .sparse = true},
-    {4, 2, 5, 0.5F, .details = true, .sparse = true},
-    {DENOISE_WINDOW, 4, 0, 0.3F, false, false},
-    {2, 2, 0, 0, .details = true, .sparse = false}};
+static const struct denoise_regression regressions[REGRESSIONS] = {{DENOISE_WINDOW, 2, 2.4F, 0, .details = false},
+                                                                   {4, 2, 5, 0.5F, .details = true},
+                                                                   {DENOISE_WINDOW, 4, 0, 0.3F, .details = false},
+                                                                   {2, 2, 0, 0, .details = true}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float edge_errors = 1;         /* the same at silhouettes */
@@ -282,24 +282,34 @@ static void keep_estimates(struct denoise_scratch *s, int regression, int half) 
         for (int y = -CHOICE; y < BLOCK + CHOICE; y++) {
             for (int at = local_of(-CHOICE, y); at < local_of(BLOCK + CHOICE, y); at++) {
                 float colour = s->colour[half][c][at];
-                float value = (s->sums[c][at] + own * colour) / (s->sums[3][at] + own);
+                float value = (s->sums[half][c][at] + own * colour) / (s->weight_sums[at] + own);
                 s->estimates[regression][half][c][at] = isfinite(value) ? value : colour;
             }
         }
     }
     for (int at = 0; at < LOCAL * LOCAL; at++)
-        s->support[regression][half][at] = s->sums[3][at] < few     ? DENOISE_FEW
-                                           : s->sums[3][at] <= many ? DENOISE_SOME
-                                                                    : DENOISE_MANY;
+        s->support[regression][half][at] = s->weight_sums[at] < few     ? DENOISE_FEW
+                                           : s->weight_sums[at] <= many ? DENOISE_SOME
+                                                                        : DENOISE_MANY;
 }
 
-/* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
-static void regress_half(const struct denoise_run *d, struct denoise_scratch *s, int half,
-                         struct film_rectangle bounds) {
-    d->kernels->compare(s, 1 - half);
+/* Denoises the halves of the samples in a block; the other half determines the similarity of colours. */
+static void regress_halves(const struct denoise_run *d, struct denoise_scratch *s, struct film_rectangle bounds) {
+    for (int half = 0; half < 2; half++) {
+        d->kernels->compare(s, 1 - half, bounds);
+        for (int b = 0; b < REGRESSIONS && !pool_cancelled(d->pool); b++) {
+            if (regressions[b].colours > 0) {
+                d->kernels->regress(s, half, regressions[b], bounds);
+                keep_estimates(s, b, half);
+            }
+        }
+    }
     for (int b = 0; b < REGRESSIONS && !pool_cancelled(d->pool); b++) {
-        d->kernels->regress(s, half, regressions[b], bounds);
-        keep_estimates(s, b, half);
+        if (regressions[b].colours > 0)
+            continue;
+        d->kernels->regress(s, 0, regressions[b], bounds);
+        for (int half = 0; half < 2; half++)
+            keep_estimates(s, b, half);
     }
 }
 
@@ -365,8 +375,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     d->kernels->find_changes(s);
     /* Estimates of all candidates, then the best mixture for each pixel. */
-    for (int half = 0; half < 2; half++)
-        regress_half(d, s, half, bounds);
+    regress_halves(d, s, bounds);
     if (pool_cancelled(d->pool))
         return;
     d->kernels->compare_candidates(s);

@@ -23,8 +23,9 @@ enum {
     DENOISE_FIRST = DENOISE_MARGIN - DENOISE_EXTENT / DENOISE_STEP * DENOISE_STEP,
     DENOISE_CENTRES = (DENOISE_MARGIN + DENOISE_BLOCK - 1 + DENOISE_EXTENT - DENOISE_FIRST) / DENOISE_STEP + 1,
     DENOISE_COMPARED = (DENOISE_CENTRES - 1) * DENOISE_STEP + 1 + 2 * DENOISE_PATCH,
+    DENOISE_COMPARED_ROWS = 8,                    /* that are kept: at least those of a patch */
     DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, position, features */
-    DENOISE_COLUMNS = DENOISE_TERMS + 3,          /* and the colour that it explains */
+    DENOISE_COLUMNS = DENOISE_TERMS + 6,          /* and the colours of the halves that it explains */
     DENOISE_FEATURE_WINDOW = 3,                   /* radius of the filter of features */
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
     DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
@@ -41,10 +42,9 @@ static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
 struct denoise_regression {
     int radius;     /* of the window, at most DENOISE_WINDOW */
     int step;       /* between centres, a multiple of DENOISE_STEP that divides DENOISE_BLOCK */
-    float colours;  /* scale of the distances between patches; 0: they do not count */
+    float colours;  /* scale of the distances between patches: at every second centre; 0: they do not count */
     float features; /* the same of the distances between features */
-    bool details;   /* of details: only at centres with changing features in their windows ... */
-    bool sparse;    /* ... where every second centre is enough */
+    bool details;   /* of details: only at centres with changing features in their windows */
 };
 
 typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
@@ -59,8 +59,8 @@ enum denoise_support { DENOISE_FEW, DENOISE_SOME, DENOISE_MANY };
 struct denoise_scratch {
     const struct pool *pool;
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
-    denoise_plane total_variance, unit; /* of pixels that are compared: sums over the channels */
-    denoise_plane sums[4];              /* of weighted colours, and of weights */
+    denoise_plane total_variance, unit;    /* of pixels that are compared: sums over the channels */
+    denoise_plane sums[2][3], weight_sums; /* of weighted colours of the halves, and of weights */
     denoise_plane estimates[DENOISE_REGRESSIONS][2][3];
     uint8_t support[DENOISE_REGRESSIONS][2][DENOISE_LOCAL * DENOISE_LOCAL]; /* enum denoise_support */
     /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
@@ -69,10 +69,11 @@ struct denoise_scratch {
     float relative[3][DENOISE_INNER][DENOISE_INNER]; /* variance of a half around a pixel, by squared colours */
     uint8_t change[DENOISE_LOCAL * DENOISE_LOCAL];   /* columns to the next pixel where features change */
     uint8_t near[DENOISE_CENTRES * DENOISE_CENTRES]; /* of centres: the radius of the window that reaches one */
-    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
-    float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
-    float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES / 2 + 1]; /* between patches, of every second centre */
+    float unlikeness[DENOISE_COMPARED_ROWS][DENOISE_COMPARED]
+                    [DENOISE_LANES]; /* of pixels and their windows: last rows */
     denoise_feature_plane feature_mean[3], feature_noise[3];
+    float feature_unlikeness[DENOISE_FEATURE_COMPARED * DENOISE_FEATURE_COMPARED];
     float feature_sums[4][DENOISE_BLOCK * DENOISE_BLOCK]; /* of weighted features, and of weights */
     /* Of one regression. */
     denoise_window columns[DENOISE_COLUMNS], weights;
@@ -83,10 +84,10 @@ struct denoise_kernels {
     /* Adds up the features of a block, weighted by the likeness of patches; group: how many there are. */
     void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds);
     /* The distances of all centres from their windows, in the colours of a half. */
-    void (*compare)(struct denoise_scratch *s, int half);
+    void (*compare)(struct denoise_scratch *s, int half, struct film_rectangle bounds);
     /* Fills `near` from the features. */
     void (*find_changes)(struct denoise_scratch *s);
-    /* Adds up what the regressions of all centres say about the colours of a half. */
+    /* Adds up what the regressions of all centres say about the colours of a half; of both if colours do not count. */
     void (*regress)(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct film_rectangle bounds);
     /* Fills errors and doubts from the estimates. */

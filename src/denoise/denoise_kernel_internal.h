@@ -11,6 +11,7 @@ enum {
     LOCAL = DENOISE_LOCAL,
     COMPARED = DENOISE_COMPARED,
     LANES = DENOISE_LANES,
+    SMALL_LANES = 8, /* of windows with a radius of at most 3 */
     TERMS = DENOISE_TERMS,
     COLUMNS = DENOISE_COLUMNS,
     FIRST_FEATURE = 3, /* terms before the features: constant, x, y */
@@ -89,7 +90,7 @@ static void compare_features(struct denoise_scratch *s, int group, bool depth, i
     float relative = depth ? 1e-6F : 0;
     for (int y = 0; y < SIDE; y++) {
         int p = (FIRST + y) * STRIDE + FIRST, q = p + dy * STRIDE + dx;
-        float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->unlikeness + y * SIDE;
+        float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->feature_unlikeness + y * SIDE;
         for (int i = 0; i < group; i++) {
             const float *mean = s->feature_mean[i], *noise = s->feature_noise[i];
             for (int x = 0; x < SIDE; x++) {
@@ -109,7 +110,7 @@ static void add_features(struct denoise_scratch *s, int group, int dx, int dy, s
     int x0 = (int)bounds.x0 - FIRST - dx, x1 = (int)bounds.x1 - FIRST - dx;
     int y0 = (int)bounds.y0 - FIRST - dy, y1 = (int)bounds.y1 - FIRST - dy;
     for (int y = 0; y < DENOISE_BLOCK; y++) {
-        const float *above = s->unlikeness + y * SIDE, *row = above + SIDE, *under = row + SIDE;
+        const float *above = s->feature_unlikeness + y * SIDE, *row = above + SIDE, *under = row + SIDE;
         int q = (FIRST + y + dy) * STRIDE + FIRST + dx, at = y * DENOISE_BLOCK;
         float columns[SIDE], weights[DENOISE_BLOCK];
         if (y < y0 || y >= y1)
@@ -155,80 +156,99 @@ static void sum_channels(struct denoise_scratch *s, int half) {
     }
 }
 
-/* The dissimilarity between the pixels of the block and those at an offset of (dx, dy): squared difference of
- * colours minus the part that variance explains, in units of the variance (Rousselle et al. 2012, equation 9). */
-static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) {
+/* The dissimilarity between the pixels of a row of the block and those of their windows that are dy below: squared
+ * difference of colours minus the part that variance explains, in units of the variance (Rousselle et al. 2012,
+ * equation 9). */
+static void compare_row(struct denoise_scratch *s, int half, int y, int dy) {
     enum { FIRST = DENOISE_FIRST - DENOISE_PATCH };
-    for (int y = 0; y < COMPARED; y++) {
-        int p = (FIRST + y) * LOCAL + FIRST, q = p + dy * LOCAL + dx;
-        float own[COMPARED], *out = s->unlikeness + y * COMPARED;
-        const float *r = s->colour[half][0], *g = s->colour[half][1], *b = s->colour[half][2];
-        const float *vr = s->variance[0], *vg = s->variance[1], *vb = s->variance[2];
-        const float *total = s->total_variance + p, *up = s->unit + p, *uq = s->unit + q;
-        for (int x = 0; x < COMPARED; x++) {
-            float dr = r[p + x] - r[q + x], dg = g[p + x] - g[q + x], db = b[p + x] - b[q + x];
-            float lr = vr[p + x] < vr[q + x] ? vr[p + x] : vr[q + x];
-            float lg = vg[p + x] < vg[q + x] ? vg[p + x] : vg[q + x];
-            float lb = vb[p + x] < vb[q + x] ? vb[p + x] : vb[q + x];
-            float above = ((dr * dr - lr) + (dg * dg - lg)) + ((db * db - lb) - total[x]);
-            own[x] = above / (up[x] + uq[x] + FLT_MIN);
+    const float *r = s->colour[half][0], *g = s->colour[half][1], *b = s->colour[half][2];
+    const float *vr = s->variance[0], *vg = s->variance[1], *vb = s->variance[2];
+    float(*out)[LANES] = s->unlikeness[y % DENOISE_COMPARED_ROWS];
+    for (int x = 0; x < COMPARED; x++) {
+        int p = (FIRST + y) * LOCAL + FIRST + x;
+        for (int at = 0; at < LANES; at += WIDTH) {
+            int q = p + dy * LOCAL - DENOISE_WINDOW + at;
+            vector dr = r[p] - load(r + q), dg = g[p] - load(g + q), db = b[p] - load(b + q);
+            vector lr = smaller(all(vr[p]), load(vr + q)), lg = smaller(all(vg[p]), load(vg + q));
+            vector lb = smaller(all(vb[p]), load(vb + q));
+            vector above = ((dr * dr - lr) + (dg * dg - lg)) + ((db * db - lb) - s->total_variance[p]);
+            store(out[x] + at, above / (s->unit[p] + load(s->unit + q) + FLT_MIN));
         }
-        for (int x = 0; x < COMPARED; x++)
-            out[x] = own[x] < unlikeness_limit ? own[x] : unlikeness_limit;
-        int row = y - DENOISE_PATCH;
-        if (row >= 0 && row % DENOISE_STEP == 0 && row / DENOISE_STEP < DENOISE_CENTRES)
-            memcpy(s->own[row / DENOISE_STEP], own + DENOISE_PATCH, sizeof s->own[0]);
     }
 }
 
-/* Sums over the patches around all centres, for the pixel at (row, lane) of their windows. */
-static void average_patches(struct denoise_scratch *s, int row, int lane) {
+/* The mean over the patches around every second centre of a row, for a row of their windows. */
+static void average_patches(struct denoise_scratch *s, int j, int row) {
     enum { SIDE = 2 * DENOISE_PATCH + 1 };
-    for (int j = 0; j < DENOISE_CENTRES; j++) {
-        const float *at = s->unlikeness + j * DENOISE_STEP * COMPARED;
-        denoise_window *to = s->distances + j * DENOISE_CENTRES;
-        float columns[COMPARED];
-        for (int x = 0; x < COMPARED; x++)
-            columns[x] = ((at[x] + at[COMPARED + x]) + (at[2 * COMPARED + x] + at[3 * COMPARED + x])) +
-                         ((at[4 * COMPARED + x] + at[5 * COMPARED + x]) + at[6 * COMPARED + x]);
-        for (int i = 0; i < DENOISE_CENTRES; i++) {
-            const float *c = columns + i * DENOISE_STEP;
-            float own = s->own[j][i * DENOISE_STEP] - own_limit;
-            to[i][row][lane] = (((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + c[6])) / (SIDE * SIDE) +
-                               own_share * (own > 0 ? own : 0);
+    float columns[COMPARED][LANES];
+    float(*rows[SIDE])[LANES];
+    for (int y = 0; y < SIDE; y++)
+        rows[y] = s->unlikeness[(j * DENOISE_STEP + y) % DENOISE_COMPARED_ROWS];
+    for (int x = 0; x < COMPARED; x++)
+        for (int at = 0; at < LANES; at += WIDTH) {
+            vector c[SIDE];
+            for (int y = 0; y < SIDE; y++)
+                c[y] = smaller(load(rows[y][x] + at), all(unlikeness_limit));
+            store(columns[x] + at, ((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + c[6]));
+        }
+    for (int i = j % 2; i < DENOISE_CENTRES; i += 2) {
+        float *to = s->distances[(j * DENOISE_CENTRES + i) / 2][row];
+        for (int at = 0; at < LANES; at += WIDTH) {
+            vector c[SIDE], own = load(rows[DENOISE_PATCH][i * DENOISE_STEP + DENOISE_PATCH] + at) - own_limit;
+            for (int x = 0; x < SIDE; x++)
+                c[x] = load(columns[i * DENOISE_STEP + x] + at);
+            store(to + at, (((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + c[6])) / (SIDE * SIDE) +
+                               own_share * larger(own, all(0)));
         }
     }
 }
+_Static_assert(DENOISE_CENTRES % 2 == 1, "centres of even numbers are like the black squares of a chess board");
 _Static_assert((int)DENOISE_PATCH == 3, "the sums of average_patches are of seven numbers");
 
-static void compare(struct denoise_scratch *s, int half) {
+static void compare(struct denoise_scratch *s, int half, struct film_rectangle bounds) {
+    /* The lowest blocks of a picture are often half empty. */
+    int inside = ((int)bounds.y1 - DENOISE_FIRST + DENOISE_STEP - 1) / DENOISE_STEP;
+    int centres = inside < DENOISE_CENTRES ? inside : DENOISE_CENTRES;
     sum_channels(s, half);
     for (int row = 0; row < DENOISE_SIDE && !pool_cancelled(s->pool); row++) {
-        for (int lane = 0; lane < DENOISE_SIDE; lane++) {
-            compare_pixels(s, half, lane - DENOISE_WINDOW, row - DENOISE_WINDOW);
-            average_patches(s, row, lane);
+        int y = 0;
+        for (int j = 0; j < centres; j++) {
+            for (; y <= j * DENOISE_STEP + 2 * DENOISE_PATCH; y++)
+                compare_row(s, half, y, row - DENOISE_WINDOW);
+            average_patches(s, j, row);
         }
     }
 }
 
 /* --- regressions --- */
 
+/* The halves of the samples that a regression is for, and the lanes of its windows: a small window needs fewer. */
+struct extent {
+    int first, halves, lanes;
+};
+
+/* The columns before the centre of a window. */
+static inline int before(struct extent e) {
+    return e.lanes < LANES ? e.lanes / 2 - 1 : DENOISE_WINDOW;
+}
+
 /* The rows of a window that are in the picture, and the lanes in these rows. */
 struct window {
     int x, y; /* the centre */
+    int left; /* the column of the first lane */
     int row0, row1;
     float inside[LANES]; /* 1 or 0 */
 };
 
-static struct window find_window(int cx, int cy, int radius, struct film_rectangle bounds) {
-    struct window w = {.x = cx, .y = cy};
+static struct window find_window(int cx, int cy, int radius, struct extent e, struct film_rectangle bounds) {
+    struct window w = {.x = cx, .y = cy, .left = cx - before(e)};
     int x0 = (int)bounds.x0, y0 = (int)bounds.y0, x1 = (int)bounds.x1, y1 = (int)bounds.y1;
     int low = cy - radius > y0 ? cy - radius : y0;
     int high = cy + radius + 1 < y1 ? cy + radius + 1 : y1;
     w.row0 = low - cy + DENOISE_WINDOW;
     w.row1 = high - cy + DENOISE_WINDOW;
     for (int l = 0; l < LANES; l++) {
-        int dx = l - DENOISE_WINDOW, x = cx + dx;
+        int x = w.left + l, dx = x - cx;
         w.inside[l] = dx >= -radius && dx <= radius && x >= x0 && x < x1 ? 1 : 0;
     }
     return w;
@@ -236,10 +256,10 @@ static struct window find_window(int cx, int cy, int radius, struct film_rectang
 
 /* The start of a row of a window in a plane. */
 static inline int row_at(const struct window *w, int row) {
-    return (w->y + row - DENOISE_WINDOW) * LOCAL + w->x - DENOISE_WINDOW;
+    return (w->y + row - DENOISE_WINDOW) * LOCAL + w->left;
 }
 
-/* Weights below a thousandth count as zero. */
+/* By the distances between patches. Weights below a thousandth count as zero. */
 static void weigh(struct denoise_scratch *s, const struct window *w, denoise_window *distances, float scale) {
     const vector none = {0};
     for (int at = 0; at < LANES; at += WIDTH) {
@@ -253,6 +273,13 @@ static void weigh(struct denoise_scratch *s, const struct window *w, denoise_win
             store(s->weights[r] + at, choose(x > 1e-3F, x, none));
         }
     }
+}
+
+/* All pixels alike. */
+static void weigh_alike(struct denoise_scratch *s, const struct window *w, struct extent e) {
+    for (int at = 0; at < e.lanes; at += WIDTH)
+        for (int r = w->row0; r < w->row1; r++)
+            store(s->weights[r] + at, load(w->inside + at));
 }
 
 /* The smaller one of the differences to the pixels before and after. */
@@ -290,12 +317,13 @@ static void weigh_features(struct denoise_scratch *s, const struct window *w, fl
 
 /* Differences of a feature to the centre; returns whether they are more than `feature_change` where there is a weight.
  */
-static bool fill_feature(struct denoise_scratch *s, const struct window *w, int feature, int column) {
+static inline __attribute__((always_inline)) bool fill_feature(struct denoise_scratch *s, const struct window *w,
+                                                               struct extent e, int feature, int column) {
     const float *plane = s->feature[feature];
     vector middle = all(plane[w->y * LOCAL + w->x]);
     mask found = {0};
     for (int r = w->row0; r < w->row1; r++) {
-        for (int at = 0; at < LANES; at += WIDTH) {
+        for (int at = 0; at < e.lanes; at += WIDTH) {
             vector difference = load(plane + row_at(w, r) + at) - middle;
             store(s->columns[column][r] + at, difference);
             found |= ((difference > feature_change) | (difference < -feature_change)) & (load(s->weights[r] + at) > 0);
@@ -308,11 +336,12 @@ static bool fill_feature(struct denoise_scratch *s, const struct window *w, int 
 }
 
 /* The range of the colours among the pixels with a weight. */
-static void find_range(const struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
+static inline __attribute__((always_inline)) void find_range(const struct denoise_scratch *s, const struct window *w,
+                                                             struct extent e, int half, int channel, float range[2]) {
     const float *plane = s->colour[half][channel];
     float middle = plane[w->y * LOCAL + w->x], lowest[LANES], highest[LANES];
     vector lows[LANES / WIDTH], highs[LANES / WIDTH];
-    for (int at = 0; at < LANES; at += WIDTH) {
+    for (int at = 0; at < e.lanes; at += WIDTH) {
         vector low = all(middle), high = low;
         for (int r = w->row0; r < w->row1; r++) {
             vector value = load(plane + row_at(w, r) + at);
@@ -326,56 +355,64 @@ static void find_range(const struct denoise_scratch *s, const struct window *w, 
     memcpy(lowest, lows, sizeof lowest);
     memcpy(highest, highs, sizeof highest);
     range[0] = range[1] = middle;
-    for (int l = 0; l < LANES; l++) {
+    for (int l = 0; l < e.lanes; l++) {
         range[0] = lowest[l] < range[0] ? lowest[l] : range[0];
         range[1] = highest[l] > range[1] ? highest[l] : range[1];
     }
 }
 
 /* The sums over the window of weight * column i * column j, by lane, for terms j from i to below `terms` and for the
- * colours. */
+ * colours of the halves. */
 static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, const struct window *w,
-                                                           int half, int i, int terms, float sums[COLUMNS][LANES]) {
-    for (int at = 0; at < LANES; at += WIDTH) {
+                                                           struct extent e, int i, int terms,
+                                                           float sums[COLUMNS][LANES]) {
+    const int columns = TERMS + 3 * e.halves;
+    for (int at = 0; at < e.lanes; at += WIDTH) {
         vector sum[COLUMNS];
-        for (int j = i; j < COLUMNS; j++)
+        for (int j = i; j < columns; j++)
             sum[j] = (vector){0};
         for (int r = w->row0; r < w->row1; r++) {
             int from = row_at(w, r) + at;
             vector weighted = load(s->weights[r] + at) * load(s->columns[i][r] + at);
             for (int j = i; j < terms; j++)
                 sum[j] += weighted * load(s->columns[j][r] + at);
-            for (int c = 0; c < 3; c++)
-                sum[TERMS + c] += weighted * load(s->colour[half][c] + from);
+            for (int c = 0; c < 3 * e.halves; c++)
+                sum[TERMS + c] += weighted * load(s->colour[e.first + c / 3][c % 3] + from);
         }
-        for (int j = i; j < COLUMNS; j++)
+        for (int j = i; j < columns; j++)
             store(sums[j] + at, sum[j]);
     }
 }
 
 typedef float four __attribute__((vector_size(16)));
 
-static inline float sum_lanes(const float lanes[LANES]) {
+static inline float sum_lanes(struct extent e, const float lanes[LANES]) {
     four a[4];
     memcpy(a, lanes, sizeof a);
-    four sum = (a[0] + a[2]) + (a[1] + a[3]);
+    four sum = e.lanes == LANES ? (a[0] + a[2]) + (a[1] + a[3]) : a[0] + a[1];
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* The normal equations: the lower triangle of the matrix, and three right sides. */
+/* The normal equations: the upper triangle of a symmetric matrix, and the right sides: three for each half. */
+typedef double four_doubles __attribute__((vector_size(32)));
+enum { FOURS = (TERMS + 3) / 4 };
 struct equations {
-    double matrix[TERMS][TERMS], right[TERMS][3];
+    union {
+        double at[4 * FOURS];
+        four_doubles fours[FOURS];
+    } matrix[TERMS];
+    four_doubles right[TERMS][2];
 };
 
 /* The terms of features are in units of `scale`: twice their mean difference to the centre, but at least what
  * `scale` is before. */
 static inline __attribute__((always_inline)) void build_equations(const struct denoise_scratch *s,
-                                                                  const struct window *w, int half, int terms,
+                                                                  const struct window *w, struct extent e, int terms,
                                                                   double scale[TERMS], struct equations *out) {
     float sums[TERMS][COLUMNS][LANES];
 #define MULTIPLY(i)                                                                                                    \
     if (i < terms)                                                                                                     \
-    multiply(s, w, half, i, terms, sums[i])
+    multiply(s, w, e, i, terms, sums[i])
     MULTIPLY(0);
     MULTIPLY(1);
     MULTIPLY(2);
@@ -389,62 +426,58 @@ static inline __attribute__((always_inline)) void build_equations(const struct d
 #undef MULTIPLY
     _Static_assert((int)TERMS == 10, "a line for each term");
     for (int i = FIRST_FEATURE; i < terms; i++) {
-        double mean = 2 * sqrt((double)sum_lanes(sums[i][i]) / (double)sum_lanes(sums[0][0]));
+        double mean = 2 * sqrt((double)sum_lanes(e, sums[i][i]) / (double)sum_lanes(e, sums[0][0]));
         scale[i] = 1 / (mean > scale[i] ? mean : scale[i]);
     }
+    memset(out, 0, sizeof *out);
     for (int i = 0; i < terms; i++) {
         for (int j = i; j < terms; j++)
-            out->matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
-        for (int c = 0; c < 3; c++)
-            out->right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
+            out->matrix[i].at[j] = (double)sum_lanes(e, sums[i][j]) * scale[i] * scale[j];
+        for (int c = 0; c < 3 * e.halves; c++)
+            out->right[i][c / 3][c % 3] = (double)sum_lanes(e, sums[i][TERMS + c]) * scale[i];
     }
 }
 
-/* Cholesky; the matrix is symmetric and positive, and its lower triangle is replaced. Solves for three right sides in
- * place. */
-static bool solve(int terms, double m[TERMS][TERMS], double r[TERMS][3]) {
+/* Cholesky; the matrix is positive. Solves for the right sides in place. Each row is subtracted from all later ones
+ * before the next, by fours of elements: those before the diagonal do not count. */
+static inline __attribute__((always_inline)) bool solve(int terms, int halves, struct equations *e) {
+    const int fours = (terms + 3) / 4;
     double inverse[TERMS]; /* of the diagonal */
     for (int i = 0; i < terms; i++) {
-        for (int j = 0; j < i; j++) {
-            double sum = m[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= m[i][k] * m[j][k];
-            m[i][j] = sum * inverse[j];
-        }
-        double sum = m[i][i];
-        for (int k = 0; k < i; k++)
-            sum -= m[i][k] * m[i][k];
-        if (!(sum > 0))
+        if (!(e->matrix[i].at[i] > 0))
             return false;
-        inverse[i] = 1 / sqrt(sum);
-    }
-    for (int i = 0; i < terms; i++)
-        for (int c = 0; c < 3; c++) {
-            double sum = r[i][c];
-            for (int k = 0; k < i; k++)
-                sum -= m[i][k] * r[k][c];
-            r[i][c] = sum * inverse[i];
+        inverse[i] = 1 / sqrt(e->matrix[i].at[i]);
+        for (int j = i / 4; j < fours; j++)
+            e->matrix[i].fours[j] *= inverse[i];
+        for (int h = 0; h < halves; h++)
+            e->right[i][h] *= inverse[i];
+        for (int k = i + 1; k < terms; k++) {
+            for (int j = k / 4; j < fours; j++)
+                e->matrix[k].fours[j] -= e->matrix[i].at[k] * e->matrix[i].fours[j];
+            for (int h = 0; h < halves; h++)
+                e->right[k][h] -= e->matrix[i].at[k] * e->right[i][h];
         }
-    for (int i = terms - 1; i >= 0; i--)
-        for (int c = 0; c < 3; c++) {
-            double sum = r[i][c];
+    }
+    for (int h = 0; h < halves; h++)
+        for (int i = terms - 1; i >= 0; i--) {
             for (int k = i + 1; k < terms; k++)
-                sum -= m[k][i] * r[k][c];
-            r[i][c] = sum * inverse[i];
+                e->right[i][h] -= e->matrix[i].at[k] * e->right[k][h];
+            e->right[i][h] *= inverse[i];
         }
     return true;
 }
 
 /* Adds the predictions of a regression for the pixels of its window. They are limited to the range of the pixels
  * that it used, because regressions overshoot beside lights. */
-static inline __attribute__((always_inline)) void predict(struct denoise_scratch *s, const struct window *w, int terms,
-                                                          int channel, double right[TERMS][3], const float range[2]) {
+static inline __attribute__((always_inline)) void predict(const struct denoise_scratch *s, const struct window *w,
+                                                          struct extent e, const float factors[TERMS], int terms,
+                                                          const float range[2], float *sums) {
     vector factor[TERMS], low = all(range[0]), high = all(range[1]);
     for (int i = 0; i < terms; i++)
-        factor[i] = all((float)right[i][channel]);
+        factor[i] = all(factors[i]);
     for (int r = w->row0; r < w->row1; r++) {
-        float *to = s->sums[channel] + row_at(w, r);
-        for (int at = 0; at < LANES; at += WIDTH) {
+        float *to = sums + row_at(w, r);
+        for (int at = 0; at < e.lanes; at += WIDTH) {
             vector value = factor[0];
             for (int i = 1; i < terms; i++)
                 value += factor[i] * load(s->columns[i][r] + at);
@@ -455,7 +488,8 @@ static inline __attribute__((always_inline)) void predict(struct denoise_scratch
 
 /* Fills the columns of the depth, and of albedo and normals that change in the window. Returns the number of terms, and
  * their smallest units: 0.02 for albedo and normals, 1/200 of a depth. */
-static int fill_features(struct denoise_scratch *s, const struct window *w, double scale[TERMS]) {
+static inline __attribute__((always_inline)) int fill_features(struct denoise_scratch *s, const struct window *w,
+                                                               struct extent e, double scale[TERMS]) {
     static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
     int terms = FIRST_FEATURE;
     for (int g = 0; g < 3; g++) {
@@ -463,7 +497,7 @@ static int fill_features(struct denoise_scratch *s, const struct window *w, doub
         for (int i = 0; i < groups[g][1]; i++) {
             int f = groups[g][0] + i;
             float middle = s->feature[f][w->y * LOCAL + w->x];
-            changes = fill_feature(s, w, f, terms + i) || changes;
+            changes = fill_feature(s, w, e, f, terms + i) || changes;
             scale[terms + i] = (double)(f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F);
         }
         terms += changes ? groups[g][1] : 0;
@@ -472,39 +506,54 @@ static int fill_features(struct denoise_scratch *s, const struct window *w, doub
 }
 
 /* The regression with a number of terms that the compiler knows. */
-static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, int half, const struct window *w,
-                                                      int terms, double scale[TERMS]) {
-    struct equations e;
-    float range[3][2];
-    for (int c = 0; c < 3; c++)
-        find_range(s, w, half, c, range[c]);
-    build_equations(s, w, half, terms, scale, &e);
-    for (int i = 1; i < terms; i++)
-        e.matrix[i][i] += ridge * e.matrix[0][0]; /* keeps terms small that the window does not determine */
-    if (!solve(terms, e.matrix, e.right))
+static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, const struct window *w,
+                                                      struct extent e, int terms, double scale[TERMS]) {
+    struct equations equations;
+    float range[6][2];
+    for (int c = 0; c < 3 * e.halves; c++)
+        find_range(s, w, e, e.first + c / 3, c % 3, range[c]);
+    build_equations(s, w, e, terms, scale, &equations);
+    for (int i = 1; i < terms; i++) /* keeps terms small that the window does not determine */
+        equations.matrix[i].at[i] += ridge * equations.matrix[0].at[0];
+    if (!solve(terms, e.halves, &equations))
         return;
-    for (int i = 0; i < terms; i++)
-        for (int c = 0; c < 3; c++)
-            e.right[i][c] *= scale[i];
-    for (int c = 0; c < 3; c++)
-        predict(s, w, terms, c, e.right, range[c]);
+    for (int c = 0; c < 3 * e.halves; c++) {
+        float factors[TERMS];
+        for (int i = 0; i < terms; i++)
+            factors[i] = (float)(equations.right[i][c / 3][c % 3] * scale[i]);
+        predict(s, w, e, factors, terms, range[c], s->sums[e.first + c / 3][c % 3]);
+    }
     for (int r = w->row0; r < w->row1; r++) {
-        float *to = s->sums[3] + row_at(w, r);
-        for (int at = 0; at < LANES; at += WIDTH)
+        float *to = s->weight_sums + row_at(w, r);
+        for (int at = 0; at < e.lanes; at += WIDTH)
             store(to + at, load(to + at) + load(s->weights[r] + at));
     }
 }
 
 /* Most windows are on one surface, where only the depth changes, and need a fifth of the multiplications. */
-static void regress_centre(struct denoise_scratch *s, int half, const struct window *w) {
+static inline __attribute__((always_inline)) void fit_features(struct denoise_scratch *s, const struct window *w,
+                                                               struct extent e) {
     double scale[TERMS] = {1, 1, 1};
-    int terms = fill_features(s, w, scale);
+    int terms = fill_features(s, w, e, scale);
     if (terms == TERMS)
-        fit(s, half, w, TERMS, scale);
+        fit(s, w, e, TERMS, scale);
     else if (terms == TERMS - 3)
-        fit(s, half, w, TERMS - 3, scale);
+        fit(s, w, e, TERMS - 3, scale);
     else
-        fit(s, half, w, TERMS - 6, scale);
+        fit(s, w, e, TERMS - 6, scale);
+}
+
+/* With halves and lanes that the compiler knows. */
+static void regress_half(struct denoise_scratch *s, int half, const struct window *w) {
+    fit_features(s, w, (struct extent){half, 1, LANES});
+}
+
+static void regress_halves(struct denoise_scratch *s, const struct window *w) {
+    fit_features(s, w, (struct extent){0, 2, LANES});
+}
+
+static void regress_small(struct denoise_scratch *s, const struct window *w) {
+    fit_features(s, w, (struct extent){0, 2, SMALL_LANES});
 }
 
 /* Marks pixels whose features differ from those to the right or below. */
@@ -539,7 +588,7 @@ static void nearest_changes(uint8_t row[LOCAL], int limit) {
         row[x] = (uint8_t)last;
     }
     for (int x = LOCAL - 1; x >= 0; x--) {
-        last = row[x] < last ? row[x] : last < limit ? last + 1 : limit;
+        last = row[x] <= last ? row[x] : last < limit ? last + 1 : limit;
         row[x] = (uint8_t)last;
     }
 }
@@ -565,19 +614,23 @@ static void find_changes(struct denoise_scratch *s) {
 static bool is_made_at(const struct denoise_scratch *s, struct denoise_regression regression, int centre) {
     int i = (DENOISE_FIRST - DENOISE_MARGIN) / DENOISE_STEP + centre % DENOISE_CENTRES;
     int j = (DENOISE_FIRST - DENOISE_MARGIN) / DENOISE_STEP + centre / DENOISE_CENTRES;
-    bool changes = s->near[centre] <= regression.radius;
     if (i * DENOISE_STEP % regression.step != 0 || j * DENOISE_STEP % regression.step != 0)
         return false;
-    return changes ? !regression.sparse || (i + j) % 2 == 0 : !regression.details;
+    if (regression.colours > 0 && centre % 2 != 0)
+        return false;
+    return !regression.details || s->near[centre] <= regression.radius;
 }
 
 static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct film_rectangle bounds) {
-    memset(s->sums, 0, sizeof s->sums);
+    bool coloured = regression.colours > 0, small = !coloured && regression.radius < SMALL_LANES / 2;
+    const struct extent e = {coloured ? half : 0, coloured ? 1 : 2, small ? SMALL_LANES : LANES};
+    memset(s->sums[e.first], 0, (size_t)e.halves * sizeof s->sums[0]);
+    memset(s->weight_sums, 0, sizeof s->weight_sums);
     for (int r = 0; r < DENOISE_SIDE; r++) {
         for (int l = 0; l < LANES; l++) {
             s->columns[0][r][l] = 1;
-            s->columns[1][r][l] = (float)(l - DENOISE_WINDOW) / DENOISE_WINDOW;
+            s->columns[1][r][l] = (float)(l - before(e)) / DENOISE_WINDOW;
             s->columns[2][r][l] = (float)(r - DENOISE_WINDOW) / DENOISE_WINDOW;
         }
     }
@@ -589,11 +642,19 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_regressi
         if (!is_made_at(s, regression, i) || cx < (int)bounds.x0 || cy < (int)bounds.y0 || cx >= (int)bounds.x1 ||
             cy >= (int)bounds.y1)
             continue;
-        struct window w = find_window(cx, cy, regression.radius, bounds);
-        weigh(s, &w, &s->distances[i], regression.colours);
+        struct window w = find_window(cx, cy, regression.radius, e, bounds);
+        if (coloured)
+            weigh(s, &w, &s->distances[i / 2], regression.colours);
+        else
+            weigh_alike(s, &w, e);
         if (regression.features > 0)
             weigh_features(s, &w, regression.features);
-        regress_centre(s, half, &w);
+        if (coloured)
+            regress_half(s, half, &w);
+        else if (small)
+            regress_small(s, &w);
+        else
+            regress_halves(s, &w);
     }
 }
 

@@ -354,6 +354,35 @@ TEST(a_part_is_denoised_as_the_whole_beyond_its_rim) {
             CHECK(memcmp(part[(y - 5) * (SIDE - 7) + x - 7], s.out[y * SIDE + x], sizeof *part) == 0);
 }
 
+enum { WIDE = 260, LOW = 8, LATER = 8 };
+
+/* The depth changes at every pixel from x = 170 to 211. */
+static void give_changing_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const uint32_t *x0 = context;
+    for (uint32_t i = *x0; i < WIDE; i++) {
+        float value = 0.1F * (float)((i * 7 + y * 5) % 11), depth = i > 170 && i < 212 && i % 2 ? 11 : 10;
+        row[i - *x0] = (struct denoise_pixel){
+            .colour = {{value, value, value}, {value, 0.5F, value}}, .variance = {0.1F, 0.1F, 0.1F}, .share = 0.5F};
+        row[i - *x0].features[0][DENOISE_DEPTH] = row[i - *x0].features[1][DENOISE_DEPTH] = depth;
+    }
+}
+
+TEST(a_part_is_denoised_as_the_whole_beside_pixels_that_all_have_other_features) {
+    static float whole[WIDE * LOW][3], part[(WIDE - LATER) * LOW][3];
+    char warning[256];
+    struct error error = {0};
+    uint32_t begins[] = {0, LATER};
+    struct pool *pool = pool_create(1, warning);
+    for (int i = 0; i < 2; i++) {
+        const struct denoise_source source = {WIDE - begins[i], LOW, begins[i], 0, give_changing_row, &begins[i]};
+        CHECK(denoise(&source, pool, i ? part : whole, &error));
+    }
+    pool_destroy(pool);
+    for (int y = 0; y < LOW; y++)
+        for (int x = LATER + DENOISE_RIM; x < WIDE; x++)
+            CHECK(memcmp(part[y * (WIDE - LATER) + x - LATER], whole[y * WIDE + x], sizeof *part) == 0);
+}
+
 TEST(whatever_a_film_holds_denoises_to_finite_numbers) {
     static struct synthetic s;
     static const float strange[] = {NAN, INFINITY, -INFINITY, 3e38F, -3e38F, 1e-40F, 0, -1};
@@ -466,7 +495,7 @@ TEST(few_bright_paths_leave_no_smears_on_walls_in_corners_and_along_frames) {
 
 /* A block of a large picture takes long; what has been computed before the stop stays. */
 TEST(kernels_of_the_denoiser_end_when_the_pool_is_cancelled) {
-    static const struct denoise_regression regression = {DENOISE_WINDOW, 2, 1, 0, false, false};
+    static const struct denoise_regression regression = {DENOISE_WINDOW, 2, 1, 0, false};
     const int middle = DENOISE_LOCAL / 2 * DENOISE_LOCAL + DENOISE_LOCAL / 2;
     struct film_rectangle bounds = {0, 0, DENOISE_LOCAL, DENOISE_LOCAL};
     char warning[256];
@@ -479,11 +508,11 @@ TEST(kernels_of_the_denoiser_end_when_the_pool_is_cancelled) {
             pool_cancel(pool);
         else
             pool_reset_cancel(pool);
-        s->distances[0][0][0] = s->sums[3][middle] = -1;
-        denoise_kernels_base.compare(s, 0);
+        s->distances[0][0][0] = s->weight_sums[middle] = -1;
+        denoise_kernels_base.compare(s, 0, bounds);
         CHECK((s->distances[0][0][0] < 0) == (cancelled != 0));
         denoise_kernels_base.regress(s, 0, regression, bounds);
-        CHECK((s->sums[3][middle] > 0) == (cancelled == 0));
+        CHECK((s->weight_sums[middle] > 0) == (cancelled == 0));
         denoise_kernels_base.filter_features(s, 1, false, bounds);
         CHECK((s->feature_sums[3][0] > 0) == (cancelled == 0));
     }
