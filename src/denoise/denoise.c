@@ -38,6 +38,7 @@ enum {
     CHOICE = DENOISE_CHOICE,
     REGRESSIONS = DENOISE_REGRESSIONS,
     CANDIDATES = DENOISE_CANDIDATES,
+    GLOW = DENOISE_FEATURES,
     ALIGNMENT = 4, /* of blocks in the whole picture: steps between centres divide it */
     LEVELS = 2,
     ROWS = 16,           /* that are finished together */
@@ -52,8 +53,8 @@ _Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WIN
                                            (int)RESIDUAL_PASSES * (int)RESIDUAL_WINDOW + (int)EVIDENCE_WINDOW + 1 <=
                                        (int)DENOISE_RIM,
                "the rim is less than what a pixel depends on");
-_Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
-               "the same of features");
+_Static_assert((int)DENOISE_FEATURE_WINDOW + 2 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
+               "the same of features and glow");
 
 /* Found by measurement (bench/denoise.sh). */
 static const struct denoise_regression regressions[REGRESSIONS] = {{DENOISE_WINDOW, 2, 2.4F, 0, .details = false},
@@ -96,9 +97,11 @@ struct denoise_run {
     float *evidence;             /* of silhouettes: squared mean residual, in units of its variance; others: -1 */
     float *agreement;            /* the same with the product of the mean residuals of the halves */
     int pass;                    /* of residuals */
-    float *mean[DENOISE_FEATURES], *noise[DENOISE_FEATURES]; /* of features: measured values and their variance */
-    int first_feature, group;                                /* those that are filtered, and how many */
-    struct denoise_pixel *rows;                              /* three of each worker */
+    /* Of features and of glow, which is filtered like them: measured values and their variance. */
+    float *mean[GLOW + 3], *noise[GLOW + 3];
+    float *glow[3];             /* without noise */
+    int first_feature, group;   /* those that are filtered, and how many */
+    struct denoise_pixel *rows; /* three of each worker */
     struct denoise_scratch *scratch;
     const struct denoise_kernels *kernels;
 };
@@ -160,6 +163,11 @@ static void load_row(void *context, uint32_t y, int worker) {
             float a = bounded(row[x].features[0][f]), b = bounded(row[x].features[1][f]);
             d->mean[f][at] = 0.5F * (a + b);
             d->noise[f][at] = 0.25F * (a - b) * (a - b);
+        }
+        for (int c = 0; c < 3; c++) {
+            float a = bounded(row[x].glow[0][c]), b = bounded(row[x].glow[1][c]);
+            d->mean[GLOW + c][at] = row[x].share * a + (1 - row[x].share) * b;
+            d->noise[GLOW + c][at] = 0.25F * (a - b) * (a - b);
         }
     }
 }
@@ -246,10 +254,34 @@ static void estimate_variance(void *context, uint32_t y, int worker) {
     }
 }
 
-/* --- features: non-local means by their own variance --- */
+/* --- features and glow: non-local means by their own variance --- */
 
+/* The noise of glow is the mean around: a pixel beside a lamp that no sample met would have none. */
+static void smooth_noise(void *context, uint32_t y, int worker) {
+    const struct denoise_run *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++)
+        for (int c = 0; c < 3; c++) {
+            float sum = 0;
+            for (int i = 0; i < 9; i++)
+                sum += d->noise[GLOW + c][nearest_at(d->level, x + i % 3 - 1, (int)y + i / 3 - 1)];
+            d->glow[c][pixel_at(d->level, x, (int)y)] = sum / 9;
+        }
+}
+
+/* Whether the pixels of a square from (x, y) on have no noise. */
+static bool is_quiet(const struct denoise_scratch *s, int group, int x, int y, int side) {
+    for (int i = 0; i < group; i++)
+        for (int row = y; row < y + side; row++)
+            for (int column = x; column < x + side; column++)
+                if (s->feature_noise[i][row * DENOISE_FEATURE_LOCAL + column] > 0)
+                    return false;
+    return true;
+}
+
+/* Glow stays as it is where a window around it has no noise: the edges of lamps in focus keep their bits. */
 static void filter_features(void *context, uint32_t item, int worker) {
-    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL };
+    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL, AROUND = 2 * (WINDOW + 1) + 1 };
     struct denoise_run *d = context;
     struct denoise_scratch *s = d->scratch + worker;
     int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
@@ -259,13 +291,20 @@ static void filter_features(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->noise[d->first_feature + i], bx - WINDOW - 1, by - WINDOW - 1, SIDE,
                    s->feature_noise[i]);
     }
-    d->kernels->filter_features(s, d->group, d->first_feature == DENOISE_DEPTH,
-                                bounds_of(d->level, bx - WINDOW - 1, by - WINDOW - 1, SIDE));
+    bool keeps = d->first_feature == GLOW, quiet = keeps && is_quiet(s, d->group, 0, 0, SIDE);
+    if (!quiet)
+        d->kernels->filter_features(s, d->group, d->first_feature >= DENOISE_DEPTH,
+                                    bounds_of(d->level, bx - WINDOW - 1, by - WINDOW - 1, SIDE));
     for (int y = 0; y < BLOCK && by + y < d->level->height; y++)
-        for (int x = 0; x < BLOCK && bx + x < d->level->width; x++)
-            for (int i = 0; i < d->group; i++)
-                d->level->feature[d->first_feature + i][pixel_at(d->level, bx + x, by + y)] =
-                    s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
+        for (int x = 0; x < BLOCK && bx + x < d->level->width; x++) {
+            size_t at = pixel_at(d->level, bx + x, by + y);
+            bool kept = quiet || (keeps && is_quiet(s, d->group, x, y, AROUND));
+            for (int i = 0; i < d->group; i++) {
+                float *out = keeps ? d->glow[i] : d->level->feature[d->first_feature + i];
+                out[at] = kept ? d->mean[d->first_feature + i][at]
+                               : s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
+            }
+        }
 }
 
 /* --- regressions --- */
@@ -698,9 +737,8 @@ static void finish_row(const struct denoise_run *d, const struct denoise_pixel *
         const struct denoise_pixel *pixel = &rows[1][x];
         bool empty = is_empty(pixel);
         for (int c = 0; c < 3; c++) {
-            float value = empty ? 0 : supported_mean(d, rows, c, x, y);
-            d->out[pixel_at(d->level, x, y)][c] =
-                value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
+            size_t at = pixel_at(d->level, x, y);
+            d->out[at][c] = (empty ? 0 : supported_mean(d, rows, c, x, y)) + d->glow[c][at];
         }
     }
 }
@@ -755,7 +793,7 @@ static bool load_source(struct denoise_run *d, struct error *error) {
         if (!make_plane(d->level, &d->loaded[0][c]) || !make_plane(d->level, &d->loaded[1][c]) ||
             !make_plane(d->level, &d->sampled[c]))
             return no_memory(error);
-    for (int f = 0; f < DENOISE_FEATURES; f++)
+    for (int f = 0; f < GLOW + 3; f++)
         if (!make_plane(d->level, &d->mean[f]) || !make_plane(d->level, &d->noise[f]))
             return no_memory(error);
     return run(d, d->source->height, load_row, error);
@@ -777,14 +815,21 @@ static bool denoise_colours(struct denoise_run *d, struct error *error) {
 }
 
 static bool denoise_features(struct denoise_run *d, struct error *error) {
-    static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+    static const int groups[][2] = {{GLOW, 3}, {DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
     uint32_t blocks = (d->source->width + BLOCK - 1) / BLOCK * ((d->source->height + BLOCK - 1) / BLOCK);
-    for (int g = 0; g < 3; g++) {
+    for (int g = 0; g < 4; g++) {
         d->first_feature = groups[g][0];
         d->group = groups[g][1];
-        for (int f = d->first_feature; f < d->first_feature + d->group; f++)
-            if (!make_plane(d->level, &d->level->feature[f]))
+        for (int i = 0; i < d->group; i++)
+            if (!make_plane(d->level, g == 0 ? &d->glow[i] : &d->level->feature[d->first_feature + i]))
                 return no_memory(error);
+        if (g == 0 && !run(d, d->source->height, smooth_noise, error))
+            return false;
+        for (int i = 0; i < d->group && g == 0; i++) {
+            float *smooth = d->glow[i];
+            d->glow[i] = d->noise[GLOW + i];
+            d->noise[GLOW + i] = smooth;
+        }
         if (!run(d, blocks, filter_features, error))
             return false;
         for (int f = d->first_feature; f < d->first_feature + d->group; f++) {
@@ -890,10 +935,12 @@ bool denoise(const struct denoise_source *source, struct pool *pool, float (*out
         mem_free(d.loaded[1][c]);
         mem_free(d.sampled[c]);
     }
-    for (int f = 0; f < DENOISE_FEATURES; f++) {
+    for (int f = 0; f < GLOW + 3; f++) {
         mem_free(d.mean[f]);
         mem_free(d.noise[f]);
     }
+    for (int c = 0; c < 3; c++)
+        mem_free(d.glow[c]);
     mem_free(d.evidence);
     mem_free(d.agreement);
     for (int i = 0; i < LEVELS; i++)

@@ -24,8 +24,9 @@ enum denoise_feature {
 struct denoise_pixel {
     float colour[2][3];
     float features[2][DENOISE_FEATURES];
-    float glow[2][3];  /* the part of the colour that needs no denoising: directly visible lamps and skies */
-    float share;       /* weight of half 0 in the picture, 0 to 1; the rest belongs to half 1 */
+    float glow[2]
+              [3]; /* the part of the colour of directly visible lamps and skies: noisy only where they are blurred */
+    float share;   /* weight of half 0 in the picture, 0 to 1; the rest belongs to half 1 */
     float variance[3]; /* variance of the mean of all samples, as if they were independent; at least 0 */
 };
 

@@ -82,7 +82,7 @@ struct denoise_scratch {
 /* bounds: the picture, as far as it is in the planes of the scratch, in their coordinates. */
 struct denoise_kernels {
     /* Adds up the features of a block, weighted by the likeness of patches; group: how many there are. */
-    void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds);
+    void (*filter_features)(struct denoise_scratch *s, int group, bool relative, struct film_rectangle bounds);
     /* The distances of all centres from their windows, in the colours of a half. */
     void (*compare)(struct denoise_scratch *s, int half, struct film_rectangle bounds);
     /* Fills `near` from the features. */

@@ -85,9 +85,9 @@ static inline float weight_of(float distance) {
 
 /* Squared differences between the block and the pixels at an offset of (dx, dy), minus the part that noise explains,
  * in units of the noise. The noise is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
-static void compare_features(struct denoise_scratch *s, int group, bool depth, int dx, int dy) {
+static void compare_features(struct denoise_scratch *s, int group, bool relative, int dx, int dy) {
     enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW, STRIDE = DENOISE_FEATURE_LOCAL };
-    float relative = depth ? 1e-6F : 0;
+    float least = relative ? 1e-6F : 0;
     for (int y = 0; y < SIDE; y++) {
         int p = (FIRST + y) * STRIDE + FIRST, q = p + dy * STRIDE + dx;
         float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->feature_unlikeness + y * SIDE;
@@ -96,7 +96,7 @@ static void compare_features(struct denoise_scratch *s, int group, bool depth, i
             for (int x = 0; x < SIDE; x++) {
                 float vp = noise[p + x], vq = noise[q + x], u = mean[p + x], delta = u - mean[q + x];
                 above[x] += delta * delta - (vp + (vp < vq ? vp : vq));
-                below[x] += vp + vq + relative * u * u;
+                below[x] += vp + vq + least * u * u;
             }
         }
         for (int x = 0; x < SIDE; x++)
@@ -129,12 +129,12 @@ static void add_features(struct denoise_scratch *s, int group, int dx, int dy, s
     }
 }
 
-static void filter_features(struct denoise_scratch *s, int group, bool depth, struct film_rectangle bounds) {
+static void filter_features(struct denoise_scratch *s, int group, bool relative, struct film_rectangle bounds) {
     enum { WINDOW = DENOISE_FEATURE_WINDOW };
     memset(s->feature_sums, 0, sizeof s->feature_sums);
     for (int dy = -WINDOW; dy <= WINDOW && !pool_cancelled(s->pool); dy++) {
         for (int dx = -WINDOW; dx <= WINDOW; dx++) {
-            compare_features(s, group, depth, dx, dy);
+            compare_features(s, group, relative, dx, dy);
             add_features(s, group, dx, dy, bounds);
         }
     }

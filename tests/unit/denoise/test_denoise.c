@@ -419,6 +419,37 @@ TEST(light_stays_positive_and_glow_is_kept_as_it_is) {
     }
 }
 
+/* A lamp out of focus: its glow falls from 50 to 0 across 16 pixels, and each sample meets it or does not. A star of
+ * one pixel, of which the halves of the samples see unequal parts. */
+TEST(the_blurred_edge_of_a_lamp_loses_half_of_its_noise_and_a_star_stays) {
+    enum { SAMPLES = 8, FIRST = 40, LAST = 56, STAR = 20 * SIDE + 80 };
+    static struct synthetic s;
+    struct test_random random = {11};
+    double before = 0, after = 0;
+    begin(&s, 0.01F, 0);
+    measure(&s, 10);
+    for (int i = 0; i < PIXELS; i++) {
+        struct denoise_pixel *pixel = &s.pixels[i];
+        double part = fmin(fmax((double)(LAST - i % SIDE) / (LAST - FIRST), 0), 1);
+        for (int k = 0; k < 2 * SAMPLES; k++)
+            pixel->glow[k % 2][0] += test_uniform(&random, 0, 1) < part ? 50.0F / SAMPLES : 0;
+        for (int h = 0; h < 2; h++) {
+            pixel->glow[h][0] = i == STAR ? 40 + 20 * (float)h : pixel->glow[h][0];
+            pixel->glow[h][1] = pixel->glow[h][2] = pixel->glow[h][0];
+            for (int c = 0; c < 3; c++)
+                pixel->colour[h][c] += pixel->glow[h][c];
+        }
+    }
+    run_part(&s, 1, 0, 0);
+    for (int i = 0; i < PIXELS; i++) {
+        double truth = 0.01 + 50 * fmin(fmax((double)(LAST - i % SIDE) / (LAST - FIRST), 0), 1);
+        double raw = (double)(s.pixels[i].colour[0][0] + s.pixels[i].colour[1][0]) / 2;
+        before += i == STAR ? 0 : (raw - truth) * (raw - truth);
+        after += i == STAR ? 0 : ((double)s.out[i][0] - truth) * ((double)s.out[i][0] - truth);
+    }
+    CHECK(sqrt(after / before) < 0.46 && s.out[STAR][0] > 45);
+}
+
 /* Two walls that meet in a corner, with a picture in a dark frame on the left one. Three samples in a hundred find a
  * bright lamp and bring most of the light: 12 samples in each half. */
 enum room { WALL, NEAR_FRAME, NEAR_CORNER, FRAMED };
