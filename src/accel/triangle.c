@@ -1,5 +1,6 @@
 /* The rare parts of the watertight test: exact differences of products, and ties. See triangle.h. */
 #include "accel/triangle.h"
+#include "math/portable.h"
 
 __extension__ typedef unsigned __int128 wide;
 
@@ -24,8 +25,8 @@ bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray) {
 /* |a b| as an integer of at most 106 bits times a power of two. */
 static wide product(double a, double b, int *exponent) {
     int ea, eb;
-    uint64_t ma = (uint64_t)ldexp(frexp(fabs(a), &ea), 53);
-    uint64_t mb = (uint64_t)ldexp(frexp(fabs(b), &eb), 53);
+    uint64_t ma = (uint64_t)math_ldexp(math_frexp(fabs(a), &ea), 53);
+    uint64_t mb = (uint64_t)math_ldexp(math_frexp(fabs(b), &eb), 53);
     *exponent = ea + eb;
     return (wide)ma * mb;
 }
@@ -49,7 +50,7 @@ double triangle_edge_exact(double ax, double ay, double bx, double by) {
     q <<= eq - exponent;
     bool negative = p_negative != (p < q);
     wide difference = p < q ? q - p : p - q;
-    double value = ldexp((double)difference, exponent - 106);
+    double value = math_ldexp(math_from_wide((uint64_t)(difference >> 64), (uint64_t)difference), exponent - 106);
     return negative ? -value : value;
 }
 

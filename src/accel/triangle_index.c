@@ -18,6 +18,7 @@
 #include "base/isa.h"
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 
 #include <string.h>
 
@@ -31,8 +32,8 @@ static void set_space(struct triangle_index *index, const struct triangle_set *s
     struct vec3 centre = vec3_scale(vec3_add(set->bounds.min, set->bounds.max), 0.5);
     double half = vec3_max_abs(extent) / 2;
     int exponent;
-    (void)frexp(half, &exponent);
-    index->scale = ldexp(1, exponent < -1000 ? 1000 : -exponent); /* finite for denormal extents as well */
+    (void)math_frexp(half, &exponent);
+    index->scale = math_ldexp(1, exponent < -1000 ? 1000 : -exponent); /* finite for denormal extents as well */
     for (int k = 0; k < 3; k++) {
         index->centre[k] = vec3_get(centre, k);
         index->half[k] = vec3_get(extent, k) / 2 * index->scale + (double)VOXEL_MARGIN;

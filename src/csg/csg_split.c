@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "base/sort.h"
+#include "math/portable.h"
 
 #include <string.h>
 
@@ -95,7 +96,7 @@ static void find_operands(struct splitting *s, uint32_t length) {
 
 static float rounded_down(double x) {
     float f = (float)x;
-    return (double)f > x ? nextafterf(f, -INFINITY) : f;
+    return (double)f > x ? math_nextafterf(f, -INFINITY) : f;
 }
 
 /* Words that sort as the numbers do. */

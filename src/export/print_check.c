@@ -3,6 +3,7 @@
 #include "export/solid_cast_internal.h"
 #include "export/triangles_internal.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 
 /* Of faces at 45 degrees, which printers can build without support, and a little more. */
 static const double supported_sine = 0.7133;
@@ -87,7 +88,8 @@ static double thickness_at(struct checker *checker, const struct solid_crossing 
 }
 
 static void measure_sample(struct checker *checker, const struct vec3 c[3], uint32_t sample) {
-    double u = sqrt(fmod(sample * 0.7548776662466927 + 0.5, 1)), v = fmod(sample * 0.5698402909980532 + 0.5, 1);
+    double u = sqrt(math_fmod(sample * 0.7548776662466927 + 0.5, 1)),
+           v = math_fmod(sample * 0.5698402909980532 + 0.5, 1);
     struct vec3 point = vec3_scale(c[0], 1 - u);
     point = vec3_add_scaled(vec3_add_scaled(point, c[1], u * (1 - v)), c[2], u * v);
     struct vec3 normal = vec3_normalize(triangle_normal(c));

@@ -107,20 +107,45 @@ enum { EXPR_LINK_PAIRS = EXPR_LINK_SELECT + 2 * 27 };
     X(o, b, 1, p, c, 1)
 #define EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)                                                               \
     EXPR_LINK_PAIR(EXPR_STEP_##o##_##b, EXPR_STEP_##p##_##c, first_stored, stored)
-/* For the table of jumps of an evaluator: pairs at once, or their first instructions. */
+/* For the jumps of an evaluator: pairs at once, or their first instructions. */
 #define EXPR_ADDRESS_PAIR(o, b, first_stored, p, c, stored)                                                            \
-    [EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)] = &&PAIR_##o##_##b##_##first_stored##_##p##_##c##_##stored,
+    EXPR_TARGET(EXPR_PAIR_LINK(o, b, first_stored, p, c, stored),                                                      \
+                PAIR_##o##_##b##_##first_stored##_##p##_##c##_##stored)
 #define EXPR_ADDRESS_FIRST(o, b, first_stored, p, c, stored)                                                           \
-    [EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)] = &&o##_L_##b##_##first_stored,
-/* The table of jumps of an evaluator: by link, the addresses of the labels that these cases make of the names, such as
- * ADD_L_R_1. */
+    EXPR_TARGET(EXPR_PAIR_LINK(o, b, first_stored, p, c, stored), o##_L_##b##_##first_stored)
+/* The targets of these jumps: by link, the labels that these cases make of the names, such as ADD_L_R_1. */
 #define EXPR_LINK_ADDRESSES                                                                                            \
-    [EXPR_UNLINKED] = &&UNLINKED, [EXPR_LINK_1(LOOP, R, 1)] = &&LOOP,                                                  \
-    EXPR_LINK_CASES(EXPR_ADDRESS_1, EXPR_ADDRESS_2, EXPR_ADDRESS_3)
-#define EXPR_ADDRESS_1(operation, oa, stored) [EXPR_LINK_1(operation, oa, stored)] = &&operation##_##oa##_##stored,
+    EXPR_TARGET(EXPR_UNLINKED, UNLINKED)                                                                               \
+    EXPR_TARGET(EXPR_LINK_1(LOOP, R, 1), LOOP) EXPR_LINK_CASES(EXPR_ADDRESS_1, EXPR_ADDRESS_2, EXPR_ADDRESS_3)
+#define EXPR_ADDRESS_1(operation, oa, stored)                                                                          \
+    EXPR_TARGET(EXPR_LINK_1(operation, oa, stored), operation##_##oa##_##stored)
 #define EXPR_ADDRESS_2(operation, oa, ob, stored)                                                                      \
-    [EXPR_LINK_2(operation, oa, ob, stored)] = &&operation##_##oa##_##ob##_##stored,
-#define EXPR_ADDRESS_3(oa, ob, oc, stored) [EXPR_LINK_3(oa, ob, oc, stored)] = &&SELECT_##oa##_##ob##_##oc##_##stored,
+    EXPR_TARGET(EXPR_LINK_2(operation, oa, ob, stored), operation##_##oa##_##ob##_##stored)
+#define EXPR_ADDRESS_3(oa, ob, oc, stored)                                                                             \
+    EXPR_TARGET(EXPR_LINK_3(oa, ob, oc, stored), SELECT_##oa##_##ob##_##oc##_##stored)
+
+/* EXPR_JUMPS goes to the first instruction, EXPR_JUMP to the next: by a table of addresses, so that each instruction
+ * jumps to the next one itself, which processors predict better than one jump for all of them. With GRAY_NO_JUMPS by a
+ * switch, for compilers and devices that know no addresses of labels. */
+#ifdef GRAY_NO_JUMPS
+#define EXPR_TARGET(link, label)                                                                                       \
+    case link:                                                                                                         \
+        goto label;
+#define EXPR_JUMPS(...)                                                                                                \
+    jump:                                                                                                              \
+    switch (in->link) {                                                                                                \
+        __VA_ARGS__                                                                                                    \
+    default:                                                                                                           \
+        goto UNLINKED;                                                                                                 \
+    }
+#define EXPR_JUMP goto jump;
+#else
+#define EXPR_TARGET(link, label) [link] = &&label,
+#define EXPR_JUMPS(...)                                                                                                \
+    static const void *const targets[] = {__VA_ARGS__};                                                                \
+    EXPR_JUMP
+#define EXPR_JUMP goto *targets[in->link];
+#endif
 #define EXPR_CASES_BOTH(X, operation) EXPR_CASES_2(X, operation, 0) EXPR_CASES_2(X, operation, 1)
 #define EXPR_CASES_OF_INPUTS(X, operation) EXPR_CASES_I(X, operation, 0) EXPR_CASES_I(X, operation, 1)
 

@@ -55,11 +55,10 @@
 #define PAIR_ADDRESS EXPR_ADDRESS_FIRST
 #define PAIR_TARGETS
 #endif
-/* Each instruction jumps to the next one itself, which processors predict better than one jump for all of them. */
 #define NEXT                                                                                                           \
     if (++in >= end)                                                                                                   \
         goto done;                                                                                                     \
-    goto *targets[in->link];
+    EXPR_JUMP
 #define DECLARE(k, zero) double_lanes x##k = zero;
 #define FORGET(k, zero) x##k = zero;
 #define PUT(k, to) double_lanes_store_any(to + (k)*DOUBLE_LANES, x##k);
@@ -67,15 +66,15 @@
 /* Points from number `at` on, up to the next loop, or to the end: NULL. rows: of the first point. */
 static const struct expr_instruction *RUN_LINKED(const struct expr_program *program, const struct expr_instruction *in,
                                                  uint32_t at, double *rows, const struct expr_direct *direct) {
-    static const void *const targets[] = {EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(PAIR_ADDRESS)};
     const double *const *const inputs = direct->inputs;
     const uint32_t input_begin = program->constant_count;
     const union expr_value *const constants = program->constants;
     double *const values = rows + at - (size_t)program->constant_count * EXPR_BATCH;
     const struct expr_instruction *const end = program->code + program->count;
     EACH(DECLARE, double_lanes_all(0.0))
-    if (in < end)
-        goto *targets[in->link];
+    if (in >= end)
+        goto done;
+    EXPR_JUMPS(EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(PAIR_ADDRESS))
 done:
     if (direct->output) {
         EACH(PUT, direct->output + at)

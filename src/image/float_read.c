@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "image/levels.h"
+#include "math/portable.h"
 
 #include <assert.h>
 #include <float.h>
@@ -182,7 +183,7 @@ static bool hdr_read_row(struct reading *r, uint8_t *row, size_t width) {
 static void hdr_store(const uint8_t *row, size_t width, const struct hdr_header *header, float *out) {
     for (size_t x = 0; x < width; x++) {
         const uint8_t *p = row + 4 * (header->from_right ? width - 1 - x : x);
-        double unit = p[3] ? ldexp(header->factor, (int)p[3] - 136) : 0;
+        double unit = p[3] ? math_ldexp(header->factor, (int)p[3] - 136) : 0;
         for (size_t i = 0; i < 3; i++)
             out[4 * x + i] = bounded((p[i] + 0.5) * unit);
         out[4 * x + 3] = 1;

@@ -73,9 +73,9 @@ void hdr_pixel(const float rgb[3], uint8_t out[4]) {
     if (max < 0x1p-126)
         return;
     int exponent;
-    (void)frexp(max, &exponent);
+    (void)math_frexp(max, &exponent);
     for (int i = 0; i < 3; i++)
-        out[i] = (uint8_t)floor(ldexp(c[i], 8 - exponent));
+        out[i] = (uint8_t)floor(math_ldexp(c[i], 8 - exponent));
     out[3] = (uint8_t)(exponent + 128);
 }
 

@@ -11,6 +11,7 @@
 #include "image/png_read_internal.h"
 #include "image/tga_read_internal.h"
 #include "image/webp_read_internal.h"
+#include "math/portable.h"
 
 #include <math.h>
 #include <string.h>
@@ -268,7 +269,7 @@ double image_level_for(double texels, int last) {
     if (!(texels < 0x1p40))
         return last;
     int exponent;
-    double mantissa = frexp(texels, &exponent); /* in [.5, 1) */
+    double mantissa = math_frexp(texels, &exponent); /* in [.5, 1) */
     double level = (exponent - 1) + (2 * mantissa - 1);
     return level < last ? level : last;
 }

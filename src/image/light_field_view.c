@@ -293,8 +293,8 @@ bool light_field_clamp(const struct light_field_head *head, struct light_field_c
 static void make_lens(struct drawing *d) {
     d->point_count = d->camera.aperture * d->per_spacing > 0 ? LENS_LIMIT : 1;
     for (uint32_t i = 0; i < d->point_count && d->point_count > 1; i++) {
-        double radius = d->camera.aperture * sqrt(fmod(0.5 + i * 0.7548776662466927, 1)), sine, cosine;
-        el_sincos(2 * PI * fmod(i * 0.5698402909980532, 1), &sine, &cosine);
+        double radius = d->camera.aperture * sqrt(math_fmod(0.5 + i * 0.7548776662466927, 1)), sine, cosine;
+        el_sincos(2 * PI * math_fmod(i * 0.5698402909980532, 1), &sine, &cosine);
         d->points[i][X] = d->count[X] > 1 ? radius * cosine : 0;
         d->points[i][Y] = d->count[Y] > 1 ? radius * sine : 0;
     }

@@ -12,7 +12,7 @@ enum { TONE_STEPS = 128 }; /* of a doubling */
 
 double tone_table_light(int entry) {
     int doubling = entry < TONE_STEPS ? 0 : entry / TONE_STEPS - 1;
-    return ldexp(entry - doubling * TONE_STEPS, doubling - 22);
+    return math_ldexp(entry - doubling * TONE_STEPS, doubling - 22);
 }
 
 double tone_table_slope(const struct tone_table *table) {
@@ -30,10 +30,10 @@ static double table_value(const struct tone_table *table, double c) {
         return c == c ? (double)table->values[0] : c;
     if (c >= tone_table_light(TONE_ENTRIES - 1))
         return (double)table->values[TONE_ENTRIES - 1];
-    c = ldexp(c, 22);
-    (void)frexp(c, &exponent);
+    c = math_ldexp(c, 22);
+    (void)math_frexp(c, &exponent);
     int doubling = exponent > 8 ? exponent - 8 : 0; /* c / 2^doubling is below 256, and from 128 on where it is not 0 */
-    c = ldexp(c, -doubling);
+    c = math_ldexp(c, -doubling);
     int step = (int)c, entry = doubling * TONE_STEPS + step;
     double low = (double)table->values[entry], high = (double)table->values[entry + 1];
     return low + (high - low) * (c - step);

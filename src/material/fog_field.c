@@ -10,6 +10,7 @@
 #include "expr/expr_interval.h"
 #include "material/fog_cells_internal.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 
 #include <float.h>
 
@@ -70,7 +71,7 @@ static void put_box(const struct fog_cells *cells, uint64_t cell, uint32_t at, s
 
 static float round_up(double x) {
     float f = (float)x;
-    return (double)f < x ? nextafterf(f, INFINITY) : f;
+    return (double)f < x ? math_nextafterf(f, INFINITY) : f;
 }
 
 /* Computes bounds of a program over all cells: of its first output in `bounds` (or NULL), and the maximum of all

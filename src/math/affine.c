@@ -2,6 +2,7 @@
 #include "math/affine.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
 
 struct affine affine_identity(void) {
     return (struct affine){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -60,7 +61,7 @@ struct transform transform_scale(struct vec3 factors) {
 }
 
 static void sine_cosine(double degrees, double *sine, double *cosine) {
-    double turned = fmod(degrees, 360); /* exact */
+    double turned = math_fmod(degrees, 360); /* exact */
     double quarters = turned / 90;
     if (quarters == floor(quarters)) {
         static const double table[4] = {0, 1, 0, -1};
@@ -109,9 +110,9 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
 struct transform transform_rotate_quaternion(double w, struct vec3 v) {
     double max = math_max(fabs(w), vec3_max_abs(v));
     int exponent;
-    (void)frexp(max, &exponent);
-    w = ldexp(w, -exponent);
-    v = vec3_make(ldexp(v.x, -exponent), ldexp(v.y, -exponent), ldexp(v.z, -exponent));
+    (void)math_frexp(max, &exponent);
+    w = math_ldexp(w, -exponent);
+    v = vec3_make(math_ldexp(v.x, -exponent), math_ldexp(v.y, -exponent), math_ldexp(v.z, -exponent));
     double s = 2 / (w * w + vec3_dot(v, v));
     struct transform out = transform_identity();
     out.forward =

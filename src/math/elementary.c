@@ -27,6 +27,7 @@
 #include <stdint.h>
 
 #include "math/elementary_lanes.h"
+#include "math/portable.h"
 
 #ifdef __FAST_MATH__
 #error "elementary functions need strict floating-point arithmetic"
@@ -556,11 +557,10 @@ double el_cbrt(double x) {
     return copysign((t + t * (quotient - t) / (2.0 * t + quotient)) * down, x);
 }
 
-/* The library's fmod is exact, so every implementation agrees; only its error reporting is kept away. */
 double el_fmod(double x, double y) {
     if (isnan(x) || isnan(y))
         return x + y;
     if (isinf(x) || y == 0.0)
         return invalid();
-    return fmod(x, y);
+    return math_fmod(x, y);
 }

@@ -10,6 +10,7 @@
 #include "math/motion.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
 
 enum { POLAR_STEPS = 40 };
 
@@ -161,7 +162,7 @@ struct transform motion_at(const struct motion *motion, double time) {
     if (!motion->spins)
         return pose;
     struct transform spin =
-        transform_rotate_about(motion->spin_axis, fmod(motion->spin_start + motion->spin * time, 360));
+        transform_rotate_about(motion->spin_axis, math_fmod(motion->spin_start + motion->spin * time, 360));
     return transform_compose(&pose, &spin);
 }
 

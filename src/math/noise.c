@@ -14,6 +14,7 @@
 #include "math/elementary.h"
 #include "math/exact.h"
 #include "math/noise_lanes.h"
+#include "math/portable.h"
 
 static const double pi = 0x1.921fb54442d18p+1;
 
@@ -49,7 +50,7 @@ static inline double cell_of(double x, unsigned *cell) {
         *cell = (unsigned)(whole & 255);
         return x - (double)whole;
     }
-    double turn = fmod(x, 256.0); /* exact; x is an integer */
+    double turn = math_fmod(x, 256.0); /* exact; x is an integer */
     *cell = (unsigned)(int)(turn < 0.0 ? turn + 256.0 : turn);
     return 0.0;
 }

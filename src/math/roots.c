@@ -31,7 +31,7 @@
 
 static int exponent_of(double x) {
     int exponent;
-    frexp(x, &exponent);
+    math_frexp(x, &exponent);
     return exponent;
 }
 
@@ -87,11 +87,11 @@ int roots_quadratic(double a, double b, double c, double out[2]) {
         shift--;
     if (b != 0.0 && exponent_of(b) + shift > ec + 60)
         return two_roots(-b / a, -c / b, out); /* the rest is far below */
-    double ya = ldexp(a, 2 * shift - ec), yb = ldexp(b, shift - ec), yc = ldexp(c, -ec);
+    double ya = math_ldexp(a, 2 * shift - ec), yb = math_ldexp(b, shift - ec), yc = math_ldexp(c, -ec);
 
     int count = quadratic_moderate(ya, yb, yc, out);
     for (int i = 0; i < count; i++) {
-        out[i] = ldexp(out[i], shift);
+        out[i] = math_ldexp(out[i], shift);
     }
     return count == 2 ? two_roots(out[0], out[1], out) : count;
 }
@@ -250,11 +250,11 @@ static int roots_shifted(const double *scaled, int degree, int shift, double lo,
     if (degree <= 2) {
         count = roots_quadratic(degree == 2 ? scaled[2] : 0.0, scaled[1], scaled[0], found);
     } else {
-        count =
-            roots_scaled(scaled, degree, math_max(ldexp(lo, -shift), -1.0), math_min(ldexp(hi, -shift), 1.0), found);
+        count = roots_scaled(scaled, degree, math_max(math_ldexp(lo, -shift), -1.0),
+                             math_min(math_ldexp(hi, -shift), 1.0), found);
     }
     for (int i = 0; i < count; i++) {
-        double root = ldexp(found[i], shift);
+        double root = math_ldexp(found[i], shift);
         if (root >= lo && root <= hi && isfinite(root))
             out[kept++] = root;
     }
@@ -275,17 +275,17 @@ static int roots_ranged(const double *c, int degree, double lo, double hi, doubl
     }
     double scaled[ROOTS_MAX_DEGREE + 1];
     for (int i = 0; i <= degree; i++)
-        scaled[i] = ldexp(c[i], i * shift - largest);
+        scaled[i] = math_ldexp(c[i], i * shift - largest);
     if (degree <= 2 || largest - smallest < 960 || shift < -1000) {
         return roots_shifted(scaled, degree, shift, lo, hi, out);
     }
     /* A coefficient that may decide small roots underflows: these roots are computed in another unit. For |y| >= 2^-60
      * it is far below the largest term (2^-60 to the power 12). */
-    double edge = ldexp(1.0, shift - 60), all[3 * ROOTS_MAX_DEGREE];
-    int count = roots_shifted(scaled, degree, shift, lo, math_min(hi, nextafter(-edge, -INFINITY)), all);
+    double edge = math_ldexp(1.0, shift - 60), all[3 * ROOTS_MAX_DEGREE];
+    int count = roots_shifted(scaled, degree, shift, lo, math_min(hi, math_nextafter(-edge, -INFINITY)), all);
     if (lo <= edge && hi >= -edge)
         count += roots_ranged(c, degree, math_max(lo, -edge), math_min(hi, edge), all + count);
-    count += roots_shifted(scaled, degree, shift, math_max(lo, nextafter(edge, INFINITY)), hi, all + count);
+    count += roots_shifted(scaled, degree, shift, math_max(lo, math_nextafter(edge, INFINITY)), hi, all + count);
     count = drop_pairs(all, count, degree);
     memcpy(out, all, (size_t)count * sizeof *out);
     return count;

@@ -72,9 +72,9 @@ static inline double vec3_length(struct vec3 a) {
     if (!(largest > 0) || !isfinite(largest))
         return largest;
     int exponent;
-    (void)frexp(largest, &exponent);
-    struct vec3 b = {ldexp(a.x, -exponent), ldexp(a.y, -exponent), ldexp(a.z, -exponent)};
-    return ldexp(sqrt(vec3_dot(b, b)), exponent);
+    (void)math_frexp(largest, &exponent);
+    struct vec3 b = {math_ldexp(a.x, -exponent), math_ldexp(a.y, -exponent), math_ldexp(a.z, -exponent)};
+    return math_ldexp(sqrt(vec3_dot(b, b)), exponent);
 }
 /* Unit vector of the same direction; the zero vector stays zero. Powers of two in the length do not change the
  * result. */

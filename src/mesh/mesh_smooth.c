@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "base/sort.h"
 #include "math/elementary.h"
+#include "math/portable.h"
 #include "mesh/mesh_topology.h"
 
 #include <string.h>
@@ -145,9 +146,9 @@ static double unit_of(const struct mesh_input *input) {
             largest = math_max(largest, fabs(input->vertices[i][k]));
     int exponent = 0;
     if (largest > 0)
-        (void)frexp(largest, &exponent);
+        (void)math_frexp(largest, &exponent);
     /* Both ends of the range of doubles are possible results of ldexp. */
-    return ldexp(1, exponent < -1000 ? 1000 : -exponent);
+    return math_ldexp(1, exponent < -1000 ? 1000 : -exponent);
 }
 
 static uint32_t next_corner(const struct smoothing *s, uint32_t corner) {

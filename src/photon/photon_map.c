@@ -15,6 +15,7 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "base/sort.h"
+#include "math/portable.h"
 
 #include <string.h>
 
@@ -403,9 +404,9 @@ static void choose_max_radius(struct builder *b) {
 /* The power of two that is next above; its reciprocal is finite, too. */
 static double unit_of(double size) {
     int exponent;
-    (void)frexp(size, &exponent);
+    (void)math_frexp(size, &exponent);
     exponent = exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent;
-    return size > 0 && isfinite(size) ? ldexp(1, exponent) : 1;
+    return size > 0 && isfinite(size) ? math_ldexp(1, exponent) : 1;
 }
 
 static bool measure(struct builder *b, uint32_t chunks) {

@@ -19,6 +19,7 @@
 #include "base/random.h"
 #include "math/elementary.h"
 #include "math/frame.h"
+#include "math/portable.h"
 
 #include <string.h>
 
@@ -165,7 +166,7 @@ static void plane_set_add(struct plane_set *planes, struct vec3 normal, double p
 static void pyramid_planes(const struct photon_target *target, uint32_t face, uint32_t level, uint32_t i, uint32_t j,
                            struct plane_set *planes) {
     struct vec3 major, axes[2];
-    double width = ldexp(2, -(int)level);
+    double width = math_ldexp(2, -(int)level);
     uint32_t cell[2] = {i, j};
     face_axes(face, &major, &axes[0], &axes[1]);
     planes->count = 0;
@@ -222,7 +223,7 @@ struct target_square {
 
 /* The brightness in the middle of a cell, or a little where only another part of it is lit; 0 where none is. */
 static double cell_shine(const struct photon_target *target, struct target_square cell, double *solid_angle) {
-    double width = ldexp(2, -(int)cell.level), a = -1 + width * (cell.i + 0.5), b = -1 + width * (cell.j + 0.5),
+    double width = math_ldexp(2, -(int)cell.level), a = -1 + width * (cell.i + 0.5), b = -1 + width * (cell.j + 0.5),
            density;
     uint32_t face = cell.face;
     struct vec3 middle = vec3_normalize(face_direction(face, a, b, solid_angle));
@@ -280,7 +281,7 @@ static void visit(struct search *s, struct target_square square, const uint32_t 
     uint32_t face = square.face, level = square.level, i = square.i, j = square.j;
     struct photon_target *target = s->target;
     struct plane_set planes;
-    double size = ldexp(target->size, -(int)level), half = size / 2;
+    double size = math_ldexp(target->size, -(int)level), half = size / 2;
     s->stopped = s->stopped || ((++s->steps % CANCEL_EVERY == 0 || count > 1000) && pool_cancelled(s->pool));
     if (s->stopped || s->found > s->limit)
         return;
@@ -376,7 +377,7 @@ static void estimate_flux(struct photon_target *target, const struct specular_ob
         light_photon_attenuation(emitter->light, distance > emitter->radius ? distance : emitter->radius);
     if (!(attenuation > 0)) /* beyond its range at the middle, but maybe not everywhere */
         attenuation = distance * distance * 0x1p-6;
-    double cell_area = is_distant(target) ? ldexp(target->size * target->size, -2 * (int)target->level) : 1;
+    double cell_area = is_distant(target) ? math_ldexp(target->size * target->size, -2 * (int)target->level) : 1;
     double mean = (fabs(colour.r) + fabs(colour.g) + fabs(colour.b)) / 3;
     target->flux = mean * attenuation * light_emitter_unit(emitter) * target->total * cell_area;
     if (!isfinite(target->flux))
@@ -566,7 +567,7 @@ static const struct photon_cell *cell_at(const struct photon_target *target, dou
 static struct light_photon start_across(const struct photon_target *target, const struct photon_cell *cell,
                                         struct sample2 xi, double *weight) {
     struct light_photon photon = light_photon(&target->emitter, vec3_all(0), xi);
-    double size = ldexp(target->size, -(int)target->level);
+    double size = math_ldexp(target->size, -(int)target->level);
     double x = target->corner[0] + (cell->i + xi.x) * size, y = target->corner[1] + (cell->j + xi.y) * size;
     photon.origin = vec3_add_scaled(vec3_scale(target->emitter.right, x), target->emitter.up, y);
     photon.origin = vec3_add_scaled(photon.origin, photon.direction, target->behind);
@@ -577,7 +578,7 @@ static struct light_photon start_across(const struct photon_target *target, cons
 /* A unit direction within a cell; *share: the solid angle there for that in the cell's middle. */
 static struct vec3 cell_direction(const struct photon_target *target, const struct photon_cell *cell, struct sample2 xi,
                                   double *share) {
-    double width = ldexp(2, -(int)target->level), density, middle_density;
+    double width = math_ldexp(2, -(int)target->level), density, middle_density;
     (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
     struct vec3 direction =
         face_direction(cell->face, -1 + width * (cell->i + xi.x), -1 + width * (cell->j + xi.y), &density);

@@ -8,6 +8,7 @@
 #include "render/camera.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
 #include "math/range.h"
 
 #include <stdio.h>
@@ -189,7 +190,7 @@ struct camera_view camera_view_at(const struct camera_frame *frame, double x, do
     if (lens->columns > 0) {
         double column = step_at(x, frame->width, lens->columns);
         double row = step_at(y, frame->height, (double)lens->rows * lens_grids(lens));
-        double own = fmod(row, lens->rows); /* in its grid */
+        double own = math_fmod(row, lens->rows); /* in its grid */
         return (struct camera_view){.x = column * frame->width,
                                     .y = row * frame->height,
                                     .right = (column - (lens->columns - 1) / 2.0) * lens->spacing,

@@ -6,6 +6,7 @@
  * Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. Other blocks are divided into
  * four; the line meets at most three of them, one after the other. */
 #include "shape/height_field.h"
+#include "math/portable.h"
 
 #include "shape/span_internal.h"
 
@@ -181,7 +182,7 @@ static void extent_along(const struct height_field *f, struct vec3 g, int k, uin
         return;
     }
     struct range r = level->ranges[(size_t)j * level->columns + i];
-    double x = math_min(1, ldexp(i + right, k) / f->columns), z = math_min(1, ldexp(j + behind, k) / f->rows);
+    double x = math_min(1, math_ldexp(i + right, k) / f->columns), z = math_min(1, math_ldexp(j + behind, k) / f->rows);
     if (vec3_dot(g, vec3_make(x, g.y > 0 ? r.hi : r.lo, z)) <= *found)
         return;
     for (uint32_t n = 0; n < 4; n++)

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "expr/expr_shorten.h"
+#include "math/portable.h"
 #include "shape/implicit_regions_internal.h"
 
 #include <math.h>
@@ -139,7 +140,7 @@ static bool choose_program(struct building *b, const struct expr_program *shorte
 
 static float below(double x) {
     float f = (float)x;
-    return f <= x ? f : nextafterf(f, -INFINITY);
+    return f <= x ? f : math_nextafterf(f, -INFINITY);
 }
 
 static bool add_region(struct building *b, uint32_t node, const struct expr_program *shorter,

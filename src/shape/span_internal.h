@@ -100,10 +100,10 @@ static inline double direction_unit(struct vec3 d) {
     if (largest > 0x1p-250 && largest < 0x1p250)
         return 1;
     int exponent;
-    (void)frexp(largest, &exponent);
-    return largest > 0 && isfinite(largest) ? ldexp(1, exponent > 1000    ? -1000
-                                                       : exponent < -1000 ? 1000
-                                                                          : -exponent)
+    (void)math_frexp(largest, &exponent);
+    return largest > 0 && isfinite(largest) ? math_ldexp(1, exponent > 1000    ? -1000
+                                                            : exponent < -1000 ? 1000
+                                                                               : -exponent)
                                             : 0;
 }
 

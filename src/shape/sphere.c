@@ -8,6 +8,7 @@
 #include "shape/sphere.h"
 
 #include "math/elementary.h"
+#include "math/portable.h"
 
 /* Lengths and directions whose squares might leave the range of doubles are scaled by powers of two first: exact, so a
  * sphere gives the same t, bit by bit, whether it comes through here or not. */
@@ -29,7 +30,7 @@ static bool solve(struct vec3 f, struct vec3 d, double radius, double t[2]) {
 }
 
 static struct vec3 scaled(struct vec3 a, int exponent) {
-    return (struct vec3){ldexp(a.x, exponent), ldexp(a.y, exponent), ldexp(a.z, exponent)};
+    return (struct vec3){math_ldexp(a.x, exponent), math_ldexp(a.y, exponent), math_ldexp(a.z, exponent)};
 }
 
 static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2]) {
@@ -37,15 +38,15 @@ static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2
     if (!(speed > 0) || !vec3_finite(d) || !vec3_finite(f) || !isfinite(radius))
         return false;
     int extent_exponent, speed_exponent;
-    (void)frexp(extent, &extent_exponent);
-    (void)frexp(speed, &speed_exponent);
-    radius = ldexp(radius, -extent_exponent);
+    (void)math_frexp(extent, &extent_exponent);
+    (void)math_frexp(speed, &speed_exponent);
+    radius = math_ldexp(radius, -extent_exponent);
     if (!(radius > 0x1p-299)) /* from there it is less than a point */
         return false;
     if (!solve(scaled(f, -extent_exponent), scaled(d, -speed_exponent), radius, t))
         return false;
-    t[0] = ldexp(t[0], extent_exponent - speed_exponent);
-    t[1] = ldexp(t[1], extent_exponent - speed_exponent);
+    t[0] = math_ldexp(t[0], extent_exponent - speed_exponent);
+    t[1] = math_ldexp(t[1], extent_exponent - speed_exponent);
     return true;
 }
 

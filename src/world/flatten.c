@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/mem.h"
+#include "math/portable.h"
 #include "scene/traversal.h"
 #include "world/flatten_csg_internal.h"
 #include "world/flatten_material_internal.h"
@@ -426,7 +427,7 @@ struct instance_frame {
 
 /* A spin goes on over the frames of an animation. */
 static double spin_start(const struct flattening *f, const struct node *node) {
-    return fmod(node->spin->degrees * f->scene->time, 360);
+    return math_fmod(node->spin->degrees * f->scene->time, 360);
 }
 
 /* A moving node has a link, which is the base of its children. */

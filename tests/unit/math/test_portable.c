@@ -33,3 +33,55 @@ TEST(a_nan_loses_its_sign_only_where_the_format_is_one_number) {
         CHECK_TEXT(text, texts[i]);
     }
 }
+
+static uint64_t any_bits(struct test_random *random) {
+    uint64_t bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits = bits << 16 | (uint64_t)test_uniform(random, 0, 65536);
+    return bits;
+}
+
+/* Numbers of all sizes, with few and with all bits. */
+static double any_number(struct test_random *random) {
+    uint64_t bits = any_bits(random);
+    switch (any_bits(random) % 4) {
+    case 0:
+        return from_bits(bits);
+    case 1:
+        return from_bits(bits & 0xfff8000000000000U);
+    case 2:
+        return from_bits(bits & 0x800fffffffffffffU); /* denormal */
+    default:
+        return numbers[bits % NUMBERS];
+    }
+}
+
+static bool is_same(double a, double b) {
+    return (isnan(a) && isnan(b)) || to_bits(a) == to_bits(b);
+}
+
+TEST(functions_of_the_bits_of_numbers_are_those_of_the_library) {
+    struct test_random random = {1};
+    for (int i = 0; i < 300000; i++) {
+        double x = any_number(&random), y = any_number(&random);
+        int n = (int)(any_bits(&random) % 5000) - 2500, own = 0, library = 0;
+        CHECK(is_same(math_frexp(x, &own), frexp(x, &library)) && (own == library || !isfinite(x)));
+        CHECK(is_same(math_ldexp(x, n), ldexp(x, n)));
+        CHECK(is_same(math_fmod(x, y), fmod(x, y)));
+        CHECK(is_same(math_nextafter(x, y), nextafter(x, y)));
+        float a = (float)x, b = (float)y;
+        CHECK(is_same((double)math_nextafterf(a, b), (double)nextafterf(a, b)));
+    }
+    CHECK(math_ldexp(1, 2147483647) > 1e308 && math_ldexp(1, -2147483647 - 1) <= 0);
+}
+
+/* Of numbers near a half of the last place, too. */
+TEST(numbers_of_128_bits_are_rounded_once) {
+    __extension__ typedef unsigned __int128 wide;
+    struct test_random random = {2};
+    for (int i = 0; i < 300000; i++) {
+        uint64_t high = any_bits(&random) >> (any_bits(&random) % 64), low = any_bits(&random);
+        low = i % 3 == 0 ? 0 : i % 3 == 1 ? (uint64_t)1 << (low % 64) : low;
+        CHECK(to_bits(math_from_wide(high, low)) == to_bits((double)((wide)high << 64 | low)));
+    }
+}
