@@ -238,7 +238,17 @@ struct window {
     int left; /* the column of the first lane */
     int row0, row1;
     float inside[LANES]; /* 1 or 0 */
+    /* How much a prediction for a lane or a row counts: less towards the rim. Otherwise columns that are in more
+     * windows than their neighbours are streaks. */
+    float lane_share[LANES], row_share[DENOISE_SIDE];
 };
+
+/* Small windows need all their pixels. A wider rim costs the contrast of edges. */
+static float share_at(int distance, int radius) {
+    const float rim = 3;
+    float share = (float)(radius + 1 - (distance < 0 ? -distance : distance)) / rim;
+    return radius < SMALL_LANES / 2 || share > 1 ? 1 : share > 0 ? share : 0;
+}
 
 static struct window find_window(int cx, int cy, int radius, struct extent e, struct film_rectangle bounds) {
     struct window w = {.x = cx, .y = cy, .left = cx - before(e)};
@@ -250,7 +260,10 @@ static struct window find_window(int cx, int cy, int radius, struct extent e, st
     for (int l = 0; l < LANES; l++) {
         int x = w.left + l, dx = x - cx;
         w.inside[l] = dx >= -radius && dx <= radius && x >= x0 && x < x1 ? 1 : 0;
+        w.lane_share[l] = share_at(dx, radius);
     }
+    for (int r = w.row0; r < w.row1; r++)
+        w.row_share[r] = share_at(r - DENOISE_WINDOW, radius);
     return w;
 }
 
@@ -517,6 +530,9 @@ static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s,
         equations.matrix[i].at[i] += ridge * equations.matrix[0].at[0];
     if (!solve(terms, e.halves, &equations))
         return;
+    for (int r = w->row0; r < w->row1; r++)
+        for (int at = 0; at < e.lanes; at += WIDTH)
+            store(s->weights[r] + at, load(s->weights[r] + at) * (w->row_share[r] * load(w->lane_share + at)));
     for (int c = 0; c < 3 * e.halves; c++) {
         float factors[TERMS];
         for (int i = 0; i < terms; i++)
