@@ -1,5 +1,6 @@
 /* The rare parts of the watertight test: exact differences of products, and ties. See triangle.h. */
 #include "accel/triangle.h"
+
 #include "math/portable.h"
 
 __extension__ typedef unsigned __int128 wide;

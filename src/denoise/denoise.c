@@ -6,11 +6,11 @@
  * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
  * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
  * on every second row and column are enough, and every second of these where colours count: they are like the black
- * squares of a chess board. This is done for several windows and weights, and each pixel prefers
- * those with the smallest error. A large window in which similar colours count more is for surfaces. Smaller windows
- * and weights by the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels
- * are alike; the noisy colour itself is the last candidate. Regressions for details are made only where features
- * change. Where colours do not count, both halves have the same weights, and one matrix serves both.
+ * squares of a chess board. This is done for several windows and weights, and each pixel prefers those with the
+ * smallest error. A large window in which similar colours count more is for surfaces. Smaller windows and weights by
+ * the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels are alike; the
+ * noisy colour itself is the last candidate. Regressions for details are made only where features change. Where colours
+ * do not count, both halves have the same weights, and one matrix serves both.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
@@ -99,8 +99,9 @@ struct denoise_run {
     int pass;                    /* of residuals */
     /* Of features and of glow, which is filtered like them: measured values and their variance. */
     float *mean[GLOW + 3], *noise[GLOW + 3];
-    float *glow[3];             /* without noise */
+    float *glow[3];             /* its noise before it is smooth, then glow without noise */
     int first_feature, group;   /* those that are filtered, and how many */
+    float **filtered;           /* where to */
     struct denoise_pixel *rows; /* three of each worker */
     struct denoise_scratch *scratch;
     const struct denoise_kernels *kernels;
@@ -167,7 +168,7 @@ static void load_row(void *context, uint32_t y, int worker) {
         for (int c = 0; c < 3; c++) {
             float a = bounded(row[x].glow[0][c]), b = bounded(row[x].glow[1][c]);
             d->mean[GLOW + c][at] = row[x].share * a + (1 - row[x].share) * b;
-            d->noise[GLOW + c][at] = 0.25F * (a - b) * (a - b);
+            d->glow[c][at] = 0.25F * (a - b) * (a - b);
         }
     }
 }
@@ -264,8 +265,8 @@ static void smooth_noise(void *context, uint32_t y, int worker) {
         for (int c = 0; c < 3; c++) {
             float sum = 0;
             for (int i = 0; i < 9; i++)
-                sum += d->noise[GLOW + c][nearest_at(d->level, x + i % 3 - 1, (int)y + i / 3 - 1)];
-            d->glow[c][pixel_at(d->level, x, (int)y)] = sum / 9;
+                sum += d->glow[c][nearest_at(d->level, x + i % 3 - 1, (int)y + i / 3 - 1)];
+            d->noise[GLOW + c][pixel_at(d->level, x, (int)y)] = sum / 9;
         }
 }
 
@@ -281,7 +282,7 @@ static bool is_quiet(const struct denoise_scratch *s, int group, int x, int y, i
 
 /* Glow stays as it is where a window around it has no noise: the edges of lamps in focus keep their bits. */
 static void filter_features(void *context, uint32_t item, int worker) {
-    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL, AROUND = 2 * (WINDOW + 1) + 1 };
+    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL, WINDOW_OF_GLOW = 2 * (WINDOW + 1) + 1 };
     struct denoise_run *d = context;
     struct denoise_scratch *s = d->scratch + worker;
     int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
@@ -298,12 +299,10 @@ static void filter_features(void *context, uint32_t item, int worker) {
     for (int y = 0; y < BLOCK && by + y < d->level->height; y++)
         for (int x = 0; x < BLOCK && bx + x < d->level->width; x++) {
             size_t at = pixel_at(d->level, bx + x, by + y);
-            bool kept = quiet || (keeps && is_quiet(s, d->group, x, y, AROUND));
-            for (int i = 0; i < d->group; i++) {
-                float *out = keeps ? d->glow[i] : d->level->feature[d->first_feature + i];
-                out[at] = kept ? d->mean[d->first_feature + i][at]
-                               : s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
-            }
+            bool kept = quiet || (keeps && is_quiet(s, d->group, x, y, WINDOW_OF_GLOW));
+            for (int i = 0; i < d->group; i++)
+                d->filtered[i][at] = kept ? d->mean[d->first_feature + i][at]
+                                          : s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
         }
 }
 
@@ -333,7 +332,7 @@ static void keep_estimates(struct denoise_scratch *s, int regression, int half) 
 }
 
 /* Denoises the halves of the samples in a block; the other half determines the similarity of colours. */
-static void regress_halves(const struct denoise_run *d, struct denoise_scratch *s, struct film_rectangle bounds) {
+static void estimate_halves(const struct denoise_run *d, struct denoise_scratch *s, struct film_rectangle bounds) {
     for (int half = 0; half < 2; half++) {
         d->kernels->compare(s, 1 - half, bounds);
         for (int b = 0; b < REGRESSIONS && !pool_cancelled(d->pool); b++) {
@@ -414,7 +413,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     d->kernels->find_changes(s);
     /* Estimates of all candidates, then the best mixture for each pixel. */
-    regress_halves(d, s, bounds);
+    estimate_halves(d, s, bounds);
     if (pool_cancelled(d->pool))
         return;
     d->kernels->compare_candidates(s);
@@ -796,6 +795,9 @@ static bool load_source(struct denoise_run *d, struct error *error) {
     for (int f = 0; f < GLOW + 3; f++)
         if (!make_plane(d->level, &d->mean[f]) || !make_plane(d->level, &d->noise[f]))
             return no_memory(error);
+    for (int c = 0; c < 3; c++)
+        if (!make_plane(d->level, &d->glow[c]))
+            return no_memory(error);
     return run(d, d->source->height, load_row, error);
 }
 
@@ -814,28 +816,31 @@ static bool denoise_colours(struct denoise_run *d, struct error *error) {
     return true;
 }
 
-static bool denoise_features(struct denoise_run *d, struct error *error) {
-    static const int groups[][2] = {{GLOW, 3}, {DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+static bool filter_group(struct denoise_run *d, int first, int count, float *out[], struct error *error) {
     uint32_t blocks = (d->source->width + BLOCK - 1) / BLOCK * ((d->source->height + BLOCK - 1) / BLOCK);
-    for (int g = 0; g < 4; g++) {
-        d->first_feature = groups[g][0];
-        d->group = groups[g][1];
-        for (int i = 0; i < d->group; i++)
-            if (!make_plane(d->level, g == 0 ? &d->glow[i] : &d->level->feature[d->first_feature + i]))
+    d->first_feature = first;
+    d->group = count;
+    d->filtered = out;
+    if (!run(d, blocks, filter_features, error))
+        return false;
+    for (int f = first; f < first + count; f++) {
+        free_plane(&d->mean[f]);
+        free_plane(&d->noise[f]);
+    }
+    return true;
+}
+
+static bool denoise_features(struct denoise_run *d, struct error *error) {
+    static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+    if (!run(d, d->source->height, smooth_noise, error) || !filter_group(d, GLOW, 3, d->glow, error))
+        return false;
+    for (int g = 0; g < 3; g++) {
+        float **planes = d->level->feature + groups[g][0];
+        for (int i = 0; i < groups[g][1]; i++)
+            if (!make_plane(d->level, &planes[i]))
                 return no_memory(error);
-        if (g == 0 && !run(d, d->source->height, smooth_noise, error))
+        if (!filter_group(d, groups[g][0], groups[g][1], planes, error))
             return false;
-        for (int i = 0; i < d->group && g == 0; i++) {
-            float *smooth = d->glow[i];
-            d->glow[i] = d->noise[GLOW + i];
-            d->noise[GLOW + i] = smooth;
-        }
-        if (!run(d, blocks, filter_features, error))
-            return false;
-        for (int f = d->first_feature; f < d->first_feature + d->group; f++) {
-            free_plane(&d->mean[f]);
-            free_plane(&d->noise[f]);
-        }
     }
     return true;
 }

@@ -87,7 +87,7 @@ static inline float weight_of(float distance) {
  * in units of the noise. The noise is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
 static void compare_features(struct denoise_scratch *s, int group, bool relative, int dx, int dy) {
     enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW, STRIDE = DENOISE_FEATURE_LOCAL };
-    float least = relative ? 1e-6F : 0;
+    float smallest = relative ? 1e-6F : 0;
     for (int y = 0; y < SIDE; y++) {
         int p = (FIRST + y) * STRIDE + FIRST, q = p + dy * STRIDE + dx;
         float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->feature_unlikeness + y * SIDE;
@@ -96,7 +96,7 @@ static void compare_features(struct denoise_scratch *s, int group, bool relative
             for (int x = 0; x < SIDE; x++) {
                 float vp = noise[p + x], vq = noise[q + x], u = mean[p + x], delta = u - mean[q + x];
                 above[x] += delta * delta - (vp + (vp < vq ? vp : vq));
-                below[x] += vp + vq + least * u * u;
+                below[x] += vp + vq + smallest * u * u;
             }
         }
         for (int x = 0; x < SIDE; x++)
@@ -480,14 +480,19 @@ static inline __attribute__((always_inline)) bool solve(int terms, int halves, s
     return true;
 }
 
+/* Of a channel: the factors of the terms, and the lowest and highest colour that the regression used. */
+struct prediction {
+    float factors[TERMS], range[2];
+};
+
 /* Adds the predictions of a regression for the pixels of its window. They are limited to the range of the pixels
  * that it used, because regressions overshoot beside lights. */
 static inline __attribute__((always_inline)) void predict(const struct denoise_scratch *s, const struct window *w,
-                                                          struct extent e, const float factors[TERMS], int terms,
-                                                          const float range[2], float *sums) {
-    vector factor[TERMS], low = all(range[0]), high = all(range[1]);
+                                                          struct extent e, int terms, const struct prediction *by,
+                                                          float *sums) {
+    vector factor[TERMS], low = all(by->range[0]), high = all(by->range[1]);
     for (int i = 0; i < terms; i++)
-        factor[i] = all(factors[i]);
+        factor[i] = all(by->factors[i]);
     for (int r = w->row0; r < w->row1; r++) {
         float *to = sums + row_at(w, r);
         for (int at = 0; at < e.lanes; at += WIDTH) {
@@ -522,9 +527,9 @@ static inline __attribute__((always_inline)) int fill_features(struct denoise_sc
 static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, const struct window *w,
                                                       struct extent e, int terms, double scale[TERMS]) {
     struct equations equations;
-    float range[6][2];
+    struct prediction by[6];
     for (int c = 0; c < 3 * e.halves; c++)
-        find_range(s, w, e, e.first + c / 3, c % 3, range[c]);
+        find_range(s, w, e, e.first + c / 3, c % 3, by[c].range);
     build_equations(s, w, e, terms, scale, &equations);
     for (int i = 1; i < terms; i++) /* keeps terms small that the window does not determine */
         equations.matrix[i].at[i] += ridge * equations.matrix[0].at[0];
@@ -534,10 +539,9 @@ static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s,
         for (int at = 0; at < e.lanes; at += WIDTH)
             store(s->weights[r] + at, load(s->weights[r] + at) * (w->row_share[r] * load(w->lane_share + at)));
     for (int c = 0; c < 3 * e.halves; c++) {
-        float factors[TERMS];
         for (int i = 0; i < terms; i++)
-            factors[i] = (float)(equations.right[i][c / 3][c % 3] * scale[i]);
-        predict(s, w, e, factors, terms, range[c], s->sums[e.first + c / 3][c % 3]);
+            by[c].factors[i] = (float)(equations.right[i][c / 3][c % 3] * scale[i]);
+        predict(s, w, e, terms, &by[c], s->sums[e.first + c / 3][c % 3]);
     }
     for (int r = w->row0; r < w->row1; r++) {
         float *to = s->weight_sums + row_at(w, r);

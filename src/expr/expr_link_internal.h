@@ -133,11 +133,8 @@ enum { EXPR_LINK_PAIRS = EXPR_LINK_SELECT + 2 * 27 };
         goto label;
 #define EXPR_JUMPS(...)                                                                                                \
     jump:                                                                                                              \
-    switch (in->link) {                                                                                                \
-        __VA_ARGS__                                                                                                    \
-    default:                                                                                                           \
-        goto UNLINKED;                                                                                                 \
-    }
+    switch (in->link) { __VA_ARGS__ }                                                                                  \
+    __builtin_unreachable();
 #define EXPR_JUMP goto jump;
 #else
 #define EXPR_TARGET(link, label) [link] = &&label,

@@ -6,8 +6,8 @@
  * Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. Other blocks are divided into
  * four; the line meets at most three of them, one after the other. */
 #include "shape/height_field.h"
-#include "math/portable.h"
 
+#include "math/portable.h"
 #include "shape/span_internal.h"
 
 enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18, MAX_SIDE = 32768 };

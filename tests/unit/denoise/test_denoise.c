@@ -231,7 +231,7 @@ TEST(an_edge_that_no_feature_shows_keeps_nine_tenths_of_its_contrast_of_eight_de
 
 /* What remains of noise on a wall is soft. Columns, rows or diagonals that differ from both neighbours along 16 pixels
  * would be seen as streaks: the root mean square of these differences, as a part of all that remains. */
-TEST(noise_on_a_wall_leaves_no_streaks_along_columns_and_rows) {
+TEST(streaks_along_columns_and_rows_are_a_twentieth_of_what_remains_of_noise) {
     enum { LENGTH = 16 };
     static const int steps[][4] = {{1, 0, 0, 1}, {0, 1, 1, 0}, {1, 1, 1, -1}};
     static struct synthetic s;
@@ -239,19 +239,19 @@ TEST(noise_on_a_wall_leaves_no_streaks_along_columns_and_rows) {
     begin(&s, 0.5F, 0.2F);
     measure(&s, 12);
     run_part(&s, 1, 0, 0);
-    for (int way = 0; way < 3; way++) {
+    for (int direction = 0; direction < 3; direction++) {
         int count = 0;
         for (int y = LENGTH; y < SIDE - LENGTH; y++)
             for (int x = LENGTH; x < SIDE - LENGTH; x++, count++) {
                 double sum = 0;
                 for (int i = -LENGTH / 2; i < LENGTH / 2; i++) {
-                    int at = (y + i * steps[way][3]) * SIDE + x + i * steps[way][2];
-                    int aside = steps[way][1] * SIDE + steps[way][0];
+                    int at = (y + i * steps[direction][3]) * SIDE + x + i * steps[direction][2];
+                    int aside = steps[direction][1] * SIDE + steps[direction][0];
                     sum += (double)s.out[at][1] - ((double)s.out[at - aside][1] + (double)s.out[at + aside][1]) / 2;
                 }
-                streaks[way] += (sum / LENGTH) * (sum / LENGTH);
+                streaks[direction] += (sum / LENGTH) * (sum / LENGTH);
             }
-        streaks[way] = sqrt(streaks[way] / count) / sqrt(mean_square_error(&s, false));
+        streaks[direction] = sqrt(streaks[direction] / count) / sqrt(mean_square_error(&s, false));
     }
     CHECK(streaks[0] < 0.045 && streaks[1] < 0.045 && streaks[2] < 0.02);
 }

@@ -5,6 +5,7 @@
 #include "expr/expr_program.h"
 #include "math/exact.h"
 #include "tests/harness.h"
+#include "tests/unit/expr_by_switch.h"
 #include "tests/unit/picture_function.h"
 
 #include <lauxlib.h>
@@ -456,15 +457,16 @@ static void check_linked_program(uint64_t seed) {
     double room[3][EXPR_BATCH + 1], wanted[EXPR_OUTPUTS][EXPR_BATCH], results[EXPR_OUTPUTS][EXPR_BATCH + 1];
     double *in[3] = {room[0] + (seed / 4 & 1), room[1], room[2] + 1}; /* of any alignment */
     for (uint32_t i = 0; i < count; i++) {
-        double point[EXPR_INPUT_COUNT] = {0}, one[EXPR_OUTPUTS];
+        double point[EXPR_INPUT_COUNT] = {0}, one[EXPR_OUTPUTS], other[EXPR_OUTPUTS];
         union expr_value values[LINKED_NODES];
         for (uint64_t k = 0; k < 3; k++)
             in[k][i] = point[k] = random_float(random_combine(seed, i * 3 + k));
         apply_all(&graph, point, values);
         expr_evaluate(&program, point, one);
+        expr_evaluate_by_switch(&program, point, other);
         for (int k = 0; k < output_count; k++) {
             wanted[k][i] = values[outputs[k]].f;
-            if (!same_bits(one[k], wanted[k][i]))
+            if (!same_bits(one[k], wanted[k][i]) || !same_bits(other[k], wanted[k][i]))
                 test_fail(__FILE__, __LINE__, "program %d: %a, not %a", (int)seed, one[k], wanted[k][i]);
         }
     }
