@@ -25,7 +25,8 @@
 
 #include "base/isa.h"
 #include "base/mem.h"
-#include "denoise/denoise_internal.h"
+#include "denoise/denoise_residuals_internal.h"
+#include "denoise/denoise_run_internal.h"
 
 #include <float.h>
 #include <math.h>
@@ -38,19 +39,16 @@ enum {
     CHOICE = DENOISE_CHOICE,
     REGRESSIONS = DENOISE_REGRESSIONS,
     CANDIDATES = DENOISE_CANDIDATES,
-    GLOW = DENOISE_FEATURES,
-    ALIGNMENT = 4, /* of blocks in the whole picture: steps between centres divide it */
-    LEVELS = 2,
+    ALIGNMENT = 4,       /* of blocks in the whole picture: steps between centres divide it */
     ROWS = 16,           /* that are finished together */
     STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
-    RESIDUAL_WINDOW = 3, /* radius of the mean of residuals */
     RESIDUAL_PASSES = 2,
-    EVIDENCE_WINDOW = 6, /* radius of the mean that compares these with their noise */
 };
 /* Two pixels of the coarser level and the pixels that they depend on; levels begin at even pixels of finer ones. */
 _Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WINDOW + 1 +
-                                           (int)RESIDUAL_PASSES * (int)RESIDUAL_WINDOW + (int)EVIDENCE_WINDOW + 1 <=
+                                           (int)RESIDUAL_PASSES * (int)DENOISE_RESIDUAL_WINDOW +
+                                           (int)DENOISE_EVIDENCE_WINDOW + 1 <=
                                        (int)DENOISE_RIM,
                "the rim is less than what a pixel depends on");
 _Static_assert((int)DENOISE_FEATURE_WINDOW + 2 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
@@ -65,62 +63,8 @@ static const float correction_limit = 0.3F; /* of squared differences to a coars
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float edge_errors = 1;         /* the same at silhouettes */
 static const float same_depth = 0.03F;      /* relative difference of depths on one surface */
-/* A silhouette has a neighbour with this relative difference of depths and this distance of features. */
-static const float edge_depth = 0.05F, edge_distance = 8;
-/* Residuals count half at these distances of features, and relative squared differences of colours. */
-static const float residual_distance = 10, residual_colour = 0.2F;
-/* How much of the mean residual is added: more than 1, since the mean of 7 x 7 pixels itself is blurred. */
-static const float residual_gain = 2.6F;
-/* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
- * evidence, which is negative if the residuals are noise, since estimates contain the noise of both halves. */
-static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = -0.3F;
-static const float choice_slope = 4; /* how strongly the candidate with the smallest error is preferred */
+static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
 
-/* A picture as planes of floats. */
-struct level {
-    int width, height;
-    uint32_t x0, y0;     /* position in the whole picture, in pixels of this level */
-    float *colour[2][3]; /* the halves without glow and outliers */
-    float *variance[3];  /* of a half */
-    float *feature[DENOISE_FEATURES];
-    float *estimate[2][3]; /* of the halves */
-};
-
-struct denoise_run {
-    const struct denoise_source *source;
-    struct pool *pool;
-    float (*out)[3];
-    struct level levels[LEVELS]; /* each level has half of the width and height of the one before */
-    struct level *level;         /* the one at work */
-    float *loaded[2][3];         /* the colours with outliers */
-    float *sampled[3];           /* the variance of a half, from its samples */
-    float *evidence;             /* of silhouettes: squared mean residual, in units of its variance; others: -1 */
-    float *agreement;            /* the same with the product of the mean residuals of the halves */
-    int pass;                    /* of residuals */
-    /* Of features and of glow, which is filtered like them: measured values and their variance. */
-    float *mean[GLOW + 3], *noise[GLOW + 3];
-    float *glow[3];             /* its noise before it is smooth, then glow without noise */
-    int first_feature, group;   /* those that are filtered, and how many */
-    float **filtered;           /* where to */
-    struct denoise_pixel *rows; /* three of each worker */
-    struct denoise_scratch *scratch;
-    const struct denoise_kernels *kernels;
-};
-
-static int clamp_int(int x, int low, int high) {
-    return x < low ? low : x > high ? high : x;
-}
-
-static size_t pixel_at(const struct level *d, int x, int y) {
-    return (size_t)y * (size_t)d->width + (size_t)x;
-}
-
-/* The nearest pixel of the picture. */
-static size_t nearest_at(const struct level *d, int x, int y) {
-    return pixel_at(d, clamp_int(x, 0, d->width - 1), clamp_int(y, 0, d->height - 1));
-}
-
-/* Copies a square of a plane; outside of the picture it repeats the nearest pixel. */
 static void copy_plane(const struct level *d, const float *plane, int x0, int y0, int side, float *local) {
     for (int y = 0; y < side; y++)
         for (int x = 0; x < side; x++)
@@ -534,138 +478,6 @@ static void correct_finer(void *context, uint32_t y, int worker) {
     }
 }
 
-/* --- silhouettes --- */
-
-static float mean_of_halves(const struct level *level, int c, size_t at) {
-    return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
-}
-
-static float surface_distance(const struct level *level, size_t p, size_t q) {
-    float z = level->feature[DENOISE_DEPTH][p], difference = level->feature[DENOISE_DEPTH][q] - z;
-    float sum = difference * difference / (z * z / depth_unit + FLT_MIN);
-    for (int f = 0; f < DENOISE_DEPTH; f++) {
-        difference = level->feature[f][q] - level->feature[f][p];
-        sum += difference * difference * (f < DENOISE_NORMAL ? albedo_unit : normal_unit);
-    }
-    return sum;
-}
-
-static bool is_silhouette(const struct level *level, int x, int y) {
-    size_t at = pixel_at(level, x, y);
-    float z = level->feature[DENOISE_DEPTH][at];
-    for (int i = 0; i < 9; i++) {
-        size_t q = nearest_at(level, x + i % 3 - 1, y + i / 3 - 1);
-        float other = level->feature[DENOISE_DEPTH][q];
-        if (fabsf(z - other) > edge_depth * (z < other ? z : other) && surface_distance(level, at, q) > edge_distance)
-            return true;
-    }
-    return false;
-}
-
-/* The weight of the residual of a pixel for another one. */
-static float residual_weight(const struct level *level, size_t p, size_t q) {
-    float difference = 0, size = 1e-4F;
-    for (int c = 0; c < 3; c++) {
-        float a = mean_of_halves(level, c, p), b = mean_of_halves(level, c, q);
-        difference += (a - b) * (a - b);
-        size += a * a + b * b;
-    }
-    float distance = surface_distance(level, p, q) / residual_distance + difference / size / residual_colour;
-    return 1 / (1 + distance * distance);
-}
-
-/* The mean residual around a pixel, how far it exceeds the noise, and whether both halves have it. */
-struct residual {
-    float mean[3], evidence, agreement;
-};
-
-static struct residual find_residual(const struct level *level, int x, int y) {
-    static const float kernel[RESIDUAL_WINDOW + 1] = {1, 0.8948F, 0.6412F, 0.3679F}; /* exp(-x^2/9) */
-    float sums[2][3] = {{0}}, weights = 0, square = 0, product = 0, noise = FLT_MIN;
-    size_t at = pixel_at(level, x, y);
-    for (int j = -RESIDUAL_WINDOW; j <= RESIDUAL_WINDOW; j++) {
-        for (int i = -RESIDUAL_WINDOW; i <= RESIDUAL_WINDOW; i++) {
-            if (x + i < 0 || y + j < 0 || x + i >= level->width || y + j >= level->height)
-                continue;
-            size_t q = pixel_at(level, x + i, y + j);
-            float weight = kernel[i < 0 ? -i : i] * kernel[j < 0 ? -j : j] * residual_weight(level, at, q);
-            weights += weight;
-            for (int c = 0; c < 3; c++) {
-                for (int half = 0; half < 2; half++)
-                    sums[half][c] += weight * (level->colour[half][c][q] - mean_of_halves(level, c, q));
-                noise += 0.5F * weight * weight * level->variance[c][q];
-            }
-        }
-    }
-    struct residual found;
-    for (int c = 0; c < 3; c++) {
-        float mean = 0.5F * (sums[0][c] + sums[1][c]);
-        found.mean[c] = mean / weights;
-        square += mean * mean;
-        product += sums[0][c] * sums[1][c];
-    }
-    float largest = 100, unit = square < largest * noise ? noise : square / largest;
-    found.evidence = square / unit;
-    found.agreement = product / unit;
-    return found;
-}
-_Static_assert((int)RESIDUAL_WINDOW == 3, "the kernel of find_residual has four numbers");
-
-/* Stores mean residuals in d->out. The first pass finds silhouettes. */
-static void find_residuals(void *context, uint32_t y, int worker) {
-    struct denoise_run *d = context;
-    (void)worker;
-    for (int x = 0; x < d->level->width; x++) {
-        size_t at = pixel_at(d->level, x, (int)y);
-        if (d->pass == 0)
-            d->evidence[at] = is_silhouette(d->level, x, (int)y) ? 0 : -1;
-        if (d->evidence[at] < 0)
-            continue;
-        struct residual found = find_residual(d->level, x, (int)y);
-        memcpy(d->out[at], found.mean, sizeof found.mean);
-        d->evidence[at] = found.evidence;
-        d->agreement[at] = found.agreement;
-    }
-}
-
-/* The mean of the evidence around a silhouette: that of one pixel would select noise. 0 if the halves disagree. */
-static float mean_evidence(const struct denoise_run *d, int x, int y) {
-    float sum = 0, agreement = 0, count = 0;
-    for (int j = -EVIDENCE_WINDOW; j <= EVIDENCE_WINDOW; j++) {
-        for (int i = -EVIDENCE_WINDOW; i <= EVIDENCE_WINDOW; i++) {
-            if (x + i < 0 || y + j < 0 || x + i >= d->level->width || y + j >= d->level->height)
-                continue;
-            size_t q = pixel_at(d->level, x + i, y + j);
-            if (d->evidence[q] < 0)
-                continue;
-            sum += d->evidence[q];
-            agreement += d->agreement[q];
-            count++;
-        }
-    }
-    return agreement < agreement_limit * sum ? 0 : sum / count;
-}
-
-/* Adds the residuals; a value remains at least a quarter of what it was. */
-static void add_residuals(void *context, uint32_t y, int worker) {
-    struct denoise_run *d = context;
-    (void)worker;
-    for (int x = 0; x < d->level->width; x++) {
-        size_t at = pixel_at(d->level, x, (int)y);
-        float evidence = d->evidence[at] >= 0 ? mean_evidence(d, x, (int)y) : 0;
-        if (!(evidence > evidence_limit))
-            continue;
-        float share = evidence_slope * (1 - evidence_limit / evidence);
-        share = residual_gain * (share < 1 ? share : 1);
-        for (int c = 0; c < 3; c++) {
-            for (int half = 0; half < 2; half++) {
-                float *value = &d->level->estimate[half][c][at], lowest = -0.75F * fabsf(*value);
-                *value += share * d->out[at][c] > lowest ? share * d->out[at][c] : lowest;
-            }
-        }
-    }
-}
-
 /* --- the last step --- */
 
 static float albedo_of(const struct denoise_pixel *pixel, int c) {
@@ -909,7 +721,8 @@ static bool denoise_all(struct denoise_run *d, struct error *error) {
     if (!make_plane(d->level, &d->evidence) || !make_plane(d->level, &d->agreement))
         return no_memory(error);
     for (; d->pass < RESIDUAL_PASSES; d->pass++)
-        if (!run(d, source->height, find_residuals, error) || !run(d, source->height, add_residuals, error))
+        if (!run(d, source->height, denoise_find_residuals, error) ||
+            !run(d, source->height, denoise_add_residuals, error))
             return false;
     return run(d, (source->height + ROWS - 1) / ROWS, finish_rows, error);
 }
