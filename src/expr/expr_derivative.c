@@ -169,6 +169,7 @@ static void partials(enum expr_operation operation, double a, double b, double c
     }
 }
 
+_Static_assert(EXPR_VALUES * sizeof(struct dual) == EXPR_GRADIENT_LIMIT, "one for each constant and row");
 size_t expr_gradient_size(const struct expr_program *program) {
     return ((size_t)program->constant_count + program->row_count) * sizeof(struct dual);
 }

@@ -11,7 +11,8 @@ enum { EXPR_DIRECTIONS = 3 };
 /* seeds[input][direction]: the derivative of an input along a direction. These are the directions x, y and z of p. */
 extern const double expr_gradient_seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS];
 
-/* The size in bytes of the memory that expr_evaluate_gradient needs. */
+/* The size in bytes of the memory that expr_evaluate_gradient needs; at most EXPR_GRADIENT_LIMIT. */
+enum { EXPR_GRADIENT_LIMIT = EXPR_VALUES * (int)(sizeof(union expr_value) + EXPR_DIRECTIONS * sizeof(double)) };
 size_t expr_gradient_size(const struct expr_program *program);
 /* The outputs at one point, with the bits of expr_evaluate, and their derivatives in three directions. At edges and
  * jumps it is the derivative of one side, for selections that of the selected side. It is NaN or infinite where the

@@ -163,25 +163,29 @@ struct candidate {
     uint64_t key;
 };
 
-enum { CANDIDATE_CELLS = 16 };
+enum { CANDIDATE_CELLS = 16, FEW_CELLS = 4 };
 struct candidates {
-    uint32_t begin, end; /* of the cells */
+    const struct bsdf_branch *branches;
+    int branch_count;
+    struct sample_set facets;   /* one in each cell */
+    uint32_t cells, begin, end; /* all, and those of a batch */
     int count;
     double weight;         /* the sum */
-    struct candidate *all; /* room for one of each cell and branch */
+    struct candidate *all; /* room for one of each cell of a batch and branch */
 };
 
 /* The facets in these cells of the square, for all rough branches. Where the mean share of a branch is known, its
  * candidates divide that in proportion to their weights, and their mean has no noise. */
-static void find_candidates(const struct surface_point *at, const struct bsdf_branch *branches, int count,
-                            const struct sample_set *facets, struct candidates *out) {
+static void find_candidates(const struct surface_point *at, struct candidates *out) {
+    const struct bsdf_branch *branches = out->branches;
+    const struct sample_set *facets = &out->facets;
     const double cells = out->end - out->begin, part = 1 / ((double)facets->side * (double)facets->side);
     double sums[BSDF_LOBES] = {0};
     out->count = 0;
     out->weight = 0;
     for (uint32_t cell = out->begin; cell < out->end; cell++) {
         const struct bsdf_draw position = {.u = sample_set_point(facets, cell)};
-        for (int i = 0; i < count; i++) {
+        for (int i = 0; i < out->branch_count; i++) {
             struct candidate *found = &out->all[out->count];
             if (!branches[i].rough ||
                 !bsdf_branch_sample(at->bsdf, &branches[i], at->hit->view, &position, &found->towards))
@@ -228,6 +232,39 @@ static struct colour follow_candidates(struct integrator_state *state, const str
     return colour_scale(sum, 1.0 / rays);
 }
 
+/* In batches of cells, each with its share of the rays. */
+static struct colour follow_batches(struct integrator_state *state, const struct surface_point *at,
+                                    struct candidates *candidates, double rays, const struct path *path) {
+    const uint32_t cells = candidates->cells, batch = cells < CANDIDATE_CELLS ? cells : CANDIDATE_CELLS;
+    struct colour sum = {0, 0, 0};
+    while (candidates->end < cells) {
+        candidates->begin = candidates->end;
+        candidates->end = cells - candidates->begin < batch ? cells : candidates->begin + batch;
+        find_candidates(at, candidates);
+        double here = math_max(1, floor(rays * (candidates->end - candidates->begin) / cells));
+        sum = colour_add(sum, follow_candidates(state, at, candidates, (uint32_t)here, path));
+    }
+    return sum;
+}
+
+/* Deep paths have few cells. Their memory is not in one frame with that for many, so their stack stays small. */
+static __attribute__((noinline)) struct colour follow_few(struct integrator_state *state,
+                                                          const struct surface_point *at, struct candidates *candidates,
+                                                          double rays, const struct path *path) {
+    struct candidate found[FEW_CELLS * BSDF_LOBES];
+    candidates->all = found;
+    return follow_batches(state, at, candidates, rays, path);
+}
+
+static __attribute__((noinline)) struct colour follow_many(struct integrator_state *state,
+                                                           const struct surface_point *at,
+                                                           struct candidates *candidates, double rays,
+                                                           const struct path *path) {
+    struct candidate found[CANDIDATE_CELLS * BSDF_LOBES];
+    candidates->all = found;
+    return follow_batches(state, at, candidates, rays, path);
+}
+
 /* The share of light in the rough branches. */
 static double rough_share(const struct bsdf_branch *branches, int count) {
     double share = 0;
@@ -251,24 +288,16 @@ static struct colour follow_layers(struct integrator_state *state, const struct 
     const bool is_coarse = path->rough || state->job->settings.coarse;
     const double chance = is_coarse ? math_min(4 * share, 1) : 1;
     const double rays = is_coarse ? 1 : math_min(all, math_max(1, ceil(2 * all * share / state->sampler.side)));
-    const uint32_t n = (uint32_t)math_max(2, ceil(sqrt(rays))), cells = n * n;
+    const uint32_t n = (uint32_t)math_max(2, ceil(sqrt(rays)));
     uint64_t key = sampler_branch(path->key, SAMPLER_ROUGH);
-    struct sample_set facets = sampler_facets(&state->sampler, path->key, key, n);
-    struct colour sum = {0, 0, 0};
+    struct candidates candidates = {.branches = branches,
+                                    .branch_count = count,
+                                    .facets = sampler_facets(&state->sampler, path->key, key, n),
+                                    .cells = n * n};
     if (chance < 1 && random_unit(random_mix(key)) >= chance)
-        return sum;
-    /* In batches of cells, each with its share of the rays. Deep paths have few cells, so their stack stays small. */
+        return (struct colour){0, 0, 0};
     OBSERVE(state->observer, OBSERVED_SPLIT, .part = 1 / rays);
-    const uint32_t batch = cells < CANDIDATE_CELLS ? cells : CANDIDATE_CELLS;
-    struct candidate found[batch * (uint32_t)count];
-    struct candidates candidates = {.all = found};
-    while (candidates.end < cells) {
-        candidates.begin = candidates.end;
-        candidates.end = cells - candidates.begin < batch ? cells : candidates.begin + batch;
-        find_candidates(at, branches, count, &facets, &candidates);
-        double here = math_max(1, floor(rays * (candidates.end - candidates.begin) / cells));
-        sum = colour_add(sum, follow_candidates(state, at, &candidates, (uint32_t)here, path));
-    }
+    struct colour sum = (n * n <= FEW_CELLS ? follow_few : follow_many)(state, at, &candidates, rays, path);
     return colour_scale(sum, 1 / chance);
 }
 

@@ -42,22 +42,22 @@ bool implicit_contains(const struct implicit *solid, struct vec3 point) {
 
 /* The function at a point, and its gradient. program: one of the solid's. */
 static double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
-    unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
+    _Alignas(IMPLICIT_ALIGNMENT) unsigned char memory[EXPR_GRADIENT_LIMIT];
     double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
     inputs[EXPR_POINT_X] = point.x;
     inputs[EXPR_POINT_Y] = point.y;
     inputs[EXPR_POINT_Z] = point.z;
-    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, implicit_aligned(memory));
+    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, memory);
     *gradient = vec3_make(gradients[0][0], gradients[0][1], gradients[0][2]);
     return outputs[0];
 }
 
-/* The same from the values at the corners of a small tetrahedron. */
+/* The same from the values at the corners of a small tetrahedron. The program takes at most IMPLICIT_STACK. */
 static double implicit_difference(const struct implicit *solid, const struct expr_program *program, struct vec3 point,
                                   struct vec3 *gradient) {
     enum { CORNERS = 4 };
     static const double signs[3][CORNERS] = {{1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
-    unsigned char memory[expr_batch_size(program) + IMPLICIT_ALIGNMENT];
+    _Alignas(IMPLICIT_ALIGNMENT) unsigned char memory[IMPLICIT_STACK];
     double points[3][CORNERS], values[CORNERS], *const outputs[EXPR_OUTPUTS] = {values};
     const double *const inputs[EXPR_INPUT_COUNT] = {
         [EXPR_POINT_X] = points[0], [EXPR_POINT_Y] = points[1], [EXPR_POINT_Z] = points[2]};
@@ -65,7 +65,7 @@ static double implicit_difference(const struct implicit *solid, const struct exp
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < CORNERS; i++)
             points[k][i] = vec3_get(point, k) + signs[k][i] * step;
-    expr_evaluate_batch(program, CORNERS, inputs, outputs, implicit_aligned(memory));
+    expr_evaluate_batch(program, CORNERS, inputs, outputs, memory);
     double sums[3] = {0, 0, 0};
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < CORNERS; i++)
@@ -180,8 +180,9 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
         const struct expr_program *program =
             &solid->programs[crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0];
         struct vec3 point = ray_at(ray, crossing->t), gradient;
-        double off = is_preview ? implicit_difference(solid, program, point, &gradient)
-                                : implicit_gradient(program, point, &gradient);
+        double off = is_preview && expr_batch_size(program) <= IMPLICIT_STACK
+                         ? implicit_difference(solid, program, point, &gradient)
+                         : implicit_gradient(program, point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
         double error = solid->size * 2 * implicit_accuracy(solid);
         if (square > 0 && (fabs(off) < room * sqrt(square) || is_preview)) {

@@ -153,12 +153,14 @@ static void *borrow_memory(struct search *search, size_t size) {
 }
 
 /* Bounds of the function and of its slope over each of the eight parts, or over all of them in each case of its
- * discontinuities. False: the scratch is too small. */
-static bool bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
-                          bool are_cases, struct expr_lane_range *out) {
+ * discontinuities. False: the scratch is too small. Its frame is large: no function that calls itself may contain it.
+ */
+static __attribute__((noinline)) bool bound_eighths(struct search *search, const struct expr_program *program,
+                                                    const double ends[EXPR_LANES + 1], bool are_cases,
+                                                    struct expr_lane_range *out) {
     const size_t size = expr_lanes_size(program);
-    unsigned char memory[size <= IMPLICIT_STACK ? size + IMPLICIT_ALIGNMENT : 1];
-    void *rows = size <= IMPLICIT_STACK ? implicit_aligned(memory) : borrow_memory(search, size);
+    _Alignas(IMPLICIT_ALIGNMENT) unsigned char memory[IMPLICIT_STACK];
+    void *rows = size <= IMPLICIT_STACK ? memory : borrow_memory(search, size);
     struct expr_lane_inputs inputs;
     struct expr_lane_range outputs[EXPR_OUTPUTS];
     struct expr_directions directions;
@@ -792,7 +794,7 @@ bool implicit_takes_packets(const struct implicit *solid, const struct geom_scra
 
 uint64_t implicit_nearest_packet(const struct implicit *solid, const struct ray *rays, uint64_t active,
                                  struct geom_scratch *scratch, struct crossing *out) {
-    unsigned char memory[expr_batch_size(solid->programs) + IMPLICIT_ALIGNMENT];
+    _Alignas(IMPLICIT_ALIGNMENT) unsigned char memory[IMPLICIT_STACK];
     struct lane lanes[EXPR_BATCH], *alive[EXPR_BATCH];
     double points[3][EXPR_BATCH], values[EXPR_BATCH];
     const struct vec3 edges = vec3_sub(solid->in.bounds.max, solid->in.bounds.min);
@@ -837,7 +839,7 @@ uint64_t implicit_nearest_packet(const struct implicit *solid, const struct ray 
         }
         count = kept;
         if (count > 0)
-            evaluate_lanes(alive, count, points, values, implicit_aligned(memory));
+            evaluate_lanes(alive, count, points, values, memory);
         for (uint32_t i = 0; i < count; i++)
             lane_take(alive[i], values[i]);
     }
