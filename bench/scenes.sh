@@ -1,6 +1,7 @@
 #!/bin/sh
 # Complete pictures compared with POV-Ray on the paired scenes of bench/pov: only rendering, without reading and building,
-# one thread each (THREADS), both with adaptive anti-aliasing and 9 samples for a marked pixel, both without rays that
+# one thread each (THREADS), both with adaptive anti-aliasing that marks pixels by colours and takes 9 samples on a grid
+# (gray's --aa-pattern grid; PATTERN=rotated is gray's default, which marks more), both without rays that
 # change a pixel by less than 1/255 (POV-Ray's adc_bailout, --cutoff); runs interleaved, medians of RUNS (default 3).
 # User is the processor time that each program reports for its trace, wall is elapsed time; memory is the peak of
 # each process. ksmp is thousands of samples. Pictures go to OUT (default build/bench), side by side in OUT/scenes.html.
@@ -10,6 +11,7 @@ here=$(pwd)
 gray=${GRAY:-$here/gray}
 runs=${RUNS:-3}
 threads=${THREADS:-1}
+pattern=${PATTERN:-grid}
 models=$(cd "${MODELS:-../shared/models}" 2>/dev/null && pwd)
 out=${OUT:-$here/build/bench}
 command -v povray >/dev/null 2>&1 || { echo "povray is not installed: left out"; exit 0; }
@@ -39,7 +41,7 @@ pov_once() {
 gray_once() {
     scene=$1
     shift
-    measured "$gray" -q -j "$threads" --stats=json --cutoff 0.0039 -o "$out/$scene-gray.png" "$@" "$here/bench/pov/$scene.lua" 2>"$scene-gray.log" >"$scene.json"
+    measured "$gray" -q -j "$threads" --stats=json --cutoff 0.0039 --aa-pattern "$pattern" -o "$out/$scene-gray.png" "$@" "$here/bench/pov/$scene.lua" 2>"$scene-gray.log" >"$scene.json"
     [ -s "$scene.json" ] || { cat "$scene-gray.log"; return 1; }
     awk 'function figure(key) { return substr($0, index($0, "\"" key "\":") + length(key) + 3) + 0 }
          { printf "%s %s %s ", figure("render_processor_seconds"), figure("render_seconds"), figure("samples") }' \
