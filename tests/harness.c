@@ -9,6 +9,7 @@
 #include "tests/harness.h"
 
 #include "base/fault.h"
+#include "formats/json_text.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -159,6 +160,17 @@ void test_need_tools(const char *names) {
     free(copy);
 }
 
+void test_need_json(void) {
+    if (strcmp(json_text_library(), "none") == 0)
+        test_lacks("gray was built without jansson");
+}
+
+void test_need_exr(void) {
+#ifndef HAVE_EXR
+    test_lacks("gray was built without OpenEXR");
+#endif
+}
+
 /* A program that is built where its library is installed: gray-mpi, gray-gui. */
 static void need_program_beside(const char *suffix, const char *library) {
     char path[4200];
@@ -173,10 +185,14 @@ void test_need_mpi(void) {
     test_need_tools("mpirun");
 }
 
+void test_need_gui(void) {
+    need_program_beside("-gui", "GTK 4");
+}
+
 /* The temporary folder of the test is its home; the address of a bus and other environment of a desktop are gone. */
 void test_need_window(void) {
     char home[4200];
-    need_program_beside("-gui", "GTK 4");
+    test_need_gui();
     test_need_tools("Xvfb xvfb-run xdotool openbox");
     (void)snprintf(home, sizeof home, "%s", test_folder());
     static const char *const names[] = {"HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME",

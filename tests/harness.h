@@ -57,6 +57,11 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
 _Noreturn void test_lacks(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The test needs these programs (names with blanks between them) on PATH. */
 void test_need_tools(const char *names);
+/* The test needs a program that was built with jansson, or with OpenEXR. */
+void test_need_json(void);
+void test_need_exr(void);
+/* The test needs gray-gui beside the program. */
+void test_need_gui(void);
 /* The test needs gray-mpi beside the program, and mpirun. */
 void test_need_mpi(void);
 

@@ -221,8 +221,7 @@ bool file_version_of(const char *path, const struct file_version *known, struct 
     bool ok = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
     if (ok) {
         *out = version_of(&status);
-        bool same = known && known->size == out->size && known->seconds == out->seconds &&
-                    known->nanoseconds == out->nanoseconds;
+        bool same = known && is_same_version(known, out);
         out->content = same ? known->content : (struct digest){0};
         ok = same || digest_of(descriptor, &out->content);
     }

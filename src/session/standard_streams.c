@@ -48,11 +48,16 @@ static bool write_piece(struct standard_stream *stream, const char *text, size_t
     return false;
 }
 
-/* All of it, or an error: fopencookie has no short writes. */
+/* All of it, or an error: fopencookie has no short writes. glibc takes 0 for an error, musl only a negative number. */
 static ssize_t write_all(void *cookie, const char *text, size_t size) {
+#ifdef __GLIBC__
+    const ssize_t failed = 0;
+#else
+    const ssize_t failed = -1;
+#endif
     for (size_t at = 0, done = 0; at < size; at += done) {
         if (!write_piece(cookie, text + at, size - at, &done))
-            return 0;
+            return failed;
     }
     return (ssize_t)size;
 }

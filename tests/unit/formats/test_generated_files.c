@@ -25,6 +25,7 @@ static struct test_result run(const char *name) {
 }
 
 TEST(pictures_of_extensions_are_their_factors_at_each_point) {
+    test_need_json();
     struct test_result result = run("layer_maps");
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err, "");
@@ -33,6 +34,8 @@ TEST(pictures_of_extensions_are_their_factors_at_each_point) {
 
 /* The lines of the generator and the warnings of gray are in the order of the files. */
 TEST(small_files_of_every_kind_have_their_triangles_their_colours_and_one_warning_each) {
+    test_need_json();
+    test_need_exr();
     struct test_result result = run("generated_files");
     CHECK_EQ_INT(result.status, 0);
     char *out = result.out, *err = result.err, *due, *warning = NULL;

@@ -21,6 +21,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -184,7 +185,12 @@ TEST(hostile_no_script_takes_more_than_its_memory_and_a_tenth) {
     test_free_result(&plain);
     long without = test_children_used().kibibytes;
     CHECK(run_scripts("memory_") >= 15);
-    if (!test_has_sanitizer() && test_children_used().kibibytes - without > memory_limit * 11 / 10)
+#ifdef __GLIBC__
+    const long most = memory_limit * 11 / 10;
+#else
+    const long most = memory_limit * 12 / 10; /* the allocator of musl keeps more */
+#endif
+    if (!test_has_sanitizer() && test_children_used().kibibytes - without > most)
         test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script",
                   test_children_used().kibibytes - without, without);
     free(path);
@@ -261,7 +267,9 @@ TEST(hostile_a_confined_process_is_ended_for_programs_sockets_forks_traces_and_s
     CHECK_EQ_INT(end_of(try_socket), SIGSYS);
     CHECK_EQ_INT(end_of(try_trace), SIGSYS);
     CHECK_EQ_INT(end_of(try_signal), SIGSYS);
-    CHECK(end_of(try_fork) == -1); /* refused with an error: threads need clone */
+    /* Refused with an error, because threads need clone; musl calls fork itself. */
+    int forked = end_of(try_fork);
+    CHECK(forked == -1 || forked == SIGSYS);
 }
 
 static void *add_one(void *number) {
@@ -282,7 +290,7 @@ TEST(hostile_a_confined_process_reads_its_folders_only_writes_nothing_and_still_
         ok = ok && unlink("tests/hostile/time_loop.lua") < 0 && mkdir("tests/hostile/harm", 0777) < 0;
         ok = ok &&
              mmap(NULL, 4096, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED;
-        ok = ok && fork() < 0;
+        ok = ok && syscall(SYS_clone, SIGCHLD, NULL, NULL, NULL, 0) < 0;
         pthread_t thread;
         int number = 0;
         ok = ok && pthread_create(&thread, NULL, add_one, &number) == 0 && pthread_join(thread, NULL) == 0 &&

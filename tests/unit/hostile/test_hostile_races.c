@@ -8,6 +8,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/fs.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,7 +80,7 @@ static void change(const struct race *race, unsigned flags) {
             continue;
         (void)snprintf(from, sizeof from, "%s/%s", in, a);
         (void)snprintf(to, sizeof to, "%s/%s", in, b);
-        (void)renameat2(AT_FDCWD, from, AT_FDCWD, to, flags);
+        (void)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, flags);
     }
     free(copy);
 }

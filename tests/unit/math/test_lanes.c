@@ -52,14 +52,14 @@ static double odd_number(struct test_random *random) {
         EACH_LANE(type, element, count, type##_max(va, vb), x > y ? x : y)                                             \
         EACH_LANE(type, element, count, type##_size(va), fabs(x))                                                      \
         EACH_LANE(type, element, count, type##_sign(va), copysign(0, x))                                               \
-        EACH_LANE(type, element, count, type##_flip(va, type##_sign(vb)), signbit(y) ? -x : x)                         \
+        EACH_LANE(type, element, count, type##_flip(va, type##_sign(vb)), copysign(1, (double)y) < 0 ? -x : x)         \
         EACH_LANE(type, element, count, type##_all(a[0]), a[0])                                                        \
         const unsigned less = (unsigned)type##_bits(type##_less(va, vb));                                              \
         const unsigned less_equal = (unsigned)type##_bits(type##_less_equal(va, vb));                                  \
         const unsigned negative = (unsigned)type##_negative(va);                                                       \
         EACH_BIT(count, less, x < y)                                                                                   \
         EACH_BIT(count, less_equal, x <= y)                                                                            \
-        EACH_BIT(count, negative, signbit(x))                                                                          \
+        EACH_BIT(count, negative, copysign(1, (double)x) < 0)                                                          \
         CHECK(((less | less_equal | negative) >> (count)) == 0);                                                       \
     }
 TEST_TYPE(float4, float, 4)

@@ -58,17 +58,17 @@ TEST(an_animation_that_ends_at_any_of_ten_moments_goes_on_to_the_bytes_of_one_ru
 TEST(an_interrupted_picture_leaves_a_partial_one_beside_the_old_one_and_a_finished_run_removes_it) {
     put_scene("picture('out.png')\n");
     test_shell_errors(
-        "printf 'PF\\n1 old' >out.exr; for m in " MOMENTS " 2 3 5 8; do " ENDED(
-            "-full -ss 6 -o out.exr", "$m",
+        "printf 'PF\\n1 old' >out.pfm; for m in " MOMENTS " 2 3 5 8; do " ENDED(
+            "-full -ss 6 -o out.pfm", "$m",
             "INT") "test -e out.partial.png && break; done; "
-                   "cat said.txt >&2; grep -q old out.exr || exit 1; test -e out.exr.checkpoint && exit 2; exit $s",
+                   "cat said.txt >&2; grep -q old out.pfm || exit 1; test -e out.pfm.checkpoint && exit 2; exit $s",
         130, "tiles (--checkpoint auto keeps them for --resume)");
     struct test_picture picture = test_read_picture(test_path("out.partial.png"));
     CHECK_EQ_INT(picture.width, 330);
     free(picture.rgb);
-    test_shell_errors("$gray scene.lua -q -o out.exr; ls | grep partial", 1, NULL);
+    test_shell_errors("$gray scene.lua -q -o out.pfm; ls | grep partial", 1, NULL);
     /* Nothing is left on request, and of a picture without a name. */
-    test_shell_errors("rm out.exr; for m in .1 .3 .6 1.2; do " ENDED("-full -ss 6 --partial=no", "$m", "INT")
+    test_shell_errors("rm out.pfm; for m in .1 .3 .6 1.2; do " ENDED("-full -ss 6 --partial=no", "$m", "INT")
                           ENDED("-full -ss 6 -o - >piped", "$m", "TERM") "done; ls | grep 'checkpoint\\|partial'",
                       1, NULL);
 }

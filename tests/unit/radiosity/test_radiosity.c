@@ -405,6 +405,11 @@ TEST(bake_writes_a_file_beside_the_picture) {
     result = test_gray_scene("local b = gr.mesh('b', 'b.ply')\nprint(b ~= nil)\n", "-q scene.lua", NULL);
     CHECK_TEXT(result.out, "true\n");
     test_free_result(&result);
+    result = test_gray_scene(scene, "--bake b.stl scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 2);
+    CHECK(strstr(result.err, "gray: --bake b.stl: the name must end in .ply or .glb"));
+    test_free_result(&result);
+    test_need_json();
     result = test_gray_scene(scene, "-q --integrator radiosity --bake b.glb scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     test_free_result(&result);
@@ -418,10 +423,6 @@ TEST(bake_writes_a_file_beside_the_picture) {
         CHECK_NEAR((double)baked.rgb[3 * 40 + k], (double)seen.rgb[3 * 40 + k], 2);
     free(baked.rgb);
     free(seen.rgb);
-    result = test_gray_scene(scene, "--bake b.stl scene.lua", NULL);
-    CHECK_EQ_INT(result.status, 2);
-    CHECK(strstr(result.err, "gray: --bake b.stl: the name must end in .ply or .glb"));
-    test_free_result(&result);
 }
 
 /* --- patches --- */

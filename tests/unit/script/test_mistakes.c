@@ -169,6 +169,14 @@ TEST(what_foreign_words_lead_to_exists) {
     arena_destroy(&arena);
 }
 
+/* A case that fails; not because of a library that this build lacks. */
+static void check_line(const char *line) {
+    char text[2000];
+    (void)snprintf(text, sizeof text, "%.*s", (int)strcspn(line, "\n"), line);
+    if (!strstr(text, "this build cannot read"))
+        test_fail(__FILE__, __LINE__, "%s", text);
+}
+
 /* The larger table: each line before the last one is a case that fails. */
 TEST(the_mistakes_beside_the_checkout_are_answered) {
     char script[4096], command[4200];
@@ -178,6 +186,6 @@ TEST(the_mistakes_beside_the_checkout_are_answered) {
     test_shell(command, 0, " of ");
     char *output = test_read_file(test_path("out.txt"), NULL), *line = output;
     for (; line && strncmp(line, "FAIL ", 5) == 0; line = strchr(line, '\n') + 1)
-        test_fail(__FILE__, __LINE__, "%.*s", (int)strcspn(line, "\n"), line);
+        check_line(line);
     free(output);
 }

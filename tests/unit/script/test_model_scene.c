@@ -33,6 +33,7 @@ static void write_gltf(const char *name, const char *nodes) {
 #define LIGHT_NODE "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}"
 
 TEST(a_model_is_a_picture_of_its_name_whatever_its_kind) {
+    test_need_json();
     test_write_text(test_path("o.obj"), TRIANGLE);
     test_write_text(
         test_path("p.PLY"),
@@ -107,6 +108,7 @@ TEST(a_name_that_is_taken_becomes_one_of_a_render) {
 }
 
 TEST(a_model_of_the_command_line_has_its_own_camera_and_lights) {
+    test_need_json();
     write_gltf("g.gltf", LIGHT_NODE);
     /* Whatever the light of the lights is, the model scene has the exposure and the background from it. */
     test_write_text(
@@ -131,6 +133,7 @@ TEST(a_model_of_the_command_line_has_its_own_camera_and_lights) {
 
 /* A triangle that rises by 4 within a second, and sinks within another. */
 TEST(the_fitted_camera_of_an_animated_model_does_not_move) {
+    test_need_json();
     test_write_text(
         test_path("up.gltf"),
         "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
@@ -151,6 +154,7 @@ TEST(the_fitted_camera_of_an_animated_model_does_not_move) {
 }
 
 TEST(check_lists_what_a_model_has) {
+    test_need_json();
     write_gltf("g.gltf", LIGHT_NODE);
     test_shell("$gray --check g.gltf", 0,
                "g.gltf: cameras: 'Near', 'Flat'\ng.gltf: lights: 'Sun'\ng.gltf: materials: 'Paint'\n"
@@ -158,6 +162,7 @@ TEST(check_lists_what_a_model_has) {
 }
 
 TEST(a_camera_that_is_not_there_is_wrong_usage_and_names_those_that_are) {
+    test_need_json();
     write_gltf("g.gltf", LIGHT_NODE);
     test_write_text(test_path("o.obj"), TRIANGLE);
     test_write_text(test_path("a.lua"), "gr.render{node = gr.sphere{}}");
@@ -169,6 +174,7 @@ TEST(a_camera_that_is_not_there_is_wrong_usage_and_names_those_that_are) {
 }
 
 TEST(cameras_and_lights_that_nothing_uses_are_one_notice) {
+    test_need_json();
     write_gltf("g.gltf", LIGHT_NODE);
     const char *says =
         "a.lua: g.gltf has 2 cameras and 1 light that nothing uses: the field cameras and the field lights of "
@@ -191,6 +197,7 @@ TEST(a_file_without_a_model_is_one_line_and_status_1) {
 }
 
 TEST(a_model_whose_nodes_are_nested_too_deeply_has_a_message_that_says_so) {
+    test_need_json();
     write_gltf("g.gltf", LIGHT_NODE);
     test_shell(
         "awk '{ for (i = 4; i < 2100; i++) s = s \",{\\\"children\\\":[\" i + 1 \"],\\\"mesh\\\":0}\"; "
@@ -214,6 +221,7 @@ TEST(a_sky_of_the_command_line_lights_models_and_scripts) {
 }
 
 TEST(every_ending_that_gray_writes_is_written_and_others_are_wrong_usage_that_lists_them) {
+    test_need_exr();
     static const char *const pictures[] = {PICTURE_FORMATS(LIST_WORD)};
     static const char *const others[] = {"part.step", "x.bmp",     "x.txt",     "x%d.jpg",
                                          "x##.tif",   "dir/x.svg", "x.png.bmp", "x."};

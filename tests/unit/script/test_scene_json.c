@@ -1,23 +1,17 @@
 /* Scenes in JSON (docs/json.md): read as written by hand, and written by gray with the bytes of their scripts. */
 #include "tests/harness.h"
 
-#include "formats/json_text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static void need_json(void) {
-    if (strcmp(json_text_library(), "none") == 0)
-        test_lacks("gray was built without jansson");
-}
-
 #define SPHERE "{\"type\": \"sphere\"}"
 #define NODES(nodes) "{\"gray\": 1, \"nodes\": [" nodes "]}"
 
 TEST(a_scene_in_json_is_the_picture_of_the_script_with_its_calls) {
-    need_json();
+    test_need_json();
     test_write_text(
         test_path("a.json"),
         "\xef\xbb\xbf{\"gray\": 1, \"define\": {\"red\": {\"type\": \"material\", \"kd\": [0.8, 0.2, 0.1]}},\n"
@@ -111,7 +105,7 @@ TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
                "\"code\": \"v0 = p.x; v1 = add v0 v2; result v1\"}}}"),
          "x.json: nodes[0].material.kd.code: gr.program: code: v1: this value is not known here, at 'v2'\n"},
     };
-    need_json();
+    test_need_json();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         test_write_text(test_path("x.json"), cases[i][0]);
         struct test_result result = test_gray(NULL, "-q --size 8x8 x.json");
@@ -122,7 +116,7 @@ TEST(a_mistake_in_json_is_one_line_with_its_position_and_a_suggestion) {
 }
 
 TEST(json_that_is_nested_without_end_or_too_large_is_refused) {
-    need_json();
+    test_need_json();
     test_write_text(
         test_path("make.sh"),
         "r() { printf \"$1%.0s\" $(seq $2); }\n"
@@ -165,7 +159,7 @@ static void compare(const char *scene, const char *options) {
 
 TEST(a_written_scene_is_the_same_picture_and_is_written_again_with_the_same_bytes) {
     static const char *const scenes[] = {"csg/chess", "functions/lamp", "functions/landscape", "light"};
-    need_json();
+    test_need_json();
     copy_demos();
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         char scene[64];
@@ -185,7 +179,7 @@ TEST(scenes_of_other_programs_and_empty_pictures_are_written_with_the_same_pictu
         "1, 3}, type = 'uint8', density = 'plain.raw'}}, eye = {0, 0, 4}, background = {1, 1, 1}, integrator = 'path'}",
         "gr.render{node = gr.sphere{}} gr.render(gr.sphere('b'), 'x.png', 9, 9, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
     };
-    need_json();
+    test_need_json();
     test_write_file(test_path("plain.raw"), "\1\2\3\4\5\6", 6);
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         test_write_text(test_path("s.lua"), scenes[i]);
@@ -196,7 +190,7 @@ TEST(scenes_of_other_programs_and_empty_pictures_are_written_with_the_same_pictu
 TEST_LONG(two_hundred_scenes_of_the_tests_are_written_with_the_same_picture) {
     char line[1024], *text;
     int count = 0;
-    need_json();
+    test_need_json();
     (void)snprintf(line, sizeof line, "mkdir '%s/trip' && tools/scene_round_trip.py '%s' '%s/trip' >'%s/list'",
                    test_folder(), test_program(), test_folder(), test_folder());
     CHECK_EQ_INT(system(line), 0);
@@ -206,7 +200,7 @@ TEST_LONG(two_hundred_scenes_of_the_tests_are_written_with_the_same_picture) {
 }
 
 TEST_LONG(every_demo_that_is_written_as_json_and_as_a_script_is_the_same_picture) {
-    need_json();
+    test_need_json();
     copy_demos();
     CHECK_EQ_INT(test_run_shell("find data -name '*.lua' ! -name 'make*' ! -name 'gallery*' | sort >list", ""), 0);
     char *list = test_read_file(test_path("list"), NULL), *at = list;
@@ -219,7 +213,7 @@ TEST_LONG(every_demo_that_is_written_as_json_and_as_a_script_is_the_same_picture
 }
 
 TEST(a_scene_in_json_has_the_same_bytes_in_parts_and_with_any_number_of_threads) {
-    need_json();
+    test_need_json();
     copy_demos();
     test_shell("$gray -q data/csg/chess.lua -o x.json && $gray -q --size 64x48 data/csg/chess.lua -o a.png && "
                "$gray -q -j 1 --size 64x48 x.json -o b.png && cmp a.png b.png && "
@@ -229,7 +223,7 @@ TEST(a_scene_in_json_has_the_same_bytes_in_parts_and_with_any_number_of_threads)
 }
 
 TEST(frames_of_an_animation_are_a_scene_each_and_other_pictures_need_a_number_in_the_name) {
-    need_json();
+    test_need_json();
     test_write_text(test_path("f.lua"),
                     "local wheel = gr.cube{}:spin('z', 90)\n"
                     "gr.frames{count = 3, fps = 2, shutter = {0, 0.5}, draw = function(t)\n"
@@ -245,7 +239,7 @@ TEST(frames_of_an_animation_are_a_scene_each_and_other_pictures_need_a_number_in
 }
 
 TEST(the_numbers_of_a_written_scene_are_the_shortest_that_are_read_as_the_same) {
-    need_json();
+    test_need_json();
     test_write_text(test_path("n.lua"), "gr.render{node = gr.sphere{centre = {0.1, 1/3, -0.0}, radius = 1e-20,\n"
                                         "  material = gr.material{kd = {0.1 + 0.2, 100, 1e25}}}, eye = {0, 0, 5}}\n");
     test_shell("$gray --to-json n.lua", 0,
@@ -255,7 +249,7 @@ TEST(the_numbers_of_a_written_scene_are_the_shortest_that_are_read_as_the_same) 
 }
 
 TEST(the_schema_accepts_what_gray_writes_and_refuses_other_fields) {
-    need_json();
+    test_need_json();
     if (system("python3 -c 'import jsonschema' 2>/dev/null") != 0)
         test_lacks("python3-jsonschema is not installed");
     copy_demos();
@@ -293,7 +287,7 @@ TEST(what_json_cannot_have_is_an_error_that_names_it_and_writes_nothing) {
         {"local n = gr.sphere{}:scale(1, 2, 1)\ngr.transform_order('old')\ngr.render{node = n:translate(1, 0, 0)}",
          "gr.transform_order changes within the scene, which cannot be written"},
     };
-    need_json();
+    test_need_json();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         test_write_text(test_path("s.lua"), cases[i][0]);
         test_shell_errors("$gray -q s.lua -o x.json", 1, cases[i][1]);
@@ -308,7 +302,7 @@ TEST(what_json_cannot_have_is_an_error_that_names_it_and_writes_nothing) {
 }
 
 TEST(a_scene_in_json_becomes_a_script_that_a_reader_can_follow) {
-    need_json();
+    test_need_json();
     test_write_text(
         test_path("a.json"),
         "{\"gray\": 1, \"define\": {\"m\": {\"type\": \"material\", \"kd\": [0.1, 0.2, 0.30000000000000004]},"
@@ -333,7 +327,7 @@ TEST(a_scene_in_json_becomes_a_script_that_a_reader_can_follow) {
 }
 
 TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
-    need_json();
+    test_need_json();
     test_write_text(
         test_path("many.lua"),
         "local s = gr.node('s')\n"
@@ -354,7 +348,7 @@ TEST(a_script_for_more_names_than_lua_has_locals_is_the_same_picture) {
 
 TEST(models_and_their_lights_are_written_as_json_and_scripts_with_the_same_picture) {
     char text[4096];
-    need_json();
+    test_need_json();
     (void)snprintf(
         text, sizeof text,
         "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":"

@@ -172,6 +172,7 @@ TEST(a_panorama_that_is_dragged_follows_the_mouse) {
 }
 
 TEST(a_view_in_a_window_is_refused_with_one_line) {
+    test_need_gui();
     make_field("depth = false");
     test_shell_errors("head -c 3000 x.lf >cut.lf; $gray view -gui x.lf -o a.png", 2, "-gui shows a view: no -o");
     static struct user user;
