@@ -18,7 +18,11 @@ bool cpu_select_isa(const char *name);
 /* Written by cpu_select_isa alone. */
 extern enum cpu_isa cpu_isa_chosen;
 static inline enum cpu_isa cpu_isa(void) {
+#ifdef GRAY_DEVICE
+    return CPU_ISA_BASE;
+#else
     return cpu_isa_chosen;
+#endif
 }
 
 /* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. Programs for other processors than

@@ -7,6 +7,7 @@
 
 #include "expr/expr_frames_internal.h"
 #include "math/exact.h"
+#include "math/portable.h"
 
 #include <float.h>
 
@@ -230,7 +231,7 @@ static struct expr_interval power(struct expr_interval a, struct expr_interval b
     if (!is_point(b) || fabs(b.low) > 0x1p53 || floor(b.low) != b.low)
         return anything;
     double n = b.low;
-    if (fmod(n, 2) == 0) {
+    if (math_fmod(n, 2) == 0) {
         struct expr_interval size = absolute(a);
         return n >= 0 || size.low > 0 ? power_of_positive(size, b)
                                       : (struct expr_interval){below(below(el_pow(size.high, n))), INFINITY, false};
