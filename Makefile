@@ -10,6 +10,7 @@
 #   fuzz-afl       the same with AFL++
 #   arm, test-arm  build/arm/gray for 64-bit ARM, from another machine; its pictures under qemu against the recorded ones
 #   musl, test-musl  build/musl/gray with the C library musl, linked statically; its pictures
+#   scan-device    compiles what a ray touches for graphics cards, without one, and checks its operations
 #   bench          the benchmarks                  install     into PREFIX, below DESTDIR
 #   clean          removes all that make has built  uninstall   removes what install has written there
 # Objects and programs lie in build/CONFIG. With BUILD=FOLDER they lie in FOLDER, and make writes nothing elsewhere.
@@ -298,6 +299,8 @@ musl:
 	    check-libraries $(call beside,musl)/gray
 test-arm test-musl: test-%:
 	@tools/test_target.sh $*
+scan-device:
+	@tools/device_scan.sh
 
 bench: all
 	@bench/run.sh
@@ -346,5 +349,5 @@ else
 endif
 
 force:
-.PHONY: arm musl test-arm test-musl all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
+.PHONY: arm musl test-arm test-musl scan-device all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)

@@ -138,6 +138,12 @@ int __wrap_posix_spawnp(pid_t *child, const char *name, const posix_spawn_file_a
     return __real_posix_spawnp(child, name, actions, attributes, words, environment);
 }
 
+unsigned test_slowness(void) {
+    const char *given = getenv("GRAY_TEST_SLOWNESS");
+    const int times = given ? atoi(given) : 1;
+    return times > 1 && times < 1000 ? (unsigned)times : 1;
+}
+
 static bool is_on_path(const char *name) {
     const char *path = getenv("PATH");
     char *folders = strdup(path ? path : ""), *rest = NULL, file[4096];
@@ -675,7 +681,7 @@ static _Noreturn void run_test(const struct runner *runner, const struct running
     fault_apart(); /* a failure that this test requests must not occur in another test */
     (void)dup2(slot->output, STDOUT_FILENO);
     (void)dup2(slot->output, STDERR_FILENO);
-    (void)alarm(LIMIT_SECONDS * (slot->test->kind == TEST_SLOW ? 12 : 1));
+    (void)alarm(LIMIT_SECONDS * test_slowness() * (slot->test->kind == TEST_SLOW ? 12 : 1));
     (void)snprintf(folder_path, sizeof folder_path, "%s/%.100s", above, slot->test->name);
     (void)setenv("TMPDIR", above, 1);
     if (runner->log)
@@ -1019,6 +1025,7 @@ static const char help[] =
     "  --help      prints this\n"
     "Environment: GRAY_TEST_BINARY=FILE is the program under test; GRAY_TEST_PROGRESS=S prints progress every S "
     "seconds;\n"
+    "GRAY_TEST_SLOWNESS=N multiplies time limits, for an emulator;\n"
     "GRAY_CI=1 makes a test fail that lacks what tools/setup.sh --tests installs.\n"
     "Status: 0 nothing failed, 1 a test failed, 2 wrong usage.\n";
 

@@ -55,6 +55,8 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
 /* Ends this test because something is missing that tools/setup.sh --tests installs: as skipped, but as failed when
  * GRAY_CI is set and not empty. The text is the whole reason: "ffmpeg is not installed". */
 _Noreturn void test_lacks(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The factor of time limits: GRAY_TEST_SLOWNESS, for an emulator or an old machine. */
+unsigned test_slowness(void);
 /* The test needs these programs (names with blanks between them) on PATH. */
 void test_need_tools(const char *names);
 /* The test needs a program that was built with jansson, or with OpenEXR. */

@@ -502,7 +502,7 @@ void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct
 }
 
 bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
     if (traversal->isa != CPU_ISA_BASE)
         return box_tree_traversal_down_avx2(traversal, t_max, item);
 #endif
@@ -510,7 +510,7 @@ bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max,
 }
 
 bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
     if (traversal->isa != CPU_ISA_BASE)
         return box_tree_traversal_any_avx2(traversal, t_max, item);
 #endif

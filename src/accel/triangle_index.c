@@ -306,7 +306,7 @@ size_t triangle_index_memory(const struct triangle_index *index) {
            index->block_count * sizeof *index->blocks;
 }
 
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
 #define OF_EVERY_ISA(name)                                                                                             \
     { name##_base, name##_avx2, name##_avx512 }
 #else

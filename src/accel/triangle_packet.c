@@ -13,7 +13,7 @@ uint64_t triangle_packet_nearest(const struct triangle_index *index, const struc
     if (set->count == 0)
         return 0;
     if (__builtin_popcountll(active) >= FEWEST) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
         if (cpu_isa() == CPU_ISA_AVX512) {
             if (triangle_packet_nearest_avx512(index, set, rays, active, hits, &answer, cost))
                 return answer;
@@ -43,7 +43,7 @@ uint64_t triangle_packet_any(const struct triangle_index *index, const struct tr
     if (set->count == 0)
         return 0;
     if (__builtin_popcountll(active) >= FEWEST) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
         if (cpu_isa() == CPU_ISA_AVX512) {
             if (triangle_packet_any_avx512(index, set, rays, active, &answer, cost))
                 return answer;

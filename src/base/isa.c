@@ -6,7 +6,7 @@
 enum cpu_isa cpu_isa_chosen;
 
 static bool has_avx2(void) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
     __builtin_cpu_init();
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
@@ -15,7 +15,7 @@ static bool has_avx2(void) {
 }
 
 static bool has_avx512(void) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
     return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
 #else

@@ -12,22 +12,24 @@
     X(CPU_ISA_AVX512, "avx512")
 enum cpu_isa { CPU_ISAS(LIST_MEMBER) };
 
+/* Whether there are kernels for more than CPU_ISA_BASE: not for other processors than x86-64, nor for cards. */
+#if defined(__x86_64__) && !defined(GRAY_DEVICE)
+#define CPU_ISA_CHOICE 1
+#else
+#define CPU_ISA_CHOICE 0
+#endif
+
 /* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then).
  * Call before the first search and from one thread. */
 bool cpu_select_isa(const char *name);
 /* Written by cpu_select_isa alone. */
 extern enum cpu_isa cpu_isa_chosen;
 static inline enum cpu_isa cpu_isa(void) {
-#ifdef GRAY_DEVICE
-    return CPU_ISA_BASE;
-#else
-    return cpu_isa_chosen;
-#endif
+    return CPU_ISA_CHOICE ? cpu_isa_chosen : CPU_ISA_BASE;
 }
 
-/* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. Programs for other processors than
- * x86-64 have the first of them alone. */
-#if defined(__x86_64__)
+/* Calls the kernel of the instruction set: name_base, name_avx2 or name_avx512. */
+#if CPU_ISA_CHOICE
 #define CPU_ISA_CALL(name, ...)                                                                                        \
     switch (cpu_isa()) {                                                                                               \
     case CPU_ISA_BASE:                                                                                                 \

@@ -658,7 +658,7 @@ static bool denoise_features(struct denoise_run *d, struct error *error) {
 }
 
 static const struct denoise_kernels *choose_kernels(void) {
-#if defined(__x86_64__)
+#if CPU_ISA_CHOICE
     if (cpu_isa() == CPU_ISA_AVX512)
         return &denoise_kernels_avx512;
     if (cpu_isa() == CPU_ISA_AVX2)

@@ -297,7 +297,7 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         plane_extent(f->normal, g, lo, hi);
         return;
     case PLANAR_PARALLELOGRAM:
-        *lo += math_min(u, 0) + math_min(v, 0);
+        *lo += math_min(0, u) + math_min(0, v);
         *hi += math_max(u, 0) + math_max(v, 0);
         return;
     case PLANAR_DISC: {
@@ -307,7 +307,7 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         return;
     }
     case PLANAR_TRIANGLE:
-        *lo += math_min(math_min(u, v), 0);
+        *lo += math_min(0, math_min(u, v));
         *hi += math_max(math_max(u, v), 0);
         return;
     case PLANAR_POLYGON:

@@ -186,11 +186,11 @@ TEST(hostile_no_script_takes_more_than_its_memory_and_a_tenth) {
     long without = test_children_used().kibibytes;
     CHECK(run_scripts("memory_") >= 15);
 #ifdef __GLIBC__
-    const long most = memory_limit * 11 / 10;
+    const long limit = memory_limit * 11 / 10;
 #else
-    const long most = memory_limit * 12 / 10; /* the allocator of musl keeps more */
+    const long limit = memory_limit * 12 / 10; /* the allocator of musl keeps more */
 #endif
-    if (!test_has_sanitizer() && test_children_used().kibibytes - without > most)
+    if (!test_has_sanitizer() && test_children_used().kibibytes - without > limit)
         test_fail(__FILE__, __LINE__, "%ld KiB over the %ld of an empty script",
                   test_children_used().kibibytes - without, without);
     free(path);

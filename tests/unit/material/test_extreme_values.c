@@ -154,7 +154,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
     gallery->finite = true;
     gallery->clamped = false;
     *error = (struct error){0};
-    set_clock(3000);
+    set_clock(3000 * (int)test_slowness());
     bool done = script_run(path, &options, &host, &arena, &traceback, error);
     set_clock(0);
     arena_destroy(&arena);

@@ -1,0 +1,99 @@
+#!/bin/sh
+# Compiles the files of src/device/sources.list for a card, without one, and checks what the promise of equal bytes needs:
+#   tools/device_scan.sh calls    every file compiles for NVIDIA's cards; the functions named there reach nothing but the
+#                                 listed files, and each of these
+#   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to nearest, none is fused,
+#                                 approximate or flushes denormals, minima and maxima keep the sign of zero; frames
+# Needs clang and the tools of its LLVM (14 or newer); without them it says so, with status 0. Writes into build/device.
+cd "$(dirname "$0")/.." || exit 1
+out=${BUILD:-build}/device list=src/device/sources.list
+suffix=$(clang --version 2>/dev/null | sed -n 's/.*clang version \([0-9]*\).*/-\1/p')
+for tool in clang llvm-link$suffix llvm-nm$suffix opt$suffix llc$suffix; do
+    command -v "$tool" >/dev/null || { echo "device_scan.sh: nothing was checked: there is no $tool"; exit 0; }
+done
+mkdir -p "$out" || exit 1
+sources=$(sed -n 's/^\([a-z].*\.c\)$/src\/\1/p' "$list")
+roots=$(sed -n 's/^root //p' "$list" | tr '\n' ',' | sed 's/,$//')
+# The headers of the C library ask for the processor of the host.
+wanted=${1:-all}
+export wanted FLAGS="-std=gnu11 -ffp-contract=off -fno-fast-math -fno-math-errno -DNDEBUG -DGRAY_DEVICE -DGRAY_NO_SIMD -DGRAY_NO_JUMPS
+    -D__$(uname -m)__ -isystem /usr/include/$(uname -m)-linux-gnu -Isrc -Wno-everything"
+
+# For NVIDIA's cards only what is newer than what was made of it.
+echo "$sources" | OUT=$out xargs -P "$(nproc)" -n 1 sh -c '
+    object=$OUT/$(echo "$1" | tr / _).bc
+    [ "$wanted" = calls ] || clang --target=amdgcn-amd-amdhsa -nogpulib $FLAGS -fsyntax-only "$1" || exit 255
+    [ "$object" -nt "$1" ] && [ -z "$(find src -name "*.h" -newer "$object")" ] && exit 0
+    clang --target=nvptx64-nvidia-cuda -march=sm_70 -O2 -mllvm -inline-threshold=45 $FLAGS -emit-llvm -c "$1" -o "$object"
+' sh || { echo "device_scan.sh: a file does not compile for a card" >&2; exit 1; }
+
+objects=$(echo "$sources" | while read -r file; do echo "$out/$(echo "$file" | tr / _).bc"; done)
+cd "$out" || exit 1
+# shellcheck disable=SC2086
+llvm-link"$suffix" $(for object in $objects; do basename "$object"; done) -o all.bc &&
+    opt"$suffix" -internalize -internalize-public-api-list="$roots" -globaldce all.bc -o reached.bc || exit 1
+llvm-nm"$suffix" reached.bc >reached.txt
+bad=0
+for name in $(awk '$1 == "U" && $2 !~ /^llvm[.]/ { print $2 }' reached.txt); do
+    echo "device_scan.sh: $name is called, and in no file of $list" >&2
+    bad=1
+done
+for name in $(echo "$roots" | tr ',' ' '); do
+    grep -q " T $name\$" reached.txt || { echo "device_scan.sh: there is no function $name" >&2; bad=1; }
+done
+# A file gives a function or data that is reached.
+awk '$1 != "U" { print $NF }' reached.txt | sort -u >names.txt
+for object in $objects; do
+    object=$(basename "$object")
+    llvm-nm"$suffix" "$object" | awk '$2 ~ /^[A-Z]$/ { print $NF }' | sort -u | comm -12 - names.txt | grep -q . ||
+        { echo "device_scan.sh: nothing of $object is reached" >&2; bad=1; }
+done
+[ "$bad" = 0 ] || exit 1
+echo "$(echo "$objects" | wc -l) files, $(grep -c -i ' t ' reached.txt) functions"
+[ "$wanted" = calls ] && exit 0
+
+opt"$suffix" -O3 -inline-threshold=225 -vectorize-loops=false -vectorize-slp=false reached.bc -o fast.bc 2>opt.txt &&
+    llc"$suffix" -O3 -mcpu=sm_70 fast.bc -o kernels.ptx || exit 1
+# Frames of the functions that every ray passes; those of expressions are larger until they have another memory there.
+awk -v frame=8192 '
+function complain(what) {
+    print "device_scan.sh: kernels.ptx:" NR ": " what ": " $0 >"/dev/stderr"
+    bad = 1
+}
+/^[ \t]*\/\// { next }
+/[.]func|[.]entry/ {
+    name = $0
+    sub(/.*[.](func|entry)[ \t]*/, "", name)
+    sub(/^\([^)]*\)[ \t]*/, "", name)
+    sub(/[^A-Za-z0-9_$].*/, "", name)
+}
+/__local_depot[0-9]+\[/ {
+    size = $0
+    sub(/.*\[/, "", size)
+    sub(/\].*/, "", size)
+    if (size + 0 > frame && name ~ /^(path|world|triangle|box_tree|traverse|camera|light|bsdf)_/)
+        complain("a frame of " size " bytes in " name)
+}
+$1 ~ /[.]f(32|64)$/ || $1 ~ /^(fma|mad)[.]/ {
+    split($1, parts, ".")
+    operation = parts[1]
+    operations[operation]++
+    if ($1 ~ /[.](ftz|approx|full|sat)/)
+        complain("not exact")
+    else if (operation ~ /^(fma|mad)$/ && $1 !~ /[.](lo|hi|wide)[.]/)
+        complain("fused")
+    else if (operation ~ /^(add|sub|mul|div|rcp|sqrt)$/ && $1 !~ /[.]rn[.]f/)
+        complain("not rounded to nearest")
+    else if (operation ~ /^(sin|cos|ex2|lg2|rsqrt|tanh)$/)
+        complain("not a function of gray")
+    else if (operation == "min" && $0 ~ /0[df]0+;/ && name != "expr_run_slopes_base") # bounds: zeros are compared alone
+        complain("the sign of zero")
+    else if (operation ~ /^(min|max)$/ && $0 !~ /0[df][0-9A-F]+;/)
+        complain("the sign of zero or NaN")
+}
+END {
+    for (operation in operations)
+        text = text " " operation " " operations[operation]
+    print "operations:" text
+    exit bad
+}' kernels.ptx
