@@ -76,6 +76,8 @@ static double visible_share(struct integrator_state *state, const struct light *
     const struct world *world = state->job->world;
     struct light_context context;
     struct vec3 from = off_surface(hit);
+    if (light_is_point(light))
+        return target_is_free(state, hit, from, middle);
     if (!light_context_make(light, hit->point, from, &context))
         return 0;
     /* From here the lamp looks like a point. */

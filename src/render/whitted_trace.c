@@ -360,10 +360,12 @@ static struct colour incident_radiance(struct integrator_state *state, const str
     double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
 
     /* The medium along the ray. */
-    double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
-    struct medium_effect air;
+    double distance = INFINITY;
+    if ((met || area_light) && (ray->media || state->observer))
+        distance = end * vec3_length(ray->direction);
+    struct medium_effect air = {.transmittance = {1, 1, 1}};
     struct path dimmed;
-    bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
+    bool affected = ray->media && medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct colour left = air.transmittance;
     OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight, 0});
     if (affected) {

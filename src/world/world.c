@@ -126,7 +126,7 @@ struct search {
     const struct world *world;
     const struct ray *ray;
     struct world_scratch *scratch;
-    struct box_probe probe; /* SEARCH_NEAREST: not for the hierarchy, which has one of its own */
+    struct box_probe probe; /* not for the hierarchy, which has one of its own */
     bool found;
     uint32_t
         primitive; /* the primitive that was found; for SEARCH_ANY before that: one already tested, or WORLD_NOTHING */
@@ -195,11 +195,6 @@ static bool mailbox_first(struct mailbox *box, uint32_t index) {
     return true;
 }
 
-FOR_EACH_MODE void probe_begin(struct search *s, enum search_mode mode) {
-    if (mode == SEARCH_NEAREST)
-        s->probe = box_probe_make(s->ray);
-}
-
 FOR_EACH_MODE void mailbox_begin(struct mailbox *box, const struct search *s, enum search_mode mode) {
     memset(box, 0xff, sizeof *box);
     if (mode == SEARCH_ANY)
@@ -217,7 +212,7 @@ FOR_EACH_MODE bool try_list(struct search *s, const uint32_t *items, uint32_t co
 
 FOR_EACH_MODE void search_grid(struct search *s, enum search_mode mode) {
     struct mailbox mailbox;
-    probe_begin(s, mode);
+    s->probe = box_probe_make(s->ray);
     mailbox_begin(&mailbox, s, mode);
     struct grid_traversal traversal = {0};
     for (bool go_on = grid_traversal_begin(&traversal, &s->world->accel.grid, s->ray); go_on;
@@ -294,7 +289,7 @@ FOR_EACH_MODE void search_tree(struct search *s, enum search_mode mode) {
 /* Boxes are padded so that they contain the computed points of their primitives: no slack is needed. */
 FOR_EACH_MODE void search_kd_tree(struct search *s, enum search_mode mode) {
     struct mailbox mailbox;
-    probe_begin(s, mode);
+    s->probe = box_probe_make(s->ray);
     mailbox_begin(&mailbox, s, mode);
     struct kd_traversal traversal;
     kd_traversal_begin(&traversal, &s->world->accel.kd_tree, s->ray, 0);
@@ -308,7 +303,7 @@ FOR_EACH_MODE void search_kd_tree(struct search *s, enum search_mode mode) {
 
 /* The reference for the others: it has no state, so it does not store an occluder. */
 FOR_EACH_MODE void search_all(struct search *s, enum search_mode mode) {
-    probe_begin(s, mode);
+    s->probe = box_probe_make(s->ray);
     for (uint32_t i = 0; i < s->world->primitive_count; i++) {
         if (try_boxed(s, i, mode)) {
             s->primitive = WORLD_NOTHING;
@@ -385,11 +380,11 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     s.found = false;
     s.primitive = *blocker;
     /* Searching a group takes about as long as searching one member. */
-    bool in_group =
-        world->group.index && (*blocker >= world->primitive_count || mesh_group_run(&world->group, *blocker).count > 0);
-    if (!in_group)
+    bool known =
+        *blocker < world->primitive_count && !(world->group.index && mesh_group_run(&world->group, *blocker).count > 0);
+    if (known)
         s.probe = box_probe_make(ray);
-    if (in_group || !(*blocker < world->primitive_count && try_boxed(&s, *blocker, SEARCH_ANY)))
+    if (!known || !try_boxed(&s, *blocker, SEARCH_ANY))
         search_accel(&s, SEARCH_ANY);
     *blocker = s.found ? s.primitive : WORLD_NOTHING;
     return s.found;
