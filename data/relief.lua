@@ -4,7 +4,7 @@
 
 local folder = '../textures/'
 
-local function clay(kd) return gr.material(kd, { .18, .18, .18 }, 30) end
+local function clay(kd) return gr.openpbr_material { base_color = kd, specular_roughness = .45 } end
 local function bricks(tiles, height)
     return gr.bump { file = folder .. 'bricks_height.png', tiles = tiles, height = height }
 end
@@ -15,18 +15,18 @@ end
 local scene = gr.node('relief')
 
 -- a wall and a floor
-scene:add_child(gr.rectangle { corner = { -7, 0, -3.4 }, along = { 14, 0, 0 }, up = { 0, 7, 0 }, material = clay { .62, .34, .25 } }
-    :set_bump(bricks({ 6, 3 }, .09)))
-scene:add_child(gr.rectangle { corner = { -7, 0, 6 }, along = { 14, 0, 0 }, up = { 0, 0, -9.4 }, material = clay { .55, .50, .40 } }
-    :set_bump(weave({ 9, 6 }, .8)))
+scene:add_child(gr.rectangle { corner = { -9.33, 0, -3.4 }, along = { 18.67, 0, 0 }, up = { 0, 7, 0 }, material = clay { .42, .17, .10 } }
+    :set_bump(bricks({ 8, 3 }, .09)))
+scene:add_child(gr.rectangle { corner = { -9.33, 0, 6 }, along = { 18.67, 0, 0 }, up = { 0, 0, -9.4 }, material = clay { .30, .25, .18 } }
+    :set_bump(weave({ 12, 6 }, .8)))
 
 -- the same image on all shapes with texture coordinates
 local shapes = {
-    { gr.sphere {}, { 6, 3 }, { .75, .72, .66 } },
-    { gr.cylinder { from = { 0, -1, 0 }, to = { 0, 1, 0 }, radius = .8 }, { 4, 1 }, { .45, .58, .66 } },
-    { gr.torus { major = .8, minor = .35 }:rotate('x', 65), { 6, 2 }, { .70, .58, .30 } },
-    { gr.cube {}:translate(-.5, -.5, -.5):scale(1.5, 1.5, 1.5):rotate('y', 35), { 1, 1 }, { .50, .62, .42 } },
-    { gr.cone { from = { 0, 1, 0 }, to = { 0, -1, 0 }, radius = 1 }, { 4, 1 }, { .68, .45, .50 } },
+    { gr.sphere {}, { 6, 3 }, { .62, .58, .50 } },
+    { gr.cylinder { from = { 0, -1, 0 }, to = { 0, 1, 0 }, radius = .8 }, { 4, 1 }, { .16, .26, .33 } },
+    { gr.torus { major = .8, minor = .35 }:rotate('x', 65), { 6, 2 }, { .58, .36, .10 } },
+    { gr.cube {}:translate(-.5, -.5, -.5):scale(1.5, 1.5, 1.5):rotate('y', 35), { 1, 1 }, { .20, .27, .14 } },
+    { gr.cone { from = { 0, 1, 0 }, to = { 0, -1, 0 }, radius = 1 }, { 4, 1 }, { .40, .16, .15 } },
 }
 for k, entry in ipairs(shapes) do
     local place = gr.node('place')
@@ -39,18 +39,15 @@ for k, entry in ipairs(shapes) do
 end
 
 -- cards with leaves cut out of them
-local green = gr.material { kd = { .25, .50, .14 }, ks = { .1, .1, .1 }, shininess = 20, two_sided = true }
+local green = gr.material { kd = { .42, .16, .035 }, ks = { .1, .1, .1 }, shininess = 20, two_sided = true }
 local leaf = gr.image_material { material = green, image = folder .. 'leaves_mask.png', channel = 'opacity' }
 for k = 0, 6 do
-    scene:add_child(gr.rectangle { corner = { -.6, 0, .6 }, along = { 1.2, 0, 0 }, up = { 0, .35, -1.2 }, material = leaf }
-        :rotate('y', 52 * k):translate(-5.1 + 1.7 * k, .18 + .1 * (k % 3), 2.9 + .5 * (k % 2)))
+    scene:add_child(gr.rectangle { corner = { -.6, 0, .6 }, along = { 1.2, 0, 0 }, up = { 0, .22, -1.2 }, material = leaf }
+        :rotate('y', 52 * k):translate(-5.1 + 1.7 * k, .02 + .03 * (k % 3), 2.9 + .5 * (k % 2)))
 end
 
 gr.render {
-    node = scene, file = 'relief.png', width = 900, height = 500, eye = { 0, 3.3, 11 }, target = { 0, 1.15, 0 }, fov = 33,
-    ambient = { .22, .23, .26 }, lights = {
-        gr.area_light({ -8, 8, 5 }, { 2, 0, 0 }, { 0, 1, 1.5 }, { .85, .82, .76 }, { 1, 0, 0 }),
-        gr.light({ 9, 6, 8 }, { .20, .22, .28 }, { 1, 0, 0 }),
-    },
-    background = { .3, .34, .4 },
+    node = scene, file = 'relief.png', width = 800, height = 450, eye = { 0, 3.1, 11 }, target = { 0, 1.1, 0 }, fov = 33,
+    integrator = 'path', spp = 12, denoise = true, tone = 'filmic', exposure = 0.3, vignette = 0.2, background = { .10, .13, .19 },
+    lights = { gr.spherical_light { position = { -7, 6.5, 6.5 }, radius = 0.7, colour = { 1, .85, .64 }, emission = { 110, 110, 110 } } },
 }

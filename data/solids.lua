@@ -204,8 +204,8 @@ for r, row in ipairs(show) do
         place:translate(2.5 * k - 11.25, y, z - 0.15)
         scene:add_child(place)
         -- its name on the riser; every name is rendered once
-        words[entry[1]] = words[entry[1]] or gr.vn_mesh(ink, text.mesh(entry[1], {size = 0.38, depth = 0.05, align = 'centre', tolerance = 0.004}))
-        scene:add_child(gr.node {name = 'word', children = {words[entry[1]]}}:translate(2.5 * k - 11.25, y - 0.38, z + 1.24))
+        words[entry[1]] = words[entry[1]] or gr.vn_mesh(ink, text.mesh(entry[1], {size = 0.38, depth = 0.01, align = 'centre', tolerance = 0.004}))
+        scene:add_child(gr.node {name = 'word', children = {words[entry[1]]}}:translate(2.5 * k - 11.25, y - 0.38, z + 1.25))
     end
 end
 

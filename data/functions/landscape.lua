@@ -23,12 +23,12 @@ local function height(p)
     return 0.012 + valley * 0.088 * rough + 0.009 * rough
 end
 
-local land = gr.height_field { f = height, columns = quick and 60 or 700, rows = quick and 60 or 700, smooth = true, floor = -0.1 }
+local land = gr.height_field { f = height, columns = quick and 60 or 1400, rows = quick and 60 or 1400, smooth = true, floor = -0.1 }
 local function ground(p, s)
     local h, up = p.y, s.normal.y
-    local jitter = gr.noise(p * 30) * 0.5 + gr.noise(p * 90) * 0.25
-    local meadow = gr.mix({ 0.20, 0.33, 0.09 }, { 0.42, 0.45, 0.16 }, gr.smoothstep(-0.3, 0.4, jitter + gr.noise(p * 9)))
-    local rock = gr.mix({ 0.27, 0.25, 0.24 }, { 0.46, 0.42, 0.38 }, gr.smoothstep(-0.4, 0.4, gr.noise(gr.vec(p.x * 8, h * 90, p.z * 8)) + jitter))
+    local jitter = gr.noise(p * 30) * 0.5 + gr.noise(p * 90) * 0.25 + gr.noise(p * 400) * 0.2
+    local meadow = gr.mix({ 0.09, 0.15, 0.045 }, { 0.30, 0.32, 0.13 }, gr.smoothstep(-0.6, 0.7, jitter + gr.noise(p * 9)))
+    local rock = gr.mix({ 0.17, 0.155, 0.15 }, { 0.44, 0.40, 0.36 }, gr.smoothstep(-0.5, 0.5, 0.6 * gr.noise(p * 60) + jitter))
     local c = gr.mix(meadow, rock, gr.max(gr.smoothstep(0.74, 0.62, up + 0.1 * jitter), gr.smoothstep(0.085, 0.115, h + 0.02 * jitter)))
     return gr.mix(c, { 0.93, 0.95, 0.99 }, gr.smoothstep(0.11, 0.135, h + 0.02 * jitter) * gr.smoothstep(0.52, 0.66, up))
 end
@@ -50,7 +50,7 @@ scene:add_child(land)
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, distance = 0.25, material = gr.rr_material({ 0.03, 0.10, 0.12 }, { 0.7, 0.7, 0.7 }, 200, 0.6, 0, 1.33) })
 gr.render {
     node = scene, file = 'landscape.png', width = 640, height = 384, eye = { 0.35, 1.35, 0.0 }, target = { -0.15, 0.75, -5 }, fov = 46,
-    ambient = { 0.30, 0.34, 0.42 }, background = sky,
-    lights = { gr.directional_light { direction = { 0.45, -0.58, -0.68 }, colour = { 1.0, 0.93, 0.80 } } },
+    ambient = { 0.20, 0.25, 0.34 }, background = sky, tone = 'filmic', exposure = 0.35,
+    lights = { gr.directional_light { direction = { 0.62, -0.44, -0.60 }, colour = { 1.15, 0.98, 0.76 } } },
     fog = gr.height_fog { density = 0.035, base = 0, scale = 1.5, colour = { 0.74, 0.81, 0.89 } },
 }

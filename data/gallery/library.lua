@@ -112,5 +112,5 @@ scene:add_child(gr.box{material = carpet, min = {-2.4, floor_y, -5}, max = {2.4,
 
 local night = {.012, .020, .038}
 gr.render{node = scene, file = 'library.png', width = 1600, height = 1000, eye = {.18, .02, 2.35}, target = {-.02, -.10, -1}, fov = 44, aperture = .011, focus_point = {0, 0, 0},
-    integrator = 'path', denoise = true, tone = 'filmic', exposure = 1.8, clamp = 10, max_depth = 10, vignette = .25, background = night, bloom = .05,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = 2.6, clamp = 10, max_depth = 10, vignette = .25, background = night, bloom = .05,
     lights = {gr.area_light{corner = {-.95, -.29, -3.04}, v1 = {.4, 0, 0}, v2 = {0, 0, .12}, emission = {110, 70, 32}}, gr.sky_light{sky = night}}}

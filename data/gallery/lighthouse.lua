@@ -89,7 +89,7 @@ scene:add_child(boat:rotate('z', 4):rotate('y', 24):translate(-4.4, .02, 9.2))
 local sky = gr.sky_gradient{{-1, .006, .01, .014}, {0, .085, .095, .115}, {.25, .040, .060, .095}, {1, .012, .022, .050}}
 local aim = gr.vec(.96, -.05, .22):normalize()
 gr.render{node = scene, file = 'lighthouse.png', width = 1200, height = 1500, eye = {-4.2, 2.1, 25}, target = {.35, 6.2, 0}, fov = 36,
-    integrator = 'path', denoise = true, tone = 'filmic', exposure = .9, clamp = 2.5, max_depth = 6, vignette = .2, background = sky,
+    integrator = 'path', denoise = true, tone = 'filmic', exposure = 1.7, clamp = 2.5, max_depth = 6, vignette = .2, background = sky,
     medium = gr.medium{albedo = {.92, .94, .96}, distance = 55, g = .5, top = 21},
     lights = {gr.spot_light{position = gr.vec(lamp) + aim * .26, direction = aim, colour = {1, .88, .66}, outer = 6.5, intensity = 5600},
         gr.spot_light{position = gr.vec(lamp) - aim * .26, direction = -aim, colour = {1, .88, .66}, outer = 6.5, intensity = 5600}, gr.sky_light{sky = sky}}}

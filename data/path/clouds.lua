@@ -14,8 +14,9 @@ end
 
 -- Meadows and woods, and hills at the horizon.
 local function green(p)
-    local wood = gr.smoothstep(-.4, .5, gr.noise(p * .35) + .5 * gr.noise(p * 1.1))
-    return gr.mix(gr.vec(.13, .145, .065), gr.vec(.08, .105, .045), wood)
+    local wood = gr.smoothstep(-.1, .15, gr.noise(p * .35) + .5 * gr.noise(p * 1.1) + .35 * gr.noise(p * 3.7) + .3 * gr.noise(p * 9))
+    local crops = gr.mix(gr.vec(.17, .165, .075), gr.vec(.095, .13, .05), gr.smoothstep(-.15, .15, gr.noise(p * gr.vec(.55, 1, .9) + 7)))
+    return gr.mix(crops, gr.vec(.045, .065, .028), wood) * (1 + .25 * gr.noise(p * 20))
 end
 local scene, land = gr.node('land'), gr.material { kd = green }
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = land })
