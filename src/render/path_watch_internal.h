@@ -7,7 +7,7 @@
 #include "render/path_state_internal.h"
 
 /* The stages of a vertex. */
-enum stage { STAGE_BEFORE_HIT, STAGE_EMISSION, STAGE_PHOTONS, STAGE_DIRECT, STAGES };
+enum path_stage { STAGE_BEFORE_HIT, STAGE_EMISSION, STAGE_PHOTONS, STAGE_DIRECT, STAGES };
 
 /* Of a longer path only the first rays. */
 struct path_watch {
@@ -29,7 +29,7 @@ static inline struct watched_ray *watched_ray(struct path_watch *watch) {
     return watch->cut ? NULL : &watch->rays[watch->count - 1];
 }
 
-static inline void watch_stage(struct path_watch *watch, const struct path *path, enum stage stage) {
+static inline void watch_stage(struct path_watch *watch, const struct path *path, enum path_stage stage) {
     struct watched_ray *ray = OBSERVED ? watched_ray(watch) : NULL;
     for (int i = (int)stage; ray && i < STAGES; i++)
         ray->lights[i] = path->light;
