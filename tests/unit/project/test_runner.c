@@ -534,7 +534,8 @@ TEST(a_build_in_another_folder_leaves_the_sources_as_they_were) {
 TEST(uninstalling_removes_what_installing_has_written) {
     const char *lines =
         "make='make -s -o all BUILD='$(dirname $GRAY_TEST_BINARY)' PREFIX=/usr DESTDIR='$GRAY_EXAMPLE_RUN; "
-        "test -e $GRAY_TEST_BINARY-gui || make=\"$make GTK_LIBS= MPI_LIBS=\"; "
+        "test -e $GRAY_TEST_BINARY-gui || make=\"$make GTK_LIBS=\"; "
+        "test -e $GRAY_TEST_BINARY-mpi || make=\"$make MPI_LIBS=\"; "
         "to=$GRAY_EXAMPLE_RUN/usr; "
         "mkdir -p $to/bin && touch $to/bin/other && $make install && $to/bin/gray --version && "
         "test -e $to/share/gray/lua/readobj.lua && test -e $to/share/doc/gray/LICENSE && "
