@@ -68,9 +68,14 @@ static struct colour load_sum(const float *sum, const float *rest) {
                        (double)sum[2] + (double)rest[2]);
 }
 
+/* A record that was damaged may have any number. */
+static uint32_t sample_count(float number) {
+    return number > 0 && number < 0x1p32F ? (uint32_t)number : 0;
+}
+
 struct path_pixel path_film_load(const struct film *film, size_t at) {
     const float *record = &film->floats[at * film->record.floats], *squares = record + RECORD_SQUARES;
-    struct path_pixel pixel = {.samples = (uint32_t)record[RECORD_SAMPLES]};
+    struct path_pixel pixel = {.samples = sample_count(record[RECORD_SAMPLES])};
     for (int half = 0; half < 2; half++) {
         pixel.sums[half] = load_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half);
         pixel.weights[half] = pixel.divisors[half] = (double)record[RECORD_WEIGHTS + half];

@@ -109,10 +109,10 @@ static bool render_small(void *context, const struct render_request *request, st
         job.settings.caustics.photons = 200;
     gallery->pictures++;
     if (!render_prepare(&job, &area, warning, error) ||
-        !film_size_layered(SIDE, SIDE, stage_record(INTEGRATOR_WHITTED), aov_layers(AOV_ALL), &bytes, error))
+        !film_size_layered(SIDE, SIDE, render_record(&job.settings), aov_layers(AOV_ALL), &bytes, error))
         return false;
     void *block = mem_alloc_zero(1, bytes);
-    film_layout(&film, block, SIDE, SIDE, stage_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, SIDE, SIDE, render_record(&job.settings));
     film_layout_layers(&film, block, AOV_ALL);
     film.full_width = film.full_height = SIDE;
     const struct world_input input = {.scene = request->scene,
