@@ -35,7 +35,9 @@ say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon radiosity render sandbox record call compat script session inspect output preview window viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
-WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual
+WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual $(CLANG_WARNINGS)
+# clang warns of each loop that it leaves scalar where the text asks for vectors.
+CLANG_WARNINGS = $(if $(findstring clang,$(CC)),-Wno-pass-failed)
 # The same bits everywhere: no contraction to fused operations, no reordering.
 # Nothing asks for errno of arithmetic; without it sqrt needs no call.
 EXACT = -ffp-contract=off -fno-fast-math -fno-math-errno
