@@ -2,20 +2,22 @@
 # Compiles the files of src/device/sources.list for a card, without one, and checks what the promise of equal bytes needs:
 #   tools/device_scan.sh calls    every file compiles for NVIDIA's cards; the functions named there reach nothing but the
 #                                 listed files, and each of these
-#   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to nearest, none is fused,
-#                                 approximate or flushes denormals, minima and maxima keep the sign of zero; frames
+#   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to
+#                                 nearest, none is fused, approximate or flushes denormals, minima and maxima keep the
+#                                 sign of zero, and frames of functions that every ray passes are small
 # Needs clang and the tools of its LLVM (14 or newer); without them it says so, with status 0. Writes into build/device.
 cd "$(dirname "$0")/.." || exit 1
 out=${BUILD:-build}/device list=src/device/sources.list
 suffix=$(clang --version 2>/dev/null | sed -n 's/.*clang version \([0-9]*\).*/-\1/p')
+command -v "llvm-link$suffix" >/dev/null || suffix=
 for tool in clang llvm-link$suffix llvm-nm$suffix opt$suffix llc$suffix; do
     command -v "$tool" >/dev/null || { echo "device_scan.sh: nothing was checked: there is no $tool"; exit 0; }
 done
 mkdir -p "$out" || exit 1
 sources=$(sed -n 's/^\([a-z].*\.c\)$/src\/\1/p' "$list")
 roots=$(sed -n 's/^root //p' "$list" | tr '\n' ',' | sed 's/,$//')
-# The headers of the C library ask for the processor of the host.
 wanted=${1:-all}
+# The headers of the C library ask for the processor of the host.
 export wanted FLAGS="-std=gnu11 -ffp-contract=off -fno-fast-math -fno-math-errno -DNDEBUG -DGRAY_DEVICE -DGRAY_NO_SIMD -DGRAY_NO_JUMPS
     -D__$(uname -m)__ -isystem /usr/include/$(uname -m)-linux-gnu -Isrc -Wno-everything"
 

@@ -87,6 +87,7 @@ if [ "$mode" != --minimal ]; then
 fi
 if [ "$mode" = --tests ]; then
     want compiler clang command -v clang
+    want compiler llvm command -v llvm-link
     if [ -n "$gtk" ]; then
         want window xvfb command -v xvfb-run
         want window xauth command -v xauth

@@ -3,13 +3,20 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void scan(const char *what, const char *says) {
     char line[8400], *root = realpath(".", NULL);
-    test_need_tools("clang llvm-link-14 llvm-nm-14 opt-14 llc-14");
+    test_need_tools("clang");
     (void)snprintf(line, sizeof line, "BUILD=$PWD '%s/tools/device_scan.sh' %s", root, what);
     free(root);
-    test_shell(line, 0, says);
+    test_shell(line, 0, "");
+    char *output = test_read_file(test_path("out.txt"), NULL);
+    if (strstr(output, "nothing was checked"))
+        test_skip("%.100s", output);
+    if (!strstr(output, says))
+        test_fail(__FILE__, __LINE__, "no \"%s\" in %.1000s", says, output);
+    free(output);
 }
 
 TEST(what_a_ray_touches_compiles_for_cards_and_calls_nothing_else) {
