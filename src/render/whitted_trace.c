@@ -248,9 +248,8 @@ static struct colour follow_batches(struct integrator_state *state, const struct
 }
 
 /* Deep paths have few cells. Their memory is not in one frame with that for many, so their stack stays small. */
-static __attribute__((noinline)) struct colour follow_few(struct integrator_state *state,
-                                                          const struct surface_point *at, struct candidates *candidates,
-                                                          double rays, const struct path *path) {
+static struct colour follow_few(struct integrator_state *state, const struct surface_point *at,
+                                struct candidates *candidates, double rays, const struct path *path) {
     struct candidate found[FEW_CELLS * BSDF_LOBES];
     candidates->all = found;
     return follow_batches(state, at, candidates, rays, path);
@@ -360,12 +359,13 @@ static struct colour incident_radiance(struct integrator_state *state, const str
     double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
 
     /* The medium along the ray. */
+    bool affected = medium_affects(MEDIUM_RAY_SIGHT, ray);
     double distance = INFINITY;
-    if ((met || area_light) && (ray->media || state->observer))
+    if ((met || area_light) && (affected || state->observer))
         distance = end * vec3_length(ray->direction);
     struct medium_effect air = {.transmittance = {1, 1, 1}};
     struct path dimmed;
-    bool affected = ray->media && medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
+    affected = affected && medium_transmittance(MEDIUM_RAY_SIGHT, ray, distance, &air);
     struct colour left = air.transmittance;
     OBSERVE(state->observer, OBSERVED_RAY_BEGIN, .begin = {ray, hit, area_light, distance, path->weight, 0});
     if (affected) {
