@@ -70,7 +70,7 @@ static struct colour load_sum(const float *sum, const float *rest) {
 
 /* A record that was damaged may have any number. */
 static uint32_t sample_count(float number) {
-    return number > 0 && number < 0x1p32F ? (uint32_t)number : 0;
+    return number > 0 && number <= (float)PATH_SAMPLES_MAX ? (uint32_t)number : 0;
 }
 
 struct path_pixel path_film_load(const struct film *film, size_t at) {

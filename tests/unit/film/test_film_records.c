@@ -1,11 +1,13 @@
 /* The record of a pixel has a size that the picture states: any record survives tiles and files, files of the first
  * format keep their bytes, and pixels with different records are never mixed. */
+#include "film/path_film.h"
 #include "film/tile_file.h"
 #include "output/checkpoint.h"
 #include "render/render.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -188,5 +190,21 @@ TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
         CHECK(memcmp(line, picture.rgb + (size_t)3 * SIDE * y, sizeof line) == 0);
     }
     free(picture.rgb);
+    free(film.pixels);
+}
+
+TEST(a_count_of_samples_that_no_pixel_can_have_is_none) {
+    static const float counts[] = {1e30F, 0x1p32F, -1, -INFINITY, INFINITY, NAN};
+    const struct path_pixel stored = {.samples = 12345};
+    struct film film = film_of(stage_record(INTEGRATOR_PATH));
+    uint32_t at = 0;
+    path_film_store(&film, 0, &stored);
+    CHECK_EQ_INT(path_film_load(&film, 0).samples, 12345);
+    while (at + 1 < film.record.floats && film.floats[at] != 12345)
+        at++;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        film.floats[at] = counts[i];
+        CHECK_EQ_INT(path_film_load(&film, 0).samples, 0);
+    }
     free(film.pixels);
 }

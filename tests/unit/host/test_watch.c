@@ -5,10 +5,12 @@
 #include "host/file_watch.h"
 #include "tests/harness.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -70,6 +72,13 @@ TEST(watch_notices_files_that_are_renamed_over_and_files_behind_links) {
     watch_files(&t, (const char *const[]){"a.lua", "link.lua", NULL});
     CHECK(!changed(&t));
     test_write_text(at("a.tmp"), "new");
+    CHECK(rename(at("a.tmp"), at("a.lua")) == 0);
+    CHECK(changed(&t));
+    /* Of the same size, written within the same tick of the clock. */
+    struct stat old;
+    CHECK(stat(at("a.lua"), &old) == 0);
+    test_write_text(at("a.tmp"), "now");
+    CHECK(utimensat(AT_FDCWD, at("a.tmp"), (const struct timespec[]){old.st_atim, old.st_mtim}, 0) == 0);
     CHECK(rename(at("a.tmp"), at("a.lua")) == 0);
     CHECK(changed(&t));
     test_write_text(at("far/real.lua"), "2");
