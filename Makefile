@@ -32,7 +32,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon radiosity render sandbox record call compat script session inspect output preview window viewer host
+MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world export photon radiosity render device sandbox record call compat script session inspect output preview window viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual $(CLANG_WARNINGS)
@@ -48,10 +48,9 @@ CFLAGS.tsan = -O1 -g1 -DGRAY_FAULTS -fsanitize=thread
 CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 # Counters live in a file that every process of the tests maps before anything else (%c), so that nothing that ends a
-# process loses them, and nothing needs to be written by a confined one; atomic, so that none is lost to a race. Counters
-# in loops leave them scalar: clang's warning about that (pass-failed) is off.
+# process loses them, and nothing needs to be written by a confined one; atomic, so that none is lost to a race.
 COUNTERS = -fprofile-instr-generate=$(abspath $(BUILD))/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
-    -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument -Wno-pass-failed
+    -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument
 CFLAGS.coverage = -O1 -g -DGRAY_FAULTS $(COUNTERS)
 CFLAGS.clang = -DGRAY_FAULTS -fsyntax-only
 ifeq ($(CFLAGS.$(config)),)

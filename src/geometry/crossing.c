@@ -23,9 +23,6 @@ void geom_scratch_destroy(struct geom_scratch *scratch) {
 }
 
 bool geom_scratch_grow(struct geom_scratch *scratch) {
-#ifdef GRAY_DEVICE
-    return (void)scratch, false; /* a processor does that pixel */
-#else
     if (scratch->capacity > UINT32_MAX / 2)
         return false;
     uint32_t capacity = scratch->capacity ? scratch->capacity * 2 : 16;
@@ -37,7 +34,6 @@ bool geom_scratch_grow(struct geom_scratch *scratch) {
     scratch->used = 0;
     scratch->overflow = false;
     return true;
-#endif
 }
 
 /* --- lines --- */

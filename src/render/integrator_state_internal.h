@@ -46,11 +46,7 @@ struct integrator_state {
 /* Paths through glass grow exponentially, and a hit may have thousands of shadow rays: long computations check
  * whether to stop. */
 static inline bool integrator_cancelled(const struct integrator_state *state) {
-#ifdef GRAY_DEVICE
-    return (void)state, false; /* a launch is short */
-#else
     return state->pool && pool_cancelled(state->pool);
-#endif
 }
 
 /* The colour with channels up to the limit, and a note if that changes it. */

@@ -325,12 +325,9 @@ static bool survives(struct path *path, bool spreads, double u) {
 
 /* --- photons --- */
 
-/* The light of the photon map at the vertex. A device gets no scene with photons. */
+/* The light of the photon map at the vertex. */
 static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                         const struct path_vertex *vertex) {
-#ifdef GRAY_DEVICE
-    (void)tracer, (void)state, (void)path, (void)vertex;
-#else
     uint32_t lobes = vertex->at.lobes & bsdf_select(vertex->at.bsdf, BSDF_FOR_PHOTONS);
     if (lobes == 0 || path->depth + 2 > tracer->max_depth)
         return;
@@ -345,7 +342,6 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     struct path_parts *parts = parts_of(state);
     if (parts)
         add_to_groups(parts, path->depth + 2, path->depth == 0 ? diffuse : parts->shares, light);
-#endif
 }
 
 /* The fraction of light from wi that these lobes of the vertex scatter. */

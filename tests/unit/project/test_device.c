@@ -24,5 +24,5 @@ TEST(what_a_ray_touches_compiles_for_cards_and_calls_nothing_else) {
 }
 
 TEST_LONG(every_operation_for_cards_is_rounded_and_none_is_fused) {
-    scan("", "operations:");
+    scan("", " operations are rounded to nearest");
 }
