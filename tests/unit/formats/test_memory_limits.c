@@ -308,8 +308,7 @@ TEST(a_picture_file_that_needs_more_memory_than_allowed_is_one_line) {
 
 TEST(an_exr_that_needs_more_memory_than_allowed_is_one_line) {
     static const struct attack attacks[] = {{"large.exr", IMAGE}, {"sparse.exr", IMAGE}};
-    if (!exr_can_write())
-        test_lacks("gray was built without OpenEXR");
+    test_need_exr();
     struct test_result made = test_gray_scene(
         "gr.render{node=gr.node'n', file='large.exr', width=1200, height=1000, eye={0,0,9}}", "-q scene.lua", NULL);
     CHECK_EQ_INT(made.status, 0);

@@ -225,8 +225,7 @@ TEST(reading_light_survives_every_failed_allocation) {
 /* --- EXR, if its library is installed --- */
 
 TEST(exr_pictures_are_read_as_they_were_written) {
-    if (!exr_can_write())
-        test_lacks("gray was built without OpenEXR");
+    test_need_exr();
     static const uint32_t widths[] = {300, 1, 33};
     for (int i = 0; i < 3; i++) {
         char path[512];

@@ -95,8 +95,7 @@ TEST(corners_of_pfm_pictures_are_read_or_reported) {
 /* An EXR file, from malloc; NULL if this build has no EXR. */
 static char *some_exr(size_t *size) {
     struct error error = {0};
-    if (!exr_can_write())
-        test_lacks("gray was built without OpenEXR");
+    test_need_exr();
     const char *path = test_path("a.exr");
     CHECK(exr_write(FILE_AT(path), WIDTH, HEIGHT, light_row, NULL, &error));
     return test_read_file(path, size);
