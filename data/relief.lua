@@ -48,6 +48,6 @@ end
 
 gr.render {
     node = scene, file = 'relief.png', width = 800, height = 450, eye = { 0, 3.1, 11 }, target = { 0, 1.1, 0 }, fov = 33,
-    integrator = 'path', spp = 12, denoise = true, tone = 'filmic', exposure = 0.3, background = { .10, .13, .19 },
+    integrator = 'path', spp = 8, denoise = true, tone = 'filmic', exposure = 0.3, background = { .10, .13, .19 },
     lights = { gr.spherical_light { position = { -7, 6.5, 6.5 }, radius = 0.7, colour = { 1, .85, .64 }, emission = { 110, 110, 110 } } },
 }
