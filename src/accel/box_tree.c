@@ -546,3 +546,8 @@ bool box_tree_meeting_next(struct box_tree_meeting *meeting, uint32_t *item) {
     }
     return false;
 }
+
+void box_tree_bundle(struct bundle *bundle, void *box_tree) {
+    struct box_tree *tree = box_tree;
+    BUNDLE(bundle, tree->nodes, tree->node_count, NULL);
+}

@@ -6,6 +6,7 @@
 #ifndef GRAY_ACCEL_BOX_TREE_H
 #define GRAY_ACCEL_BOX_TREE_H
 
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/pool.h"
@@ -103,5 +104,7 @@ bool box_tree_traversal_down_base(struct box_tree_traversal *traversal, double t
 bool box_tree_traversal_any_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 bool box_tree_traversal_down_avx2(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 bool box_tree_traversal_any_avx2(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
+/* What it points to (base/bundle.h). */
+bundle_fields box_tree_bundle;
 
 #endif

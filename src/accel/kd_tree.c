@@ -527,3 +527,10 @@ bool kd_traversal_next(struct kd_traversal *traversal, double t_max) {
     }
     return false;
 }
+
+void kd_tree_bundle(struct bundle *bundle, void *kd_tree) {
+    struct kd_tree *tree = kd_tree;
+    BUNDLE(bundle, tree->nodes, tree->node_count, NULL);
+    BUNDLE(bundle, tree->items, tree->entry_count, NULL);
+    BUNDLE(bundle, tree->unbounded, tree->unbounded_count, NULL);
+}

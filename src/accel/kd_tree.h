@@ -6,6 +6,7 @@
 #ifndef GRAY_ACCEL_KD_TREE_H
 #define GRAY_ACCEL_KD_TREE_H
 
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/pool.h"
 #include "math/box.h"
@@ -71,5 +72,7 @@ struct kd_traversal {
 void kd_traversal_begin(struct kd_traversal *traversal, const struct kd_tree *tree, const struct ray *ray,
                         double slack);
 bool kd_traversal_next(struct kd_traversal *traversal, double t_max);
+/* What it points to (base/bundle.h). */
+bundle_fields kd_tree_bundle;
 
 #endif

@@ -198,3 +198,11 @@ void kd_triangles_all(const struct kd_triangles *index, const struct triangle_se
                 visit(context, &hit);
     search_end(&s, cost);
 }
+
+static void bundle_tree(struct bundle *bundle, void *triangles) {
+    kd_tree_bundle(bundle, &((struct kd_triangles *)triangles)->tree);
+}
+
+void kd_triangles_bundle(struct bundle *bundle, struct kd_triangles **triangles) {
+    BUNDLE(bundle, *triangles, 1, bundle_tree);
+}

@@ -3,6 +3,7 @@
 #define GRAY_ACCEL_KD_TRIANGLES_H
 
 #include "accel/triangle_index.h"
+#include "base/bundle.h"
 
 struct kd_triangles;
 
@@ -19,5 +20,7 @@ bool kd_triangles_any(const struct kd_triangles *index, const struct triangle_se
                       struct triangle_cost *cost);
 void kd_triangles_all(const struct kd_triangles *index, const struct triangle_set *set, const struct ray *ray,
                       triangle_visit *visit, void *context, struct triangle_cost *cost);
+/* Copies what *triangles points to (base/bundle.h). */
+void kd_triangles_bundle(struct bundle *bundle, struct kd_triangles **triangles);
 
 #endif

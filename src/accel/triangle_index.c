@@ -404,3 +404,24 @@ void triangle_brute_all(const struct triangle_set *set, const struct ray *ray, t
             visit(context, &hit);
     cost->triangle_tests += set->count;
 }
+
+static void bundle_tables(struct bundle *bundle, void *triangle_index) {
+    struct triangle_index *index = triangle_index;
+    BUNDLE(bundle, index->nodes, index->node_count, NULL);
+    BUNDLE(bundle, index->blocks, index->block_count, NULL);
+    BUNDLE(bundle, index->voxels, index->voxel_count, NULL);
+}
+
+void triangle_index_bundle(struct bundle *bundle, struct triangle_index **index) {
+    BUNDLE(bundle, *index, 1, bundle_tables);
+}
+
+void triangle_set_bundle(struct bundle *bundle, void *triangles) {
+    struct triangle_set *set = triangles;
+    uint32_t corners = 0;
+    for (uint32_t i = 0; i < set->count; i++)
+        for (int k = 0; k < 3; k++)
+            corners = set->corners[i][k] < corners ? corners : set->corners[i][k] + 1;
+    BUNDLE(bundle, set->vertices, corners, NULL);
+    BUNDLE(bundle, set->corners, set->count, NULL);
+}

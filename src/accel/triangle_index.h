@@ -3,6 +3,7 @@
 #define GRAY_ACCEL_TRIANGLE_INDEX_H
 
 #include "accel/triangle.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/pool.h"
 #include "math/box.h"
@@ -60,5 +61,9 @@ bool triangle_brute_nearest(const struct triangle_set *set, const struct ray *ra
 bool triangle_brute_any(const struct triangle_set *set, const struct ray *ray, struct triangle_cost *cost);
 void triangle_brute_all(const struct triangle_set *set, const struct ray *ray, triangle_visit *visit, void *context,
                         struct triangle_cost *cost);
+/* Copies what *index points to (base/bundle.h). */
+void triangle_index_bundle(struct bundle *bundle, struct triangle_index **index);
+/* What the set points to. */
+bundle_fields triangle_set_bundle;
 
 #endif

@@ -586,3 +586,36 @@ void csg_describe(const struct csg *csg, const struct ray *ray, const struct cro
     out->error = stretch(&map->forward) * out->error + 0x1p-49 * rounding;
     out->leaf = crossing->leaf;
 }
+
+static void bundle_leaf(struct bundle *bundle, void *csg_leaf) {
+    struct csg_leaf *leaf = csg_leaf;
+    shape_bundle(bundle, &leaf->shape);
+    BUNDLE(bundle, leaf->limit, 1, NULL);
+}
+
+static void bundle_plan(struct bundle *bundle, void *csg_plan) {
+    struct csg_plan *plan = csg_plan;
+    BUNDLE(bundle, plan->nodes, plan->node_count, NULL);
+    BUNDLE(bundle, plan->start_counts, plan->node_count, NULL);
+    BUNDLE(bundle, plan->literals, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->own_boxes, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->boxes, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->as_it_is, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->bounds, plan->bound_count, NULL);
+    BUNDLE(bundle, plan->order, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->needed, plan->needed_count, NULL);
+    BUNDLE(bundle, plan->is_needed, plan->leaf_count, NULL);
+    BUNDLE(bundle, plan->is_convex, plan->leaf_count, NULL);
+}
+
+static void bundle_solid(struct bundle *bundle, void *solid) {
+    struct csg *csg = solid;
+    BUNDLE(bundle, csg->leaves, csg->leaf_count, bundle_leaf);
+    BUNDLE(bundle, csg->program, csg->program_length, NULL);
+    BUNDLE(bundle, csg->convexity, csg->leaf_count, NULL);
+    bundle_point(bundle, &csg->plan, 1, sizeof(struct csg_plan), bundle_plan);
+}
+
+void csg_bundle(struct bundle *bundle, const struct csg **csg) {
+    BUNDLE(bundle, *csg, 1, bundle_solid);
+}

@@ -8,6 +8,7 @@
 #define GRAY_CSG_CSG_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "shape/shape.h"
 
@@ -57,5 +58,7 @@ bool csg_list_crossings(const struct csg *csg, const struct ray *ray, struct geo
 /* A clipped surface contains no point. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
 void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);
+/* Copies what *csg points to (base/bundle.h). */
+void csg_bundle(struct bundle *bundle, const struct csg **csg);
 
 #endif

@@ -416,6 +416,7 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_progra
     struct csg_token *own_program = arena_alloc_array(arena, program_length, sizeof *own_program);
     bool ok = csg && plan && own_leaves && own_program;
     if (ok) {
+        plan->leaf_count = leaf_count;
         plan->nodes =
             arena_alloc_array(arena, leaf_count, sizeof *plan->nodes); /* at least two children each, or one */
         plan->start_counts = arena_alloc_array(arena, leaf_count, sizeof *plan->start_counts);

@@ -41,7 +41,7 @@ struct csg_plan {
     uint32_t *needed; /* leaves that contain the whole solid; tested first, the ones that rays miss most often before
                          the others */
     bool *is_needed, *is_convex;
-    uint32_t node_count, bound_count, needed_count;
+    uint32_t leaf_count, node_count, bound_count, needed_count;
     uint32_t state_items; /* scratch items that hold the truth of all nodes and leaves */
     double size;          /* largest coordinate of any leaf's box */
 };

@@ -3,6 +3,7 @@
 #ifndef GRAY_CSG_GEOMETRY_H
 #define GRAY_CSG_GEOMETRY_H
 
+#include "base/bundle.h"
 #include "csg/csg.h"
 #include "shape/shape.h"
 
@@ -68,6 +69,13 @@ static inline void geometry_describe(const struct geometry *geometry, const stru
 }
 static inline uint32_t geometry_scratch_need(const struct geometry *geometry) {
     return geometry->csg ? geometry->csg->max_crossings : shape_scratch_need(&geometry->shape);
+}
+/* What it points to (base/bundle.h). */
+static inline void geometry_bundle(struct bundle *bundle, struct geometry *geometry) {
+    if (geometry->csg)
+        csg_bundle(bundle, &geometry->csg);
+    else
+        shape_bundle(bundle, &geometry->shape);
 }
 
 #endif

@@ -732,3 +732,18 @@ void expr_describe(const struct expr_program *program, uint32_t instruction, cha
     (void)snprintf(out, size, "r%u = %s%s%s%s", (unsigned)(in->out - program->constant_count),
                    expr_operation_name(operation), words[0], words[1], words[2]);
 }
+
+static void bundle_loop(struct bundle *bundle, void *expr_loop) {
+    struct expr_loop *loop = expr_loop;
+    expr_program_bundle(bundle, &loop->body);
+    BUNDLE(bundle, loop->next, loop->state_count, NULL);
+    BUNDLE(bundle, loop->type, loop->state_count, NULL);
+}
+
+void expr_program_bundle(struct bundle *bundle, void *function) {
+    struct expr_program *program = function;
+    program->source = NULL;
+    BUNDLE(bundle, program->code, program->count, NULL);
+    BUNDLE(bundle, program->constants, program->constant_count, NULL);
+    BUNDLE(bundle, program->loops, program->loop_count, bundle_loop);
+}

@@ -6,6 +6,7 @@
 #define GRAY_EXPR_EXPR_PROGRAM_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "expr/expr_graph.h"
 
@@ -113,5 +114,7 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
 void expr_describe(const struct expr_program *program, uint32_t instruction, char *out, size_t size);
 /* The loop that an instruction repeats (EXPR_LOOP), or NULL. */
 const struct expr_loop *expr_repeated(const struct expr_program *program, uint32_t instruction);
+/* What it points to (base/bundle.h). */
+bundle_fields expr_program_bundle;
 
 #endif

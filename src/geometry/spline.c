@@ -206,3 +206,8 @@ void outline_tangent(const struct outline_piece *c, double x, double *dp, double
         *dq = q;
     }
 }
+
+void outline_bundle(struct bundle *bundle, void *spline) {
+    struct outline *outline = spline;
+    BUNDLE(bundle, outline->pieces, outline->count, NULL);
+}

@@ -3,6 +3,7 @@
 #define GRAY_GEOMETRY_SPLINE_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/list.h"
 #include <stdbool.h>
@@ -69,5 +70,7 @@ static inline double cubic_slope(const double b[4], double x) {
 void outline_range(const double b[4], double *lo, double *hi);
 /* The direction of the curve at x; the direction of the chord where the derivative is zero. */
 void outline_tangent(const struct outline_piece *piece, double x, double *dp, double *dq);
+/* What it points to (base/bundle.h). */
+bundle_fields outline_bundle;
 
 #endif

@@ -1,6 +1,8 @@
 /* Images as assets: creation, ownership, decoding, reading. */
 #include "image/image.h"
 
+#include "image/image_function.h"
+
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/bmp_read_internal.h"
@@ -398,4 +400,22 @@ void image_lookup_slopes(const struct image *image, struct image_point at, struc
     struct rgba r = image_level_texel(image, 0, x0, y1), s = image_level_texel(image, 0, x1, y1);
     *by_u = difference(image_mix(p, r, fy), image_mix(q, s, fy), l->width * fold_slope(at.u, how.wrap_u));
     *by_v = difference(image_mix(p, q, fx), image_mix(r, s, fx), l->height * fold_slope(at.v, how.wrap_v));
+}
+
+static void bundle_levels(struct bundle *bundle, void *levels) {
+    struct image *image = levels;
+    image->block = NULL;
+    image->name = image->colours = NULL;
+    image->decoded = NULL;
+    for (int i = 0; i < image->level_count; i++) {
+        struct image_level *level = &image->levels[i];
+        const size_t texel = image->bits == 32 ? 16 : i == 0 && image->bits == 8 ? 4 : 8;
+        bundle_point(bundle, &level->texels, (size_t)level->width * level->height, texel, NULL);
+    }
+    BUNDLE(bundle, image->memo, 1, NULL);
+    image_ranges_bundle(bundle, &image->ranges);
+}
+
+void image_bundle(struct bundle *bundle, struct image **image) {
+    BUNDLE(bundle, *image, 1, bundle_levels);
 }

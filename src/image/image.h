@@ -5,6 +5,7 @@
 #ifndef GRAY_IMAGE_IMAGE_H
 #define GRAY_IMAGE_IMAGE_H
 
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/list.h"
 #include "image/transfer.h"
@@ -81,5 +82,7 @@ double image_level_for(double texels, int last);
 struct image *image_read(const char *path, struct error *error);
 /* From memory; `path` is for messages. */
 struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error);
+/* Copies what *image points to (base/bundle.h), but for what only files need. */
+void image_bundle(struct bundle *bundle, struct image **image);
 
 #endif

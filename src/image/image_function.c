@@ -215,3 +215,15 @@ struct image_interval image_function_bounds(const struct image_function *functio
         return any;
     return (struct image_interval){math_min(p, q), math_max(p, q), false};
 }
+
+static void bundle_blocks(struct bundle *bundle, void *image_ranges) {
+    struct image_ranges *ranges = image_ranges;
+    for (int i = 0; i < ranges->level_count; i++) {
+        struct range_level *level = &ranges->levels[i];
+        BUNDLE(bundle, level->blocks, (size_t)level->width * level->height, NULL);
+    }
+}
+
+void image_ranges_bundle(struct bundle *bundle, struct image_ranges **ranges) {
+    BUNDLE(bundle, *ranges, 1, bundle_blocks);
+}

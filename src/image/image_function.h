@@ -3,6 +3,7 @@
 #ifndef GRAY_IMAGE_IMAGE_FUNCTION_H
 #define GRAY_IMAGE_IMAGE_FUNCTION_H
 
+#include "base/bundle.h"
 #include "image/image.h"
 
 /* The lookup reads the image at scale * (u, v) + offset; then flip_u mirrors u. IMAGE_MIPMAP has no footprint here: it
@@ -33,5 +34,8 @@ struct image_interval image_function_bounds(const struct image_function *functio
                                             struct image_interval v, int channel);
 /* The pyramid of the image, which owns it. The first call for an image is not thread-safe. False: no memory. */
 bool image_make_ranges(struct image *image, struct error *error);
+struct image_ranges;
+/* Copies what *ranges points to (base/bundle.h). */
+void image_ranges_bundle(struct bundle *bundle, struct image_ranges **ranges);
 
 #endif

@@ -638,3 +638,18 @@ double light_photon_attenuation(const struct light *light, double length) {
     }
     return 1;
 }
+
+static void bundle_triangles(struct bundle *bundle, void *light_mesh) {
+    struct light_mesh *mesh = light_mesh;
+    BUNDLE(bundle, mesh->triangles, mesh->count, NULL);
+    BUNDLE(bundle, mesh->until, mesh->count, NULL);
+}
+
+void light_bundle(struct bundle *bundle, void *any) {
+    struct light *light = any;
+    BUNDLE(bundle, light->profile, 1, expr_program_bundle);
+    BUNDLE(bundle, light->mesh, 1, bundle_triangles);
+    BUNDLE(bundle, light->sky, 1, sky_bundle);
+    sky_table_bundle(bundle, &light->table);
+    BUNDLE(bundle, light->lit, light->lit_count, NULL);
+}

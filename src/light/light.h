@@ -10,6 +10,7 @@
 #ifndef GRAY_LIGHT_LIGHT_H
 #define GRAY_LIGHT_LIGHT_H
 
+#include "base/bundle.h"
 #include "base/list.h"
 #include "math/box.h"
 #include "math/colour.h"
@@ -87,6 +88,7 @@ struct light {
     const struct sky_table *table; /* made by light_prepare */
     struct light_plane plane;      /* the same, of a parallelogram or disc */
     const uint8_t *lit;            /* by primitive, made by world_build; NULL: it lights everything */
+    uint32_t lit_count;
 };
 
 /* For linear colours. */
@@ -248,5 +250,7 @@ uint32_t light_part_count(const struct light *light);
 /* Of a part. NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
 enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
 enum light_extent light_bounds_of(const struct light *light, uint32_t part, struct light_bounds *out);
+/* What it points to (base/bundle.h). */
+bundle_fields light_bundle;
 
 #endif

@@ -381,3 +381,14 @@ double light_sampler_pmf(const struct light_sampler *s, struct vec3 point, struc
         return (1 - tree) / s->infinite_count;
     return tree * tree_pmf(s, point, normal, leaf);
 }
+
+void light_sampler_bundle(struct bundle *bundle, struct light_sampler *sampler, uint32_t light_count) {
+    const uint32_t parts = sampler->first_part ? sampler->first_part[light_count] : 0;
+    BUNDLE(bundle, sampler->infinite, sampler->infinite_count, NULL);
+    BUNDLE(bundle, sampler->nodes, sampler->node_count, NULL);
+    BUNDLE(bundle, sampler->leaf_of, parts, NULL);
+    BUNDLE(bundle, sampler->candidates, sampler->count, NULL);
+    BUNDLE(bundle, sampler->until, sampler->count, NULL);
+    BUNDLE(bundle, sampler->share, parts, NULL);
+    BUNDLE(bundle, sampler->first_part, light_count + 1, NULL);
+}

@@ -10,6 +10,7 @@
 #define GRAY_LIGHT_LIGHT_SAMPLER_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/list.h"
 #include "base/pool.h"
 #include "light/light.h"
@@ -60,5 +61,7 @@ struct light_part light_sampler_sample(const struct light_sampler *sampler, stru
 /* The probability with which it chooses that part. */
 double light_sampler_pmf(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal,
                          struct light_part part);
+/* What it points to (base/bundle.h). */
+void light_sampler_bundle(struct bundle *bundle, struct light_sampler *sampler, uint32_t light_count);
 
 #endif

@@ -498,3 +498,12 @@ struct colour sky_colour(const struct sky *sky, struct vec3 direction, double sp
     struct vec3 d = {c * direction.x - s * direction.z, direction.y, s * direction.x + c * direction.z};
     return colour_scale(unturned_colour(sky, d, spread), sky->intensity);
 }
+
+void sky_bundle(struct bundle *bundle, void *any) {
+    struct sky *sky = any;
+    image_bundle(bundle, &sky->image);
+    for (int i = 0; i < 6; i++)
+        image_bundle(bundle, &sky->faces[i]);
+    BUNDLE(bundle, sky->stops, sky->stop_count, NULL);
+    BUNDLE(bundle, sky->program, 1, expr_program_bundle);
+}

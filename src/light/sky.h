@@ -2,6 +2,7 @@
 #ifndef GRAY_LIGHT_SKY_H
 #define GRAY_LIGHT_SKY_H
 
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/list.h"
 #include "expr/expr_program.h"
@@ -71,5 +72,7 @@ double sky_brightest(const struct sky *sky);
 bool sky_is_black(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct colour sky_colour(const struct sky *sky, struct vec3 direction, double spread);
+/* What it points to (base/bundle.h). */
+bundle_fields sky_bundle;
 
 #endif

@@ -375,6 +375,7 @@ static bool fill_cells(struct sky_table *table, struct sky_rows *f, struct arena
         f->cells[i] = (1 - everywhere) * f->cells[i] + min;
     table->divided = divided;
     table->parts = ok && is_divided ? kept_parts(&division, min, arena) : NULL;
+    table->part_count = table->parts ? division.count : 0;
     mem_free(division.parts);
     mem_free(f->unknown);
     return !is_divided || table->parts;
@@ -480,4 +481,17 @@ double sky_table_pdf(const struct sky_table *table, struct vec3 direction) {
     double row_share = table->row_until[row] - (row > 0 ? table->row_until[row - 1] : 0);
     double density = density_of(table, row_share, cells[column] - (column > 0 ? cells[column - 1] : 0));
     return density * density_of_parts(table, first + column, at);
+}
+
+static void bundle_cells(struct bundle *bundle, void *sky_table) {
+    struct sky_table *table = sky_table;
+    const size_t cells = (size_t)table->rows * table->columns;
+    BUNDLE(bundle, table->row_until, table->rows, NULL);
+    BUNDLE(bundle, table->until, cells, NULL);
+    BUNDLE(bundle, table->parts, table->part_count, NULL);
+    BUNDLE(bundle, table->divided, cells, NULL);
+}
+
+void sky_table_bundle(struct bundle *bundle, const struct sky_table **table) {
+    BUNDLE(bundle, *table, 1, bundle_cells);
 }

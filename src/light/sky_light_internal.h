@@ -3,6 +3,7 @@
 #define GRAY_LIGHT_SKY_LIGHT_INTERNAL_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/pool.h"
 #include "light/sky.h"
 #include "math/sampling.h"
@@ -21,6 +22,7 @@ struct sky_table {
     const double *until;     /* rows x columns: the same inside of a row */
     const struct sky_part *parts;
     const uint32_t *divided; /* rows x columns: the part that is the whole cell, 0: none. NULL: no cell is divided */
+    uint32_t part_count;
 };
 
 /* NULL: no memory. A sky that is black everywhere gives a table of equal cells. */
@@ -36,5 +38,7 @@ struct sky_sample {
 struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 xi);
 /* Its density for a unit direction. */
 double sky_table_pdf(const struct sky_table *table, struct vec3 direction);
+/* Copies what *table points to (base/bundle.h). */
+void sky_table_bundle(struct bundle *bundle, const struct sky_table **table);
 
 #endif

@@ -278,3 +278,16 @@ double density_depth(const struct density *density, const struct medium_line *li
                                                  : depth_in_cell(&traversal, line);
     return depth;
 }
+
+static void bundle_values(struct bundle *bundle, void *values) {
+    struct density *density = values;
+    const size_t voxels = (size_t)density->count[0] * density->count[1] * density->count[2];
+    BUNDLE(bundle, density->bounds, (size_t)fog_cell_count(&density->cells), NULL);
+    fog_field_bundle(bundle, &density->field);
+    BUNDLE(bundle, density->values, voxels, NULL);
+    BUNDLE(bundle, density->excess, 1, NULL);
+}
+
+void density_bundle(struct bundle *bundle, const struct density **density) {
+    BUNDLE(bundle, *density, 1, bundle_values);
+}

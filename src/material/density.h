@@ -6,6 +6,7 @@
 #define GRAY_MATERIAL_DENSITY_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "material/fog_field.h"
 #include "math/box.h"
@@ -42,5 +43,7 @@ bool density_excess(const struct density *density, struct box *cell, double *bou
 
 /* The integral of the density along the line, by quadrature. */
 double density_depth(const struct density *density, const struct medium_line *line);
+/* Copies what *density points to (base/bundle.h). */
+void density_bundle(struct bundle *bundle, const struct density **density);
 
 #endif

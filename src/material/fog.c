@@ -92,3 +92,12 @@ double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 
     }
     return 1;
 }
+
+void fog_bundle(struct bundle *bundle, void *any) {
+    struct fog *fog = any;
+    const size_t cells = (size_t)fog->cells[0] * fog->cells[1] * fog->cells[2];
+    BUNDLE(bundle, fog->heights, fog->count, NULL);
+    BUNDLE(bundle, fog->densities, fog->kind == FOG_GRID ? cells : fog->count, NULL);
+    BUNDLE(bundle, fog->sums, fog->count, NULL);
+    fog_field_bundle(bundle, &fog->field);
+}

@@ -3,6 +3,7 @@
 #ifndef GRAY_MATERIAL_FOG_H
 #define GRAY_MATERIAL_FOG_H
 
+#include "base/bundle.h"
 #include "math/colour.h"
 #include "math/vec3.h"
 
@@ -40,5 +41,7 @@ struct fog {
 
 /* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. Of FOG_FIELD at time 0. */
 double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
+/* What it points to (base/bundle.h). */
+bundle_fields fog_bundle;
 
 #endif

@@ -382,3 +382,14 @@ double fog_field_transmittance(const struct fog_field *field, const struct mediu
         *source = left < 1 ? colour_scale(march.light, 1 / (1 - left)) : colour_all(0);
     return left;
 }
+
+static void bundle_functions(struct bundle *bundle, void *fog_field) {
+    struct fog_field *field = fog_field;
+    BUNDLE(bundle, field->density, 1, expr_program_bundle);
+    BUNDLE(bundle, field->colour, 1, expr_program_bundle);
+    BUNDLE(bundle, field->bounds, (size_t)fog_cell_count(&field->cells), NULL);
+}
+
+void fog_field_bundle(struct bundle *bundle, const struct fog_field **field) {
+    BUNDLE(bundle, *field, 1, bundle_functions);
+}

@@ -6,6 +6,7 @@
 #define GRAY_MATERIAL_FOG_FIELD_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "expr/expr_program.h"
 #include "math/vec3.h"
@@ -45,5 +46,7 @@ struct medium_line {
 /* The transmittance along the line, 0 to 1. source: the light that the fog adds is source * (1 - transmittance); set
  * only with a colour. */
 double fog_field_transmittance(const struct fog_field *field, const struct medium_line *line, struct colour *source);
+/* Copies what *field points to (base/bundle.h). */
+void fog_field_bundle(struct bundle *bundle, const struct fog_field **field);
 
 #endif

@@ -231,3 +231,28 @@ double glow_met_weight(const struct glow_met *met, const struct medium *medium, 
     double by_ray = met->pdf * find_part(met->glow, medium)->per_length, by_cell = found * vec3_dot(off, off);
     return by_ray * by_ray / (by_ray * by_ray + by_cell * by_cell);
 }
+
+static void bundle_kelvin(struct bundle *bundle, void *heat) {
+    density_bundle(bundle, &((struct heat *)heat)->kelvin);
+}
+
+void heat_bundle(struct bundle *bundle, const struct heat **heat) {
+    BUNDLE(bundle, *heat, 1, bundle_kelvin);
+}
+
+static void bundle_part(struct bundle *bundle, void *glow_part) {
+    struct glow_part *part = glow_part;
+    BUNDLE(bundle, part->medium, 1, medium_bundle);
+    BUNDLE(bundle, part->until, (size_t)fog_cell_count(&part->cells), NULL);
+}
+
+static void bundle_parts(struct bundle *bundle, void *glowing) {
+    struct glow *glow = glowing;
+    BUNDLE(bundle, glow->first, glow->medium_count, medium_bundle);
+    BUNDLE(bundle, glow->part_of, glow->medium_count, NULL);
+    BUNDLE(bundle, glow->parts, glow->count, bundle_part);
+}
+
+void glow_bundle(struct bundle *bundle, const struct glow **glow) {
+    BUNDLE(bundle, *glow, 1, bundle_parts);
+}

@@ -6,6 +6,7 @@
 #define GRAY_MATERIAL_GLOW_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "material/medium.h"
 
@@ -44,5 +45,8 @@ struct colour heat_at(const struct heat *heat, struct vec3 p, double time);
 bool heat_fits(const struct heat *heat);
 /* Where it is hottest. */
 struct colour heat_brightest(const struct heat *heat);
+/* Copies what *heat and *glow point to (base/bundle.h). */
+void heat_bundle(struct bundle *bundle, const struct heat **heat);
+void glow_bundle(struct bundle *bundle, const struct glow **glow);
 
 #endif

@@ -266,3 +266,12 @@ double medium_stack_eta(const struct medium_stack *stack, const struct medium_bo
         return 1;
     return here / medium_stack_ior_of(stack, end - 1);
 }
+
+void medium_bundle(struct bundle *bundle, void *any) {
+    struct medium *medium = any;
+    BUNDLE(bundle, medium->fog, 1, fog_bundle);
+    density_bundle(bundle, &medium->density);
+    heat_bundle(bundle, &medium->heat);
+    BUNDLE(bundle, medium->placement, 1, NULL);
+    BUNDLE(bundle, medium->inner, 1, medium_bundle);
+}

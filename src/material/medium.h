@@ -6,6 +6,7 @@
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
+#include "base/bundle.h"
 #include "material/dispersion.h"
 #include "material/fog.h"
 #include "material/phase.h"
@@ -199,5 +200,7 @@ struct medium_sample {
 /* Samples over at most `distance` (may be infinite) in a medium that is alone and has no density. */
 struct medium_sample medium_sample(const struct medium *medium, double distance, struct colour throughput,
                                    struct sample2 u);
+/* What it points to (base/bundle.h). */
+bundle_fields medium_bundle;
 
 #endif

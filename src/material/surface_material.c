@@ -317,3 +317,9 @@ double surface_albedo_bound(const struct surface_tables *tables, const struct su
         return layers_albedo_bound(tables, surface, math_max(diffuse, colour_max_abs(numbers->ks)));
     return diffuse + (specular > 0 ? specular : colour_max_abs(numbers->ks) * 2 / (exponent + 1));
 }
+
+void surface_tables_bundle(struct bundle *bundle, struct surface_tables *tables, uint32_t material_count) {
+    BUNDLE(bundle, tables->materials, material_count, NULL);
+    BUNDLE(bundle, tables->bumps, tables->bump_count, NULL);
+    texture_tables_bundle(bundle, &tables->textures);
+}

@@ -4,6 +4,7 @@
 #ifndef GRAY_MATERIAL_SURFACE_MATERIAL_H
 #define GRAY_MATERIAL_SURFACE_MATERIAL_H
 
+#include "base/bundle.h"
 #include "material/material.h"
 #include "material/openpbr.h"
 #include "material/texture_tables.h"
@@ -79,5 +80,7 @@ bool surface_emission_varies(const struct surface_material *surface);
 double surface_specular(const struct surface_material *surface);
 /* Approximately the largest share of light that it reflects. */
 double surface_albedo_bound(const struct surface_tables *tables, const struct surface_material *surface);
+/* What the tables of so many materials point to (base/bundle.h). */
+void surface_tables_bundle(struct bundle *bundle, struct surface_tables *tables, uint32_t material_count);
 
 #endif

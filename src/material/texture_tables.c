@@ -180,6 +180,8 @@ static void *copy(struct arena *arena, const void *from, uint32_t count, size_t 
 bool texture_builder_finish(const struct texture_builder *builder, struct arena *arena, struct texture_tables *out) {
     bool *are_colours = arena_alloc_array(arena, (size_t)builder->count + 1, sizeof *are_colours);
     out->count = builder->count;
+    out->instruction_count = builder->instruction_count;
+    out->program_count = builder->program_count;
     out->operations = arena_alloc_array(arena, (size_t)builder->count + 1, sizeof *out->operations);
     out->instructions = copy(arena, builder->instructions, builder->instruction_count, sizeof *builder->instructions);
     out->programs = copy(arena, builder->programs, builder->program_count, sizeof *builder->programs);
@@ -405,4 +407,22 @@ struct colour texture_program_estimate(const struct texture_tables *tables, uint
         *end++ = texture_operation_estimate(&tables->operations[in->texture], parts, numbers, which);
     }
     return values[0];
+}
+
+static void bundle_operation(struct bundle *bundle, void *texture_operation) {
+    struct texture_operation *operation = texture_operation;
+    if (operation->kind == TEXTURE_IMAGE)
+        image_bundle(bundle, &operation->image.image);
+    if (operation->kind != TEXTURE_FUNCTION)
+        return;
+    BUNDLE(bundle, operation->recorded.program, 1, expr_program_bundle);
+    BUNDLE(bundle, operation->recorded.nan, 1, NULL);
+}
+
+void texture_tables_bundle(struct bundle *bundle, void *texture_tables) {
+    struct texture_tables *tables = texture_tables;
+    BUNDLE(bundle, tables->operations, tables->count, bundle_operation);
+    BUNDLE(bundle, tables->are_colours, tables->count, NULL);
+    BUNDLE(bundle, tables->instructions, tables->instruction_count, NULL);
+    BUNDLE(bundle, tables->programs, tables->program_count, NULL);
 }

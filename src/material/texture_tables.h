@@ -12,6 +12,7 @@
 #ifndef GRAY_MATERIAL_TEXTURE_TABLES_H
 #define GRAY_MATERIAL_TEXTURE_TABLES_H
 
+#include "base/bundle.h"
 #include "base/key_map.h"
 #include "material/texture.h"
 
@@ -39,6 +40,7 @@ struct texture_tables {
     const struct texture_instruction *instructions;
     const struct texture_program *programs;
     uint32_t count; /* of operations */
+    uint32_t instruction_count, program_count;
 };
 
 /* The values that are known at a time while the texture is evaluated, from those of its parts. */
@@ -96,5 +98,7 @@ uint32_t texture_builder_index(const struct texture_builder *builder, const stru
 /* False: no memory. */
 bool texture_builder_finish(const struct texture_builder *builder, struct arena *arena, struct texture_tables *out);
 void texture_builder_destroy(struct texture_builder *builder);
+/* What it points to (base/bundle.h). */
+bundle_fields texture_tables_bundle;
 
 #endif

@@ -755,3 +755,31 @@ struct mesh *mesh_create(const struct mesh_input *input, struct error *error) {
     mem_free(face_of);
     return mesh;
 }
+
+static void bundle_accel(struct bundle *bundle, void *mesh_accel) {
+    struct mesh_accel *accel = mesh_accel;
+    triangle_index_bundle(bundle, &accel->index);
+    triangle_index_bundle(bundle, &accel->grid);
+    kd_triangles_bundle(bundle, &accel->kd_tree);
+}
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct mesh *mesh = tables;
+    mesh->file = NULL;
+    mesh->face_start = mesh->face_vertex = NULL;
+    BUNDLE(bundle, mesh->vertices, mesh->vertex_count, NULL);
+    BUNDLE(bundle, mesh->corners, mesh->triangle_count, NULL);
+    BUNDLE(bundle, mesh->normals, mesh->normal_count, NULL);
+    BUNDLE(bundle, mesh->normal_corners, mesh->triangle_count, NULL);
+    BUNDLE(bundle, mesh->uvs, mesh->uv_count, NULL);
+    BUNDLE(bundle, mesh->second_uvs, mesh->uv_count, NULL);
+    BUNDLE(bundle, mesh->uv_corners, mesh->triangle_count, NULL);
+    BUNDLE(bundle, mesh->colours, mesh->colours_by_triangle ? mesh->triangle_count : mesh->vertex_count, NULL);
+    BUNDLE(bundle, mesh->materials, mesh->triangle_count, NULL);
+    triangle_set_bundle(bundle, &mesh->set);
+    BUNDLE(bundle, mesh->accel, 1, bundle_accel);
+}
+
+void mesh_bundle(struct bundle *bundle, const struct mesh **mesh) {
+    BUNDLE(bundle, *mesh, 1, bundle_tables);
+}

@@ -6,6 +6,7 @@
 #define GRAY_MESH_MESH_H
 
 #include "accel/triangle_packet.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "base/list.h"
 #include "base/pool.h"
@@ -109,5 +110,7 @@ bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_k
 bool mesh_is_plain(const struct mesh *mesh, uint32_t triangle);
 void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
+/* Copies what *mesh points to (base/bundle.h), but for what only files and messages need. */
+void mesh_bundle(struct bundle *bundle, const struct mesh **mesh);
 
 #endif

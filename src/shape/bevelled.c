@@ -830,3 +830,20 @@ bool chamfered_prism(struct arena *arena, const struct prism_input *in, double e
     }
     return add_caps(&faces, &curves, arena, error);
 }
+
+static void bundle_piece(struct bundle *bundle, void *of_solid) {
+    struct piece *piece = of_solid;
+    if (piece->kind == PIECE_PRISM)
+        prism_bundle(bundle, &piece->prism);
+    else if (piece->kind == PIECE_SWEEP)
+        sweep_bundle(bundle, &piece->sweep);
+}
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct bevelled *bevelled = tables;
+    BUNDLE(bundle, bevelled->pieces, bevelled->count, bundle_piece);
+}
+
+void bevelled_bundle(struct bundle *bundle, const struct bevelled **bevelled) {
+    BUNDLE(bundle, *bevelled, 1, bundle_tables);
+}

@@ -5,6 +5,7 @@
 #ifndef GRAY_SHAPE_BEVELLED_H
 #define GRAY_SHAPE_BEVELLED_H
 
+#include "base/bundle.h"
 #include "shape/prism.h"
 
 struct bevelled;
@@ -40,5 +41,7 @@ bool bevelled_contains(const struct bevelled *bevelled, struct vec3 point);
 void bevelled_describe(const struct bevelled *bevelled, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);
 uint32_t bevelled_scratch_need(const struct bevelled *bevelled);
+/* Copies what *bevelled points to (base/bundle.h). */
+void bevelled_bundle(struct bundle *bundle, const struct bevelled **bevelled);
 
 #endif

@@ -404,3 +404,13 @@ void blob_describe(const struct blob *blob, const struct ray *ray, const struct 
         .point = point, .normal = n, .shading_normal = n, .pattern_point = point, .pattern_normal = n, .error = error};
     surface_mapping_sphere(blob->middle, out);
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct blob *blob = tables;
+    BUNDLE(bundle, blob->elements, blob->count, NULL);
+    part_tree_bundle(bundle, &blob->tree);
+}
+
+void blob_bundle(struct bundle *bundle, const struct blob **blob) {
+    BUNDLE(bundle, *blob, 1, bundle_tables);
+}

@@ -5,6 +5,7 @@
 #define GRAY_SHAPE_BLOB_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -37,5 +38,7 @@ bool blob_contains(const struct blob *blob, struct vec3 point);
 void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
 uint32_t blob_scratch_need(const struct blob *blob);
+/* Copies what *blob points to (base/bundle.h). */
+void blob_bundle(struct bundle *bundle, const struct blob **blob);
 
 #endif

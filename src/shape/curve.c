@@ -276,3 +276,13 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
     out->dpdu = vec3_scale(tangent(piece, x), 1 / (piece->to - piece->from));
     out->dpdv = vec3_scale(side, -width);
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct curve *curve = tables;
+    BUNDLE(bundle, curve->pieces, curve->count, NULL);
+    part_tree_bundle(bundle, &curve->tree);
+}
+
+void curve_bundle(struct bundle *bundle, const struct curve **curve) {
+    BUNDLE(bundle, *curve, 1, bundle_tables);
+}

@@ -5,6 +5,7 @@
 #define GRAY_SHAPE_CURVE_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -37,5 +38,7 @@ bool curve_crossings(const struct curve *curve, const struct ray *ray, struct ge
 void curve_describe(const struct curve *curve, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t curve_scratch_need(const struct curve *curve);
+/* Copies what *curve points to (base/bundle.h). */
+void curve_bundle(struct bundle *bundle, const struct curve **curve);
 
 #endif

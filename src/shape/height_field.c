@@ -536,3 +536,16 @@ void height_field_describe(const struct height_field *f, const struct ray *ray, 
     out->pattern_point = out->point;
     out->pattern_normal = out->normal;
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct height_field *field = tables;
+    BUNDLE(bundle, field->heights, ((size_t)field->columns + 1) * (field->rows + 1), NULL);
+    for (int i = 0; i < field->level_count; i++) {
+        struct level *level = &field->levels[i];
+        BUNDLE(bundle, level->ranges, (size_t)level->columns * level->rows, NULL);
+    }
+}
+
+void height_field_bundle(struct bundle *bundle, const struct height_field **field) {
+    BUNDLE(bundle, *field, 1, bundle_tables);
+}

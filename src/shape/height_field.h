@@ -5,6 +5,7 @@
 #define GRAY_SHAPE_HEIGHT_FIELD_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -44,5 +45,7 @@ bool height_field_contains(const struct height_field *field, struct vec3 point);
 void height_field_describe(const struct height_field *field, const struct ray *ray, const struct crossing *crossing,
                            struct surface *out);
 uint32_t height_field_scratch_need(const struct height_field *field);
+/* Copies what *field points to (base/bundle.h). */
+void height_field_bundle(struct bundle *bundle, const struct height_field **field);
 
 #endif

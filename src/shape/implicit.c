@@ -393,3 +393,15 @@ bool implicit_examine(const struct implicit *solid, struct implicit_findings *ou
         return error_no_memory(error, "an implicit solid");
     return out->line_work <= IMPLICIT_SLOW || try_marching(solid, out, error);
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct implicit *implicit = tables;
+    BUNDLE(bundle, implicit->in.program, 1, expr_program_bundle);
+    BUNDLE(bundle, implicit->nodes, implicit->node_count, NULL);
+    BUNDLE(bundle, implicit->regions, implicit->region_count, NULL);
+    BUNDLE(bundle, implicit->programs, implicit->program_count, expr_program_bundle);
+}
+
+void implicit_bundle(struct bundle *bundle, const struct implicit **implicit) {
+    BUNDLE(bundle, *implicit, 1, bundle_tables);
+}

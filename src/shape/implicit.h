@@ -5,6 +5,7 @@
 #define GRAY_SHAPE_IMPLICIT_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "expr/expr_program.h"
 #include "geometry/crossing.h"
@@ -50,5 +51,7 @@ bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);
 uint32_t implicit_scratch_need(const struct implicit *solid);
+/* Copies what *implicit points to (base/bundle.h). */
+void implicit_bundle(struct bundle *bundle, const struct implicit **implicit);
 
 #endif

@@ -538,3 +538,13 @@ void lathe_describe(const struct lathe *lathe, const struct ray *ray, const stru
         out->dpdu = vec3_negate(out->dpdu);
     }
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct lathe *lathe = tables;
+    outline_bundle(bundle, &lathe->outline);
+    part_tree_bundle(bundle, &lathe->tree);
+}
+
+void lathe_bundle(struct bundle *bundle, const struct lathe **lathe) {
+    BUNDLE(bundle, *lathe, 1, bundle_tables);
+}

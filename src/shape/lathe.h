@@ -4,6 +4,7 @@
 #define GRAY_SHAPE_LATHE_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -37,5 +38,7 @@ bool lathe_contains(const struct lathe *lathe, struct vec3 point);
 void lathe_describe(const struct lathe *lathe, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t lathe_scratch_need(const struct lathe *lathe);
+/* Copies what *lathe points to (base/bundle.h). */
+void lathe_bundle(struct bundle *bundle, const struct lathe **lathe);
 
 #endif

@@ -105,3 +105,14 @@ bool part_tree_crossings(const struct part_tree *tree, const struct line *line, 
     }
     return true;
 }
+
+void part_tree_bundle(struct bundle *bundle, void *part_tree) {
+    struct part_tree *tree = part_tree;
+    uint32_t parts = 0;
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        const uint32_t end = tree->nodes[i].first + tree->nodes[i].count;
+        parts = end > parts ? end : parts;
+    }
+    BUNDLE(bundle, tree->nodes, tree->node_count, NULL);
+    BUNDLE(bundle, tree->order, parts, NULL);
+}

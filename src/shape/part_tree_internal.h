@@ -4,6 +4,7 @@
 #define GRAY_SHAPE_PART_TREE_INTERNAL_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "geometry/crossing.h"
 #include "math/box.h"
 
@@ -32,5 +33,7 @@ typedef bool part_crossings(const void *shape, uint32_t part, const struct line 
  * unchanged. */
 bool part_tree_crossings(const struct part_tree *tree, const struct line *line, const void *shape,
                          part_crossings *crossings_of_part, struct geom_scratch *scratch);
+/* What it points to (base/bundle.h). */
+bundle_fields part_tree_bundle;
 
 #endif

@@ -315,3 +315,19 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         return;
     }
 }
+
+static void bundle_outlines(struct bundle *bundle, void *outlines) {
+    struct polygon *polygon = outlines;
+    const uint32_t points = polygon->ends[polygon->outlines - 1];
+    BUNDLE(bundle, polygon->ends, polygon->outlines, NULL);
+    BUNDLE(bundle, polygon->points, points, NULL);
+    BUNDLE(bundle, polygon->corners, points, NULL);
+}
+
+void planar_bundle(struct bundle *bundle, void *shape) {
+    struct planar *planar = shape;
+    if (planar->kind == PLANAR_POLYGON)
+        BUNDLE(bundle, planar->polygon, 1, bundle_outlines);
+    else
+        planar->polygon = NULL;
+}

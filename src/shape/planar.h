@@ -5,6 +5,7 @@
 #define GRAY_SHAPE_PLANAR_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
 #include "math/ray.h"
@@ -67,5 +68,7 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
                     struct planar *out, const char **why);
 /* An outline of a polygon, in (a, b); NULL: it has fewer. */
 const double (*planar_outline(const struct planar *polygon, uint32_t outline, uint32_t *count))[2];
+/* What it points to (base/bundle.h). */
+bundle_fields planar_bundle;
 
 #endif

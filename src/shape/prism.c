@@ -261,3 +261,13 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
     out->point = out->pattern_point = p;
     out->normal = out->shading_normal = out->pattern_normal = n;
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct prism *prism = tables;
+    outline_bundle(bundle, &prism->outline);
+    part_tree_bundle(bundle, &prism->tree);
+}
+
+void prism_bundle(struct bundle *bundle, const struct prism **prism) {
+    BUNDLE(bundle, *prism, 1, bundle_tables);
+}

@@ -4,6 +4,7 @@
 #define GRAY_SHAPE_PRISM_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -35,5 +36,7 @@ bool prism_contains(const struct prism *prism, struct vec3 point);
 void prism_describe(const struct prism *prism, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t prism_scratch_need(const struct prism *prism);
+/* Copies what *prism points to (base/bundle.h). */
+void prism_bundle(struct bundle *bundle, const struct prism **prism);
 
 #endif

@@ -526,3 +526,49 @@ bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *o
     }
     return number == 0 && oriented_box_is_finite(&out->box);
 }
+
+void shape_bundle(struct bundle *bundle, void *any) {
+    struct shape *shape = any;
+    switch (shape->kind) {
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_REVOLVED_QUADRIC:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+        return;
+    case SHAPE_QUADRIC:
+        BUNDLE(bundle, shape->quadric, 1, NULL);
+        return;
+    case SHAPE_PLANAR:
+        planar_bundle(bundle, &shape->planar);
+        return;
+    case SHAPE_LATHE:
+        lathe_bundle(bundle, &shape->lathe);
+        return;
+    case SHAPE_PRISM:
+        prism_bundle(bundle, &shape->prism);
+        return;
+    case SHAPE_BEVELLED:
+        bevelled_bundle(bundle, &shape->bevelled);
+        return;
+    case SHAPE_SWEEP:
+        sweep_bundle(bundle, &shape->sweep);
+        return;
+    case SHAPE_HEIGHT_FIELD:
+        height_field_bundle(bundle, &shape->height_field);
+        return;
+    case SHAPE_BLOB:
+        blob_bundle(bundle, &shape->blob);
+        return;
+    case SHAPE_IMPLICIT:
+        implicit_bundle(bundle, &shape->implicit);
+        return;
+    case SHAPE_CURVE:
+        curve_bundle(bundle, &shape->curve);
+        return;
+    case SHAPE_MESH:
+        mesh_bundle(bundle, &shape->mesh);
+        return;
+    }
+}

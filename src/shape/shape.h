@@ -5,6 +5,7 @@
 #ifndef GRAY_SHAPE_SHAPE_H
 #define GRAY_SHAPE_SHAPE_H
 
+#include "base/bundle.h"
 #include "base/list.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -137,5 +138,7 @@ struct shape_part; /* shape_part.h */
 /* Part `number` of a shape, counted from 0, in its object space; together the parts contain the shape. False: it has no
  * such part, or it is infinite. */
 bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *out);
+/* What it points to (base/bundle.h). */
+bundle_fields shape_bundle;
 
 #endif

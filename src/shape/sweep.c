@@ -540,3 +540,13 @@ void sweep_describe(const struct sweep_path *sweep, const struct ray *ray, const
     struct vec3 along = vec3_scale(tangent_at(piece, x), 1 / (piece->to - piece->from));
     out->dpdv = vec3_add_scaled(along, n, -vec3_dot(along, n));
 }
+
+static void bundle_tables(struct bundle *bundle, void *tables) {
+    struct sweep_path *sweep = tables;
+    BUNDLE(bundle, sweep->pieces, sweep->count, NULL);
+    part_tree_bundle(bundle, &sweep->tree);
+}
+
+void sweep_bundle(struct bundle *bundle, const struct sweep_path **sweep) {
+    BUNDLE(bundle, *sweep, 1, bundle_tables);
+}

@@ -4,6 +4,7 @@
 #define GRAY_SHAPE_SWEEP_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/error.h"
 #include "geometry/crossing.h"
 #include "geometry/hit.h"
@@ -36,5 +37,7 @@ bool sweep_contains(const struct sweep_path *sweep, struct vec3 point);
 void sweep_describe(const struct sweep_path *sweep, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t sweep_scratch_need(const struct sweep_path *sweep);
+/* Copies what *sweep points to (base/bundle.h). */
+void sweep_bundle(struct bundle *bundle, const struct sweep_path **sweep);
 
 #endif

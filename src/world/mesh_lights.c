@@ -297,6 +297,7 @@ bool light_lists_resolve(const struct world *world, const struct scene_light *au
         if (!ok)
             return error_no_memory(error, "the lights of the scene");
         lights[i].lit = lit;
+        lights[i].lit_count = world->primitive_count;
     }
     return true;
 }

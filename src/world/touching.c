@@ -527,3 +527,9 @@ bool touching_any(const struct world *world, uint32_t primitive, const struct bo
             return true;
     return end - list > LISTED;
 }
+
+void touching_bundle(struct bundle *bundle, struct touching *touching, uint32_t primitive_count) {
+    BUNDLE(bundle, touching->partners, touching->first ? touching->first[primitive_count] : 0, NULL);
+    BUNDLE(bundle, touching->first, primitive_count + 1, NULL);
+    box_tree_bundle(bundle, &touching->tree);
+}

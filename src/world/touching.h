@@ -8,6 +8,7 @@
 
 #include "accel/box_tree.h"
 #include "base/arena.h"
+#include "base/bundle.h"
 
 struct world;
 struct flattening;
@@ -40,5 +41,7 @@ void touching_begin(struct touching_query *query, const struct world *world, uin
 bool touching_next(struct touching_query *query, uint32_t *partner);
 /* False: no box of a partner meets it. */
 bool touching_any(const struct world *world, uint32_t primitive, const struct box *region);
+/* What it points to (base/bundle.h), in a world with so many primitives. */
+void touching_bundle(struct bundle *bundle, struct touching *touching, uint32_t primitive_count);
 
 #endif

@@ -824,3 +824,45 @@ size_t world_primitive_memory(const struct world *world) {
            world->linear_count * sizeof *world->linear_maps + world->moving_count * sizeof *world->moving +
            world->link_count * sizeof *world->links;
 }
+
+static void bundle_prototype(struct bundle *bundle, void *prototype) {
+    geometry_bundle(bundle, &((struct prototype *)prototype)->geometry);
+}
+
+static void bundle_local_medium(struct bundle *bundle, void *local_medium) {
+    medium_bundle(bundle, &((struct local_medium *)local_medium)->inner);
+}
+
+static void bundle_accel(struct bundle *bundle, struct scene_accel *accel) {
+    grid_bundle(bundle, &accel->grid);
+    box_tree_bundle(bundle, &accel->tree);
+    kd_tree_bundle(bundle, &accel->kd_tree);
+}
+
+void world_bundle(struct bundle *bundle, void *flattened) {
+    struct world *world = flattened;
+    const uint32_t primitives = world->primitive_count, materials = world->material_count;
+    const uint32_t solids = world->first_solid ? world->first_solid[primitives] : 0;
+    world->authored = (struct authored){0};
+    BUNDLE(bundle, world->primitives, primitives, NULL);
+    BUNDLE(bundle, world->prototypes, world->prototype_count, bundle_prototype);
+    BUNDLE(bundle, world->linear_maps, world->linear_count, NULL);
+    BUNDLE(bundle, world->moving, world->moving_count, NULL);
+    BUNDLE(bundle, world->links, world->link_count, NULL);
+    BUNDLE(bundle, world->boxes, primitives, NULL);
+    surface_tables_bundle(bundle, &world->surfaces, materials);
+    BUNDLE(bundle, world->material_numbers, materials, NULL);
+    BUNDLE(bundle, world->material_has_image, materials, NULL);
+    BUNDLE(bundle, world->material_has_tangents, materials, NULL);
+    BUNDLE(bundle, world->material_has_medium, materials, NULL);
+    BUNDLE(bundle, world->local_media, world->local_media_count, bundle_local_medium);
+    BUNDLE(bundle, world->media.all, world->media.outside + 1 + world->local_media_count, medium_bundle);
+    BUNDLE(bundle, world->media.solids, solids, NULL);
+    BUNDLE(bundle, world->first_solid, primitives + 1, NULL);
+    BUNDLE(bundle, world->solid_materials, solids, NULL);
+    BUNDLE(bundle, world->lights, world->light_count, light_bundle);
+    sky_bundle(bundle, &world->sky);
+    bundle_accel(bundle, &world->accel);
+    mesh_group_bundle(bundle, &world->group, primitives);
+    touching_bundle(bundle, &world->touching, primitives);
+}

@@ -4,6 +4,7 @@
 #define GRAY_WORLD_WORLD_H
 
 #include "base/arena.h"
+#include "base/bundle.h"
 #include "base/pool.h"
 #include "csg/geometry.h"
 #include "geometry/hit.h"
@@ -246,5 +247,7 @@ uint32_t world_containing(const struct world *world, const struct inside_query *
 /* The media of the transparent solids that contain the point, found by counting crossings. */
 void world_medium_stack(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
                         struct medium_stack *out);
+/* What it points to (base/bundle.h), but for the authored objects. */
+bundle_fields world_bundle;
 
 #endif

@@ -336,6 +336,7 @@ static uint32_t moving_owner(const struct building *b, uint32_t primitive) {
 static void take_over(struct derived *d, const struct light *owner, const struct emitter *of_owner) {
     bool own = of_owner->has_own;
     d->light.lit = owner->lit;
+    d->light.lit_count = owner->lit_count;
     d->light.colour = own ? of_owner->emission : colour_mul(d->light.colour, owner->colour);
     d->emitter.has_own = own;
     d->emitter.emission = own ? of_owner->emission : owner->colour;
@@ -738,4 +739,19 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
         found = true;
     }
     return found;
+}
+
+static void bundle_bound(struct bundle *bundle, void *emitter) {
+    BUNDLE(bundle, ((struct emitter *)emitter)->bound, 1, NULL);
+}
+
+void world_lights_bundle(struct bundle *bundle, void *world_lights) {
+    struct world_lights *lights = world_lights;
+    BUNDLE(bundle, lights->of_primitive, lights->world->primitive_count, NULL);
+    BUNDLE(bundle, lights->world, 1, world_bundle);
+    BUNDLE(bundle, lights->lights, lights->count, light_bundle);
+    light_sampler_bundle(bundle, &lights->sampler, lights->count);
+    BUNDLE(bundle, lights->emitters, lights->count, bundle_bound);
+    box_tree_bundle(bundle, &lights->surfaces);
+    BUNDLE(bundle, lights->area_lights, lights->area_light_count, NULL);
 }

@@ -22,6 +22,7 @@
 #define GRAY_WORLD_WORLD_LIGHTS_H
 
 #include "accel/box_tree.h"
+#include "base/bundle.h"
 #include "light/light_sampler.h"
 #include "math/sampling.h"
 #include "world/world.h"
@@ -128,5 +129,7 @@ static inline bool world_lights_illuminate(const struct world_lights *lights, ui
     const uint8_t *lit = lights->lights[light].lit;
     return !lit || primitive == WORLD_NOTHING || lit[primitive];
 }
+/* What they point to (base/bundle.h). */
+bundle_fields world_lights_bundle;
 
 #endif

@@ -5,6 +5,7 @@
 #define expr_evaluate_batch expr_evaluate_batch_by_switch
 #define expr_repeated expr_repeated_by_switch
 #define expr_describe expr_describe_by_switch
+#define expr_program_bundle expr_program_bundle_by_switch
 #include "tests/unit/expr_by_switch.h"
 
 #include "expr/expr_program.c"
