@@ -5,6 +5,7 @@
 #include "math/elementary.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
+#include "render/path_wave_internal.h"
 #include "render/sample_internal.h"
 #include "world/world_describe.h"
 
@@ -29,6 +30,10 @@ struct film_record path_tracer_record(const struct settings *settings) {
 /* The footprint of a sample as a fraction of the pixel's width. It is that of 64 samples for any number of samples,
  * so that a picture does not depend on how many samples follow. The mean over the samples filters the rest. */
 static const double footprint_share = 0.125;
+
+bool path_has_parts(const struct settings *settings) {
+    return path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
+}
 
 /* Storage for the parts of a batch of samples, one for each worker. */
 static bool make_sample_parts(struct path_tracer *tracer, struct renderer *renderer) {
@@ -159,6 +164,24 @@ static bool find_glow(struct path_tracer *tracer, const struct world *world, str
            glow_build(&tracer->glow, &world->media.all[first], world->local_media_count + 1, &tracer->arena, error);
 }
 
+/* If the job has a device, and it can render the scene, workers give their samples to it. */
+static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
+    const struct path_device *device = renderer->job->device;
+    if (!device || renderer->roams || path_scene_lacks(tracer, renderer))
+        return true;
+    struct bundle *scene = path_scene_bundle(tracer, renderer);
+    if (!scene)
+        return error_no_memory(error, "the scene for a device");
+    bool ok = device->begin(device->context, scene, error);
+    bundle_destroy(scene);
+    for (int i = 0; ok && i < pool_workers(renderer->pool); i++) {
+        struct worker *worker = &renderer->workers[i];
+        worker->pixels = arena_alloc_array(&tracer->arena, (size_t)FILM_TILE * FILM_TILE, sizeof *worker->pixels);
+        ok = worker->pixels || error_no_memory(error, "the workers of a render");
+    }
+    return ok;
+}
+
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
@@ -184,8 +207,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
             tracer->has_matter || world->media.all[i].affects != 0 || surface_walks(&world->surfaces.materials[i]);
     }
     /* Memory of the workers, as far as the film keeps something of it. */
-    bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
-    if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
+    if ((path_has_parts(settings) && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
         !make_contours(tracer, renderer))
         return error_no_memory(error, "the workers of a render");
     /* The lights and, with --caustics, the photons that they send. */
@@ -195,12 +217,14 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
         return error_no_memory(error, "the solids of the scene");
     if (tracer->built && !find_glow(tracer, world, error))
         return false;
-    if (!tracer->built || settings->caustics.photons == 0)
-        return tracer->built;
-    if (!find_photon_lights(tracer, world))
-        return error_no_memory(error, "the lights of the scene");
-    const struct photon_scene scene = {world, settings};
-    return photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error);
+    if (tracer->built && settings->caustics.photons > 0) {
+        const struct photon_scene scene = {world, settings};
+        if (!find_photon_lights(tracer, world))
+            return error_no_memory(error, "the lights of the scene");
+        if (!photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error))
+            return false;
+    }
+    return tracer->built && begin_device(tracer, renderer, error);
 }
 
 void path_tracer_destroy(struct path_tracer *tracer) {
@@ -214,10 +238,10 @@ void path_tracer_destroy(struct path_tracer *tracer) {
 
 /* --- pixels --- */
 
-static struct pixel_sample sample_position(const struct path_tracer *tracer, const struct renderer *renderer, int64_t x,
-                                           int64_t y, uint32_t number) {
-    uint64_t pixel = (uint64_t)y * renderer->job->width + (uint64_t)x;
-    struct sampler sampler = sampler_make_sobol(renderer->job->settings.seed, pixel, number);
+struct pixel_sample path_sample_position(const struct path_tracer *tracer, const struct render_job *job, int64_t x,
+                                         int64_t y, uint32_t number) {
+    uint64_t pixel = (uint64_t)y * job->width + (uint64_t)x;
+    struct sampler sampler = sampler_make_sobol(job->settings.seed, pixel, number);
     struct filter_sample at = filter_sample(&tracer->filter, sampler_point(&sampler, SAMPLER_PIXEL));
     return (struct pixel_sample){x, y, at.x, at.y, number, at.weight};
 }
@@ -253,12 +277,11 @@ struct sample_plan {
     uint32_t before, expected;
 };
 
-/* The last piece of path i of the batch (path_pieces_internal.h). */
-static void add(struct path_pixel *pixel, const struct batch *batch, uint32_t i) {
-    double weight = batch->positions[i].weight;
-    if (batch->parts)
-        path_pixel_add_parts(pixel, &batch->parts[i], batch->colours[i], weight);
-    path_pixel_add(pixel, batch->colours[i], batch->seen_through[i], weight);
+void path_add(struct path_pixel *pixel, const struct path_parts *parts, struct colour light, double seen_through,
+              double weight) {
+    if (parts)
+        path_pixel_add_parts(pixel, parts, light, weight);
+    path_pixel_add(pixel, light, seen_through, weight);
 }
 
 /* Adds these samples to the pixels of a row of the film, pixel by pixel and batch by batch. A batch may contain samples
@@ -276,15 +299,16 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     while (next < all) {
         /* A batch is filled across the borders of pixels. */
         for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
-            batch->positions[batch->count++] = sample_position(tracer, renderer, part->x0 + (int64_t)(next / each), y,
-                                                               begin + (uint32_t)(next % each));
+            batch->positions[batch->count++] = path_sample_position(
+                tracer, renderer->job, part->x0 + (int64_t)(next / each), y, begin + (uint32_t)(next % each));
         renderer_sample_batch(renderer, worker);
         if (renderer_stopped(renderer, worker))
             return false;
         /* Samples are added in their order, so the sums do not depend on the batches. */
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
-            add(&pixel, batch, i);
+            path_add(&pixel, batch->parts ? &batch->parts[i] : NULL, batch->colours[i], batch->seen_through[i],
+                     batch->positions[i].weight);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);
@@ -295,9 +319,36 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     return true;
 }
 
+/* The same for a rectangle, by the device. What it leaves out the worker makes. */
+static bool sample_by_device(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                             const struct sample_plan *plan, struct sample_range range) {
+    const struct film_rectangle *part = plan->part;
+    const struct path_order order = {part->x0, part->y0, part->x1, part->y1, range.begin, range.end};
+    const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
+    struct path_pixel *pixels = worker->pixels, *pixel = pixels;
+    for (uint32_t y = part->y0; y < part->y1; y++)
+        for (uint32_t x = part->x0; x < part->x1; x++)
+            *pixel++ = begin_pixel(tracer, plan->film, lines, x, y, range.begin);
+    if (!renderer->job->device->make(renderer->job->device->context, &order, pixels))
+        return false;
+    pixel = pixels;
+    for (uint32_t y = part->y0; y < part->y1; y++)
+        for (uint32_t x = part->x0; x < part->x1; x++, pixel++) {
+            const struct film_rectangle one = {x, y, x + 1, y + 1};
+            const struct sample_plan single = {plan->film, &one, plan->before, plan->expected};
+            if (pixel->samples == range.end)
+                finish_pixel(plan->film, worker, x, y, pixel);
+            else if (!sample_row(tracer, renderer, worker, &single, y, range))
+                return false;
+        }
+    return true;
+}
+
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct sample_plan *plan, struct sample_range range) {
     const struct film_rectangle *part = plan->part;
+    if (worker->pixels)
+        return sample_by_device(tracer, renderer, worker, plan, range);
     for (int64_t y = part->y0; y < part->y1; y++) {
         if (!sample_row(tracer, renderer, worker, plan, y, range))
             return false;
@@ -409,7 +460,7 @@ void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *rende
     const struct film *film = renderer->job->film;
     uint32_t samples = path_film_load(film, pixel_index(film, x, y)).samples;
     for (uint32_t i = 0; i < samples && !renderer_stopped(renderer, worker); i++) {
-        struct pixel_sample position = sample_position(tracer, renderer, x, y, i);
+        struct pixel_sample position = path_sample_position(tracer, renderer->job, x, y, i);
         (void)renderer_sample(renderer, worker, &position);
     }
 }

@@ -57,6 +57,15 @@ static inline bool path_is_sealed(const struct path_tracer *tracer, const struct
     return tracer->sealed && media->count > 0 && tracer->sealed[media->solids[media->count - 1]];
 }
 
+/* The position of a sample of a pixel, and the weight of the filter there. */
+struct pixel_sample path_sample_position(const struct path_tracer *tracer, const struct render_job *job, int64_t x,
+                                         int64_t y, uint32_t number);
+/* The last piece of a path (path_pieces_internal.h). parts: or NULL. */
+void path_add(struct path_pixel *pixel, const struct path_parts *parts, struct colour light, double seen_through,
+              double weight);
+/* Whether paths record parts besides their light. */
+bool path_has_parts(const struct settings *settings);
+
 /* See render/integrator_internal.h. `tracer` is zero-initialised. */
 struct film_record path_tracer_record(const struct settings *settings);
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,

@@ -810,6 +810,7 @@ static struct colour finish(const struct path_tracer *tracer, struct integrator_
     return light;
 }
 
+#if !defined PIECES_ONLY
 struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                           const struct packet_answer *met, bool ask, uint64_t key) {
     struct path path;
@@ -846,3 +847,4 @@ struct colour PATH(trace)(const struct path_tracer *tracer, struct integrator_st
     return finish(tracer, state, &path);
 #endif
 }
+#endif

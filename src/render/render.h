@@ -12,6 +12,7 @@
 #include "settings/settings.h"
 #include "world/world.h"
 
+struct path_device;
 struct pixel_trace;
 struct radiosity;
 
@@ -24,11 +25,12 @@ struct render_job {
     bool background_lights; /* the script chose the sky of the world: paths take its light */
     uint32_t
         kept_samples; /* that all pixels of the film have: passes of a progressive integrator go on with the next */
-    struct radiosity *radiosity;     /* or NULL: kept for the next picture (radiosity_update) */
-    struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
-    const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
-    struct pool_event *handed;       /* or NULL; signalled when tiles become wanted, and when no more can */
-    uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
+    struct radiosity *radiosity;      /* or NULL: kept for the next picture (radiosity_update) */
+    const struct path_device *device; /* or NULL: makes the samples of paths (path_wave.h) */
+    struct film *film;                /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
+    const _Atomic uint32_t *handout;  /* or NULL; while it is 1 more tiles may become wanted */
+    struct pool_event *handed;        /* or NULL; signalled when tiles become wanted, and when no more can */
+    uint32_t shard, shards;           /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;

@@ -52,6 +52,7 @@ struct worker {
     _Atomic uint8_t *tile_state; /* of the tile that this worker alone makes, all samples in one go; else NULL */
     double part;                 /* of the work of the tile, that is done after its last samples */
     struct worker_cost cost;
+    struct path_pixel *pixels; /* of a tile, for the device of the job; NULL: the worker traces its own paths */
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */

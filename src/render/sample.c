@@ -1,5 +1,6 @@
 /* One sample of a pixel, from its position to its colour; single, or many with camera rays in packets. The
  * random key of a sample is a function of the pixel and of the sample's number. */
+#include "base/unreachable.h"
 #include "render/integrator_internal.h"
 #include "render/sample_internal.h"
 #include "render/sampler.h"
@@ -24,10 +25,44 @@ bool renderer_middle_ray(const struct renderer *renderer, double x, double y, st
     return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, NULL, out);
 }
 
-static struct colour trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
-                                    uint64_t key) {
+/* The footprint of a sample on textures, as a fraction of the pixel's width. */
+static void set_footprint(const struct renderer *renderer, uint64_t number, struct ray *ray) {
+    double share = renderer->sampler == SAMPLER_SOBOL ? renderer->sample_share
+                   : number > 0                       ? 1.0 / renderer->job->settings.samples
+                                                      : 1;
     ray->footprint.spread *= share;
     ray->footprint.width *= share;
+}
+
+/* With the time and the footprint of the sample. False: nothing is visible there. */
+static bool ray_through(const struct renderer *renderer, const struct camera_frame *camera,
+                        const struct pixel_sample *at, const struct sampler *sampler, const struct camera_view *view,
+                        struct ray *out) {
+    double x = (double)at->x + at->dx, y = (double)at->y + at->dy;
+    if (!view)
+        *out = camera_ray(camera, x, y);
+    else if (!camera_ray_through(camera, x, y, sampler_lens(sampler), view, out))
+        return false;
+    out->time = renderer->timed ? sampler_time(sampler) : 0;
+    set_footprint(renderer, at->number, out);
+    return true;
+}
+
+/* A wide filter does not look beyond the view of the pixel. */
+static struct camera_view view_of(const struct camera_frame *camera, const struct pixel_sample *at) {
+    return camera_view_at(camera, (double)at->x + 0.5, (double)at->y + 0.5);
+}
+
+bool renderer_camera_ray(const struct renderer *renderer, const struct camera_frame *camera,
+                         const struct pixel_sample *at, const struct sampler *sampler, struct ray *out) {
+    if (camera_is_plain(camera))
+        return ray_through(renderer, camera, at, sampler, NULL, out);
+    struct camera_view view = view_of(camera, at);
+    return ray_through(renderer, camera, at, sampler, &view, out);
+}
+
+static struct colour trace_from_eye(struct renderer *renderer, struct worker *worker, const struct ray *ray,
+                                    uint64_t key) {
     worker->camera_rays++;
     if (renderer->medium_stack_by_ray) {
         world_medium_stack(renderer->job->world,
@@ -61,38 +96,26 @@ static struct colour sample_depth(struct renderer *renderer, struct worker *work
     return colour_all(math_min(hit.t, (double)FLT_MAX));
 }
 
-/* Through a lens, in another projection, in one of several views. */
-static struct colour sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
-                                    const struct pixel_sample *at, double time, double share) {
+static struct colour sample_both_eyes(struct renderer *renderer, struct worker *worker,
+                                      const struct camera_frame *camera, const struct pixel_sample *at) {
     const struct sampler sampler = worker->state.sampler;
-    struct sample2 position = sampler_lens(&sampler);
-    double x = (double)at->x + at->dx, y = (double)at->y + at->dy;
+    struct camera_view view = camera_view_of_eye(camera, -1);
     struct ray ray, right_ray;
-    bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
-    /* A wide filter does not look beyond the view of the pixel. */
-    struct camera_view view =
-        anaglyph ? camera_view_of_eye(camera, -1) : camera_view_at(camera, (double)at->x + 0.5, (double)at->y + 0.5);
-    if (view.depth)
-        return sample_depth(renderer, worker, at);
-    if (!camera_ray_through(camera, x, y, position, &view, &ray))
+    if (!ray_through(renderer, camera, at, &sampler, &view, &ray))
         return colour_all(0);
-    ray.time = time;
-    struct colour colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
-    if (!anaglyph)
-        return colour;
+    struct colour left = trace_from_eye(renderer, worker, &ray, sampler.key);
     view = camera_view_of_eye(camera, 1);
-    (void)camera_ray_through(camera, x, y, position, &view, &right_ray);
-    right_ray.time = time;
+    (void)ray_through(renderer, camera, at, &sampler, &view, &right_ray);
     struct path_parts *parts = worker->state.parts, left_parts;
     if (parts) {
         left_parts = *parts;
         *parts = (struct path_parts){0};
     }
-    struct colour right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
+    struct colour right = trace_from_eye(renderer, worker, &right_ray, sampler_right_eye(&sampler));
     if (parts)
         *parts = parts_of_eyes(&left_parts, parts);
     worker->state.seen_through /= 2;
-    return colour_make(colour.r, right.g, right.b);
+    return colour_make(left.r, right.g, right.b);
 }
 
 /* The strata of sample i of a batch, and the hit of its camera ray. */
@@ -112,44 +135,38 @@ static void end_records(struct worker *worker) {
     worker->state.camera_hit = NULL;
 }
 
-static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
+static struct sampler sampler_of(const struct renderer *renderer, const struct pixel_sample *position) {
     const struct settings *settings = &renderer->job->settings;
     uint64_t pixel = (uint64_t)position->y * renderer->job->width + (uint64_t)position->x;
     switch (renderer->sampler) {
     case SAMPLER_STRATA:
-        worker->state.sampler = sampler_make(settings->seed, pixel, position->number, (uint32_t)settings->samples);
-        break;
+        return sampler_make(settings->seed, pixel, position->number, (uint32_t)settings->samples);
     case SAMPLER_SOBOL:
-        worker->state.sampler = sampler_make_sobol(settings->seed, pixel, position->number);
-        break;
+        return sampler_make_sobol(settings->seed, pixel, position->number);
     }
-}
-
-/* The footprint of a sample on textures, as a fraction of the pixel's width. */
-static double sample_share(const struct renderer *renderer, uint64_t number) {
-    if (renderer->sampler == SAMPLER_SOBOL)
-        return renderer->sample_share;
-    return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
+    UNREACHABLE("no sampler");
 }
 
 static struct colour sample_single(struct renderer *renderer, struct worker *worker,
                                    const struct pixel_sample *position) {
-    begin_sample(renderer, worker, position);
-    double share = sample_share(renderer, position->number);
+    worker->state.sampler = sampler_of(renderer, position);
+    const struct sampler sampler = worker->state.sampler;
     const struct camera_frame *camera = &renderer->camera;
-    double time = renderer->timed ? sampler_time(&worker->state.sampler) : 0;
     if (renderer->timed && renderer->job->settings.motion.moves) {
         char warning[256];
         struct error error;
         camera = &worker->camera;
-        if (!renderer_prepare_at(renderer->job, time, &worker->camera, warning, &error))
+        if (!renderer_prepare_at(renderer->job, sampler_time(&sampler), &worker->camera, warning, &error))
             return colour_all(0); /* the one moment in which a view turns through zero */
     }
-    if (!camera_is_plain(camera))
-        return sample_through(renderer, worker, camera, position, time, share);
-    struct ray ray = camera_ray(camera, (double)position->x + position->dx, (double)position->y + position->dy);
-    ray.time = time;
-    return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);
+    if (camera->lens.stereo == STEREO_ANAGLYPH)
+        return sample_both_eyes(renderer, worker, camera, position);
+    if (camera->lens.depth && view_of(camera, position).depth)
+        return sample_depth(renderer, worker, position);
+    struct ray ray;
+    if (!renderer_camera_ray(renderer, camera, position, &sampler, &ray))
+        return colour_all(0);
+    return trace_from_eye(renderer, worker, &ray, sampler.key);
 }
 
 struct colour renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
@@ -193,10 +210,8 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         const struct pixel_sample *position = &batch->positions[i];
         struct ray ray =
             camera_ray(&renderer->camera, (double)position->x + position->dx, (double)position->y + position->dy);
-        double share = sample_share(renderer, position->number);
-        ray.footprint.spread *= share;
-        ray.footprint.width *= share;
-        begin_sample(renderer, worker, position);
+        set_footprint(renderer, position->number, &ray);
+        worker->state.sampler = sampler_of(renderer, position);
         begin_records(worker, i);
         batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);

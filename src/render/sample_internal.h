@@ -9,6 +9,9 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
                          struct error *error);
 /* The camera ray through (x, y) and the centre of the lens, when the shutter opens. False: nothing is visible there. */
 bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out);
+/* The ray of a sample, with its time and footprint, but not of both eyes. False: nothing is visible there. */
+bool renderer_camera_ray(const struct renderer *renderer, const struct camera_frame *camera,
+                         const struct pixel_sample *at, const struct sampler *sampler, struct ray *out);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
 struct colour renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);

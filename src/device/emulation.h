@@ -1,0 +1,15 @@
+/* A device that is no card: the pieces of paths in waves over the bundle of a scene, by the thread that asks. */
+#ifndef GRAY_DEVICE_EMULATION_H
+#define GRAY_DEVICE_EMULATION_H
+
+#include "base/pool.h"
+#include "render/path_wave.h"
+
+struct emulation;
+/* wave: paths at a time; 0: as many as are usual. NULL: no memory. */
+struct emulation *emulation_create(const struct pool *pool, uint32_t wave);
+void emulation_destroy(struct emulation *emulation);
+/* It may be used until the emulation is destroyed. */
+struct path_device emulation_device(struct emulation *emulation);
+
+#endif

@@ -1,0 +1,191 @@
+/* The pieces of paths in waves. */
+#include "render/path_wave.h"
+
+#define PATH(name) path_wave_##name
+#define LAYERS 1
+#define OBSERVED 0
+#define MATTER 1
+#define PIECES_ONLY 1
+#include "render/path_pieces_internal.h"
+
+#include "base/mem.h"
+#include "render/media_light_internal.h"
+#include "render/path_wave_internal.h"
+#include "render/sample_internal.h"
+
+struct path_wave_state {
+    struct path path;
+    struct path_shadow shadow;
+    struct path_parts parts;
+    double seen_through, weight; /* weight: of the filter */
+    bool below;                  /* the next piece is come_out, not extend and shade */
+    bool ended;                  /* but for the light that is on its way */
+    bool seen;                   /* there is a camera ray */
+    bool failed;
+};
+
+struct path_lane {
+    struct world_scratch scratch;
+    struct integrator_state state;
+    struct medium_stack media; /* around the eye */
+};
+
+size_t path_wave_state_size(void) {
+    return sizeof(struct path_wave_state);
+}
+
+struct path_lane *path_lane_create(const struct path_scene *scene) {
+    struct path_lane *lane = mem_alloc_zero(1, sizeof *lane);
+    if (!lane || !world_scratch_init(&lane->scratch, scene->job.world)) {
+        mem_free(lane);
+        return NULL;
+    }
+    lane->state =
+        (struct integrator_state){.job = &scene->job, .scratch = &lane->scratch, .media_dim = scene->media_dim};
+    return lane;
+}
+
+void path_lane_destroy(struct path_lane *lane) {
+    if (lane)
+        world_scratch_destroy(&lane->scratch);
+    mem_free(lane);
+}
+
+/* --- the pieces --- */
+
+static void enter(struct path_lane *lane, const struct path_scene *scene, struct path_wave_state *wave) {
+    lane->state.parts = scene->has_parts ? &wave->parts : NULL;
+    lane->state.seen_through = wave->seen_through;
+    lane->scratch.failed = false;
+}
+
+static void leave(const struct path_lane *lane, struct path_wave_state *wave) {
+    wave->seen_through = lane->state.seen_through;
+    wave->failed = wave->failed || lane->scratch.failed;
+}
+
+bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
+                     const struct path_order *order, uint64_t number) {
+    const struct renderer *renderer = &scene->renderer;
+    const uint32_t each = order->end - order->begin;
+    const uint64_t pixel = number / each, width = order->x1 - order->x0;
+    const struct pixel_sample at =
+        path_sample_position(&scene->tracer, &scene->job, order->x0 + (int64_t)(pixel % width),
+                             order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(number % each));
+    struct integrator_state *state = &lane->state;
+    struct ray ray;
+    wave->parts = (struct path_parts){0};
+    wave->seen_through = 0;
+    wave->weight = at.weight;
+    wave->failed = wave->below = wave->ended = false;
+    enter(lane, scene, wave);
+    state->sampler =
+        sampler_make_sobol(scene->job.settings.seed, (uint64_t)at.y * scene->job.width + (uint64_t)at.x, at.number);
+    wave->seen = renderer_camera_ray(renderer, &renderer->camera, &at, &state->sampler, &ray);
+    if (!wave->seen)
+        return false;
+    state->eye_medium_stack = &renderer->eye_medium_stack;
+    if (renderer->medium_stack_by_ray) {
+        const struct inside_query eye = {ray.origin, ray.time, renderer->closed, renderer->closed_count};
+        world_medium_stack(scene->job.world, &eye, &lane->scratch, &lane->media);
+        state->eye_medium_stack = &lane->media;
+    }
+    begin(&wave->path, state, &ray, state->sampler.key);
+    leave(lane, wave);
+    return true;
+}
+
+void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
+    enter(lane, scene, wave);
+    if (!wave->below)
+        extend(&lane->state, &wave->path);
+    leave(lane, wave);
+}
+
+void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
+    enter(lane, scene, wave);
+    bool goes_on = (wave->below ? come_out : shade)(&scene->tracer, &lane->state, &wave->path, &wave->shadow, NULL);
+    wave->below = !goes_on && wave->path.kind == RAY_BELOW;
+    wave->ended = !goes_on && !wave->below;
+    leave(lane, wave);
+}
+
+bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave) {
+    enter(lane, scene, wave);
+    shadow(&scene->tracer, &lane->state, &wave->path, &wave->shadow);
+    leave(lane, wave);
+    return !wave->ended && !wave->failed;
+}
+
+bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *wave,
+                   struct path_pixel *pixel) {
+    struct colour light = colour_all(0);
+    if (wave->failed)
+        return false;
+    enter(lane, scene, wave);
+    if (wave->seen)
+        light = finish(&scene->tracer, &lane->state, &wave->path);
+    path_add(pixel, lane->state.parts, light, wave->seen_through, wave->weight);
+    return true;
+}
+
+/* --- the scene --- */
+
+size_t path_scene_size(void) {
+    return sizeof(struct path_scene);
+}
+
+const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer) {
+    const struct lens *lens = &renderer->camera.lens;
+    if (tracer->photon_lights)
+        return "photons";
+    if (renderer->timed && renderer->job->settings.motion.moves)
+        return "a camera that moves while the shutter is open";
+    if (lens->stereo == STEREO_ANAGLYPH || lens->depth)
+        return "colours of both eyes, and depths of a light field";
+    return NULL;
+}
+
+/* The tables of a world that is there. */
+static void bundle_media(struct bundle *bundle, void *tables) {
+    struct media *media = tables;
+    BUNDLE(bundle, media->solids, 1, NULL);
+    BUNDLE(bundle, media->all, 1, medium_bundle);
+}
+
+static void bundle_scene(struct bundle *bundle, void *path_scene) {
+    struct path_scene *scene = path_scene;
+    struct path_tracer *tracer = &scene->tracer;
+    const struct world *world = scene->job.world;
+    BUNDLE(bundle, scene->renderer.closed, scene->renderer.closed_count, NULL);
+    BUNDLE(bundle, tracer->aimed_lights, tracer->aimed_light_count, NULL);
+    BUNDLE(bundle, tracer->sealed, world->first_solid ? world->first_solid[world->primitive_count] : 0, NULL);
+    BUNDLE(bundle, scene->job.world, 1, world_bundle);
+    world_lights_bundle(bundle, &tracer->lights);
+    glow_bundle(bundle, &tracer->glow);
+    BUNDLE(bundle, scene->renderer.eye_medium_stack.media, 1, bundle_media);
+    BUNDLE(bundle, scene->renderer.job, 1, NULL); /* the root */
+}
+
+struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer) {
+    struct path_scene scene = {.tracer = *tracer, .has_parts = path_has_parts(&renderer->job->settings)};
+    scene.job = (struct render_job){.world = renderer->job->world,
+                                    .settings = renderer->job->settings,
+                                    .width = renderer->job->width,
+                                    .height = renderer->job->height};
+    scene.job.settings.tone.table = NULL;
+    scene.renderer = (struct renderer){.job = &scene.job,
+                                       .camera = renderer->camera,
+                                       .eye_medium_stack = renderer->eye_medium_stack,
+                                       .timed = renderer->timed,
+                                       .medium_stack_by_ray = renderer->medium_stack_by_ray,
+                                       .sampler = renderer->sampler,
+                                       .sample_share = renderer->sample_share,
+                                       .closed = renderer->closed,
+                                       .closed_count = renderer->closed_count};
+    scene.media_dim = media_dim_lights(renderer->job->world);
+    scene.tracer.tiles = NULL;
+    scene.tracer.contours = NULL;
+    scene.tracer.arena = (struct arena){0};
+    return bundle_create(&scene, sizeof scene, bundle_scene);
+}

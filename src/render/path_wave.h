@@ -1,0 +1,54 @@
+/* Paths of many pixels at a time: a piece of all of them, then the next piece (path_pieces_internal.h), as cards make
+ * them. Each has the bits that a thread gives it, which makes all pieces of one path in a row. */
+#ifndef GRAY_RENDER_PATH_WAVE_H
+#define GRAY_RENDER_PATH_WAVE_H
+
+#include "base/bundle.h"
+#include "film/path_film.h"
+
+/* What paths read; the root of a bundle. */
+struct path_scene;
+size_t path_scene_size(void);
+
+/* The samples begin .. end - 1 of the pixels of a rectangle of the picture, which have the samples before. */
+struct path_order {
+    uint32_t x0, y0, x1, y1;
+    uint32_t begin, end;
+};
+static inline uint64_t path_order_pixels(const struct path_order *order) {
+    return (uint64_t)(order->x1 - order->x0) * (order->y1 - order->y0);
+}
+static inline uint64_t path_order_paths(const struct path_order *order) {
+    return path_order_pixels(order) * (order->end - order->begin);
+}
+
+/* The state of a path between two pieces, path_wave_state_size() bytes; and what a thread needs for a piece. */
+struct path_wave_state;
+size_t path_wave_state_size(void);
+struct path_lane;
+/* NULL: no memory. */
+struct path_lane *path_lane_create(const struct path_scene *scene);
+void path_lane_destroy(struct path_lane *lane);
+
+/* The pieces of path `number` of the order. Paths are numbered pixel by pixel. False: the path is not alive; it still
+ * has to be added. */
+bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
+                     const struct path_order *order, uint64_t number);
+void path_wave_extend(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
+void path_wave_shade(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
+bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state);
+/* In the order of the samples. False: the memory of a query was too small, and the pixel has lost this sample. */
+bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
+                   struct path_pixel *pixel);
+
+/* Who makes the samples of rectangles in place of the threads of the render. */
+struct path_device {
+    /* Before the first order. Errors end the render. */
+    bool (*begin)(void *context, struct bundle *scene, struct error *error);
+    /* pixels: row by row; where a pixel has not all samples of the order afterwards, the thread makes them. Called from
+     * any worker. False: stopped. */
+    bool (*make)(void *context, const struct path_order *order, struct path_pixel *pixels);
+    void *context;
+};
+
+#endif

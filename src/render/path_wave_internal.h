@@ -1,0 +1,20 @@
+/* What the path tracer gives to waves. */
+#ifndef GRAY_RENDER_PATH_WAVE_INTERNAL_H
+#define GRAY_RENDER_PATH_WAVE_INTERNAL_H
+
+#include "render/path_internal.h"
+#include "render/path_wave.h"
+
+struct path_scene {
+    struct render_job job; /* the first, to which `renderer` points */
+    struct renderer renderer;
+    struct path_tracer tracer;
+    bool has_parts, media_dim;
+};
+
+/* What waves do not have, as the end of a sentence; NULL: nothing that the scene needs. */
+const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer);
+/* The scene with all that its paths read. NULL: no memory. */
+struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer);
+
+#endif

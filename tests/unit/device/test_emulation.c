@@ -1,0 +1,177 @@
+/* Paths in waves over the bundle of a scene: the bytes of the film are those of threads. Scenes of the language are
+ * rendered by tests/unit/project/test_device.c. */
+#include "device/emulation.h"
+#include "film/film.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include "base/mem.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 40, HEIGHT = 30 };
+
+/* Mirrors, glass, lamps, a sky, a solid with a hole. */
+static void begin_scene(struct stage *s) {
+    stage_begin(s, 2);
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.path_samples = 6;
+    s->settings.denoise = DENOISER_GRAY;
+    s->settings.max_depth = 8;
+    s->camera = (struct camera){{0, 1, 6}, {0, -0.1, -1}, {0, 1, 0}, 50};
+    s->sky.colour = colour_make(0.2, 0.3, 0.4);
+    stage_point_light(s, vec3_make(3, 5, 4), colour_make(0.9, 0.8, 0.7));
+    struct material *glowing = stage_phong(s, colour_all(0), colour_all(0), 1);
+    glowing->phong.emission = colour_all(6);
+    struct node *lamp = stage_sphere(s, s->root, glowing);
+    stage_scale(s, lamp, 0.3, 0.3, 0.3);
+    stage_move(s, lamp, -2, 3, 1);
+    struct node *floor = stage_cube(s, s->root, stage_phong(s, colour_make(0.7, 0.5, 0.3), colour_all(0.2), 30));
+    stage_scale(s, floor, 20, 1, 20);
+    stage_move(s, floor, -10, -2, -10);
+    stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 1, 1.5)), 1.2, 0, 0);
+    stage_move(s, stage_sphere(s, s->root, stage_glass(s, 1, 0, 1)), -1.2, 0, 0);
+}
+
+/* The colours and the records of the film. */
+struct picture {
+    struct film_pixel pixels[WIDTH * HEIGHT];
+    float *floats;
+    size_t size;
+};
+static void keep(const struct film *film, struct picture *out) {
+    const size_t count = (size_t)WIDTH * HEIGHT;
+    memcpy(out->pixels, film->pixels, sizeof out->pixels);
+    out->size = count * film->record.floats * sizeof *out->floats;
+    out->floats = realloc(out->floats, out->size);
+    memcpy(out->floats, film->floats, out->size);
+}
+static bool same(const struct picture *a, const struct picture *b) {
+    return a->size == b->size && memcmp(a->pixels, b->pixels, sizeof a->pixels) == 0 &&
+           memcmp(a->floats, b->floats, a->size) == 0;
+}
+
+/* A device that loses some samples, as one whose memory is too small for a query. */
+struct loser {
+    struct path_device inner;
+    uint32_t lost;
+};
+static bool begin_losing(void *context, struct bundle *scene, struct error *error) {
+    const struct loser *loser = context;
+    return loser->inner.begin(loser->inner.context, scene, error);
+}
+static bool make_losing(void *context, const struct path_order *order, struct path_pixel *pixels) {
+    struct loser *loser = context;
+    const uint64_t count = path_order_pixels(order);
+    if (!loser->inner.make(loser->inner.context, order, pixels))
+        return false;
+    for (uint64_t i = 0; i < count; i += 3, loser->lost++)
+        pixels[i] = (struct path_pixel){.samples = order->begin, .sums = {{7, 7, 7}}};
+    return true;
+}
+
+static void render_with(struct stage *s, const struct path_device *device, struct picture *out) {
+    struct render_job job = stage_job(s, WIDTH, HEIGHT);
+    job.device = device;
+    memset(job.film->pixels, 0, sizeof out->pixels);
+    for (uint32_t i = 0; i < film_tile_count(job.film); i++)
+        atomic_store(&job.film->tiles[i], FILM_TILE_WANTED);
+    CHECK(render_run(&job, s->pool, &s->statistics, &s->error));
+    keep(job.film, out);
+}
+
+static void check_scene(struct stage *s) {
+    struct picture threads = {0}, device = {0};
+    CHECK(stage_render(s, WIDTH, HEIGHT));
+    keep(&s->film, &threads);
+    static const uint32_t waves[] = {1, 7, 1000, 0};
+    for (int i = 0; i < 4; i++) {
+        struct emulation *emulation = emulation_create(s->pool, waves[i]);
+        struct loser loser = {emulation_device(emulation), 0};
+        const struct path_device losing = {begin_losing, make_losing, &loser};
+        render_with(s, i < 3 ? &loser.inner : &losing, &device);
+        CHECK(same(&threads, &device));
+        CHECK((loser.lost > 0) == (i == 3));
+        emulation_destroy(emulation);
+    }
+    free(threads.floats);
+    free(device.floats);
+}
+
+TEST(waves_over_the_bundle_of_a_scene_give_the_bytes_of_threads) {
+    struct stage s;
+    begin_scene(&s);
+    check_scene(&s);
+    stage_end(&s);
+}
+
+TEST(waves_until_a_tile_is_quiet_give_the_bytes_of_threads) {
+    struct stage s;
+    begin_scene(&s);
+    s.settings.path_samples = 64;
+    s.settings.noise = 0.2;
+    check_scene(&s);
+    stage_end(&s);
+}
+
+TEST(waves_through_a_lens_give_the_bytes_of_threads) {
+    struct stage s;
+    begin_scene(&s);
+    s.settings.lens.aperture = 0.4;
+    s.settings.filter = FILTER_MITCHELL;
+    check_scene(&s);
+    stage_end(&s);
+}
+
+/* --- no pointer is forgotten --- */
+
+struct words {
+    uint64_t from[512], to[512];
+    int count;
+    uint32_t found;
+    bool begun;
+};
+
+/* Where this process has memory. */
+static void read_maps(struct words *words) {
+    char line[512];
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && words->count < 512 && fgets(line, sizeof line, maps)) {
+        char *end;
+        words->from[words->count] = strtoull(line, &end, 16);
+        words->to[words->count] = strtoull(end + 1, NULL, 16);
+        words->count += words->from[words->count] > 1 << 16;
+    }
+    if (maps)
+        (void)fclose(maps);
+}
+
+static bool find_addresses(void *context, struct bundle *scene, struct error *error) {
+    struct words *words = context;
+    const size_t size = bundle_size(scene);
+    uint64_t *bytes = mem_alloc_aligned(64, size);
+    bundle_write(scene, bytes);
+    read_maps(words);
+    for (size_t i = 0; i < size / 8; i++)
+        for (int k = 0; k < words->count; k++)
+            words->found += bytes[i] >= words->from[k] && bytes[i] < words->to[k];
+    mem_free(bytes);
+    words->begun = true;
+    return error_set(error, ERROR_CANCELLED, "seen");
+}
+
+TEST(no_word_of_the_bundle_of_a_scene_is_an_address_of_the_process) {
+    struct stage s;
+    struct words words = {.count = 0};
+    begin_scene(&s);
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+    const struct path_device device = {find_addresses, NULL, &words};
+    job.device = &device;
+    CHECK(!render_run(&job, s.pool, &s.statistics, &s.error));
+    CHECK(words.begun && words.count > 5);
+    CHECK_EQ_INT(words.found, 0);
+    stage_end(&s);
+}
