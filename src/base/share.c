@@ -41,23 +41,55 @@ static bool map_block(struct share *share, struct error *error) {
     return true;
 }
 
-bool share_create(struct share *share, size_t size, struct error *error) {
-    *share = (struct share){.size = size ? size : 1};
-    if (!fits_machine(share->size))
-        return no_memory(error, size, "this machine has less in all");
-    share->descriptor = MAY_FAIL(memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-    if (share->descriptor < 0)
-        return error_set(error, ERROR_MACHINE, "the memory of the picture cannot be shared: %s", strerror(errno));
+/* seals: beside those of the size. */
+static int create(size_t size, int seals, struct error *error) {
+    if (!fits_machine(size)) {
+        (void)no_memory(error, size, "this machine has less in all");
+        return -1;
+    }
+    int descriptor = MAY_FAIL(memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (descriptor < 0) {
+        (void)error_set(error, ERROR_MACHINE, "the memory of the picture cannot be shared: %s", strerror(errno));
+        return -1;
+    }
     int failed;
     do {
-        failed = MAY_FAIL(fallocate(share->descriptor, 0, 0, (off_t)share->size));
+        failed = MAY_FAIL(fallocate(descriptor, 0, 0, (off_t)size));
     } while (failed != 0 && errno == EINTR);
-    if (failed != 0 || fcntl(share->descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
-        no_memory(error, size, strerror(errno));
-        (void)close(share->descriptor);
-        return false;
+    if (failed == 0 && fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | seals) == 0)
+        return descriptor;
+    (void)no_memory(error, size, strerror(errno));
+    (void)close(descriptor);
+    return -1;
+}
+
+bool share_create(struct share *share, size_t size, struct error *error) {
+    *share = (struct share){.size = size ? size : 1};
+    share->descriptor = create(share->size, F_SEAL_SEAL, error);
+    return share->descriptor >= 0 && map_block(share, error);
+}
+
+int share_create_open(size_t size, struct error *error) {
+    return create(size, 0, error);
+}
+
+bool share_freeze(int descriptor) {
+    return fcntl(descriptor, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SEAL) == 0;
+}
+
+void *share_map_copy(int descriptor, size_t *size, struct error *error) {
+    struct stat status;
+    bool known = fstat(descriptor, &status) == 0 && status.st_size > 0;
+    void *block =
+        known ? mmap(NULL, (size_t)status.st_size, PROT_READ | PROT_WRITE, MAP_PRIVATE, descriptor, 0) : MAP_FAILED;
+    int why = errno;
+    (void)close(descriptor);
+    if (block == MAP_FAILED) {
+        (void)error_set(error, ERROR_MACHINE, "the memory of a scene cannot be reached: %s", strerror(why));
+        return NULL;
     }
-    return map_block(share, error);
+    *size = (size_t)status.st_size;
+    return block;
 }
 
 bool share_attach(struct share *share, int descriptor, size_t size, struct error *error) {

@@ -24,6 +24,11 @@ void emulation_destroy(struct emulation *emulation) {
     mem_free(emulation);
 }
 
+bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struct error *error) {
+    emulation->scene = bundle_open(bytes, size, (uint64_t)(uintptr_t)bytes, path_scene_size(), error);
+    return emulation->scene != NULL;
+}
+
 static bool begin(void *context, struct bundle *scene, struct error *error) {
     struct emulation *emulation = context;
     const size_t size = bundle_size(scene);
@@ -32,9 +37,7 @@ static bool begin(void *context, struct bundle *scene, struct error *error) {
     if (!emulation->bytes)
         return error_no_memory(error, "the scene for a device");
     bundle_write(scene, emulation->bytes);
-    emulation->scene =
-        bundle_open(emulation->bytes, size, (uint64_t)(uintptr_t)emulation->bytes, path_scene_size(), error);
-    return emulation->scene != NULL;
+    return emulation_open(emulation, emulation->bytes, size, error);
 }
 
 /* --- waves --- */
@@ -84,7 +87,7 @@ static void add_wave(const struct wave *wave, struct path_pixel *pixels) {
     }
 }
 
-static bool make(void *context, const struct path_order *order, struct path_pixel *pixels) {
+static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
     const struct emulation *emulation = context;
     const uint64_t paths = path_order_paths(order);
     struct wave wave = {.scene = emulation->scene, .order = order};
@@ -100,6 +103,10 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         if (goes_on)
             add_wave(&wave, pixels);
     }
+    if (wave.lane) {
+        const struct path_counts made = path_lane_counts(wave.lane);
+        path_counts_add(counts, &made);
+    }
     path_lane_destroy(wave.lane);
     mem_free(wave.living);
     mem_free(wave.states);
@@ -107,5 +114,5 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
 }
 
 struct path_device emulation_device(struct emulation *emulation) {
-    return (struct path_device){begin, make, emulation};
+    return (struct path_device){NULL, begin, make, emulation};
 }

@@ -9,6 +9,9 @@ struct emulation;
 /* wave: paths at a time; 0: as many as are usual. NULL: no memory. */
 struct emulation *emulation_create(const struct pool *pool, uint32_t wave);
 void emulation_destroy(struct emulation *emulation);
+/* Opens the bundle of a scene, which must outlive the emulation, in place of `begin` of the device. Errors: as
+ * bundle_open. */
+bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struct error *error);
 /* It may be used until the emulation is destroyed. */
 struct path_device emulation_device(struct emulation *emulation);
 

@@ -2,6 +2,7 @@
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 
+#include "device/device_link.h"
 #include "formats/list.h"
 #include "preview/preview_messages.h"
 
@@ -173,6 +174,35 @@ static void link_model_end(void *context) {
     note(link, channel_send(&link->channel, MESSAGE_MODEL_END, NULL, 0, -1));
 }
 
+/* Asks for memory; its descriptor, or -1. */
+static int ask_for_device(struct channel_services *link, uint64_t size, uint32_t slots, struct error *error) {
+    const struct device_request request = {size, slots};
+    struct message message;
+    if (!channel_send(&link->channel, MESSAGE_DEVICE, &request, sizeof request, -1) ||
+        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_FILM) {
+        (void)nobody_there(link, error);
+        return -1;
+    }
+    if (!message.body.answer.ok)
+        *error = message.body.answer.error;
+    else if (message.descriptor < 0)
+        (void)error_set(error, ERROR_MACHINE, "the memory of a device cannot be reached: %s", strerror(EMFILE));
+    return message.body.answer.ok ? message.descriptor : -1;
+}
+
+static bool link_device(void *context, const struct bundle *scene, uint32_t slots, struct share *orders,
+                        struct error *error) {
+    struct channel_services *link = context;
+    struct share memory;
+    int descriptor = ask_for_device(link, bundle_size(scene), slots, error);
+    if (descriptor < 0 || !share_attach(&memory, descriptor, bundle_size(scene), error))
+        return false;
+    bundle_write(scene, memory.block);
+    share_destroy(&memory);
+    descriptor = ask_for_device(link, 0, slots, error);
+    return descriptor >= 0 && share_attach(orders, descriptor, device_link_size(slots), error);
+}
+
 static void link_line(void *context, enum line_kind kind, const char *text) {
     struct channel_services *link = context;
     bool sent = channel_send_line(&link->channel, kind, text);
@@ -224,6 +254,7 @@ struct host_services channel_services_make(struct channel_services *link, struct
                                   .model = link_model,
                                   .model_end = link_model_end,
                                   .solution = link_solution,
+                                  .device = link_device,
                                   .line = link_line,
                                   .script_ended = link_script_ended,
                                   .read = link_read,

@@ -75,8 +75,8 @@ static void print_version(void) {
     (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, "
                  "WebP by %s, "
                  "windows by %s, farms by %s\n",
-                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), json_text_library(), font_library(),
-                 exr_library(), webp_library(), window, farm);
+                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), json_text_library(),
+                 font_library(), exr_library(), webp_library(), window, farm);
 }
 
 /* If several processes render a picture, only the first one reports and writes files. */

@@ -11,6 +11,7 @@
 #include "film/path_film.h"
 #include "formats/model.h"
 #include "host/model_export.h"
+#include "host/picture_device.h"
 #include "host/render_reports.h"
 #include "host/scene_text.h"
 #include "inspect/inspect.h"
@@ -224,6 +225,20 @@ static void notice_of_picture(void *context, const char *text) {
     render_process_say(work->process, LINE_NOTICE, "%.1400s: %s", work->request->where, text);
 }
 
+static bool render_picture(struct picture_work *work, struct error *error) {
+    struct render_process *process = work->process;
+    struct picture_device device = {.services = process->services, .pool = process->pool};
+    struct path_device maker;
+    if (process->options->device != DEVICE_CPU) {
+        maker = picture_device_maker(&device, work->job.settings.integrator);
+        work->job.device = &maker;
+    }
+    bool ok = render_run(&work->job, process->pool, &work->report.rays, error);
+    work->job.device = NULL;
+    picture_device_end(&device);
+    return ok && overlay_draw(&work->job, process->pool, error);
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture_unlimited(struct picture_work *work, struct error *error) {
     struct render_process *process = work->process;
@@ -254,9 +269,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     if (ok && !is_asked(process->options) && !process->options->check) {
         if (!in_window)
             atomic_store(&process->services->control->tiles, film_tile_count(job->film));
-        ok = in_window
-                 ? make_in_window(work, built - begun, error)
-                 : render_run(job, process->pool, &report->rays, error) && overlay_draw(job, process->pool, error);
+        ok = in_window ? make_in_window(work, built - begun, error) : render_picture(work, error);
     }
     report->rays.build_seconds = built - begun;
     report->rays.build_processor_seconds = built_worked - worked;

@@ -74,9 +74,9 @@ struct render_process {
     struct kept_model kept_model;
     struct gltf_scene *gltf_scene; /* of -o FILE.glb, while its frames are added */
     uint32_t gltf_frame;           /* the last one */
-    struct list scene; /* its text, of the only picture */
-    uint32_t scenes;   /* that were written as text */
-    unsigned faults; /* the notices of scene_check that this script has caused */
+    struct list scene;             /* its text, of the only picture */
+    uint32_t scenes;               /* that were written as text */
+    unsigned faults;               /* the notices of scene_check that this script has caused */
 };
 
 /* A picture between the call of gr.render and the finished film. */

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "host/supervisor_child.h"
+#include "host/supervisor_device.h"
 #include "host/supervisor_export.h"
 #include "host/supervisor_messages.h"
 #include "host/supervisor_signals.h"
@@ -116,6 +117,10 @@ static void talk_to_child(struct supervisor *supervisor) {
         if (watched[1].revents)
             supervisor_read_signals(supervisor);
         leave_abandoned(supervisor);
+        if (supervisor->output.current.open)
+            supervisor_watch_device(supervisor);
+        else
+            supervisor_end_device(supervisor);
         if (supervisor->deadline > 0 && clock_now() > supervisor->deadline)
             break;
         /* What the user sees goes on whether or not the child reports something. */
@@ -157,6 +162,7 @@ static void run_children(struct supervisor *supervisor) {
         talk_to_child(supervisor);
         if (supervisor->waits)
             return;
+        supervisor_end_device(supervisor);
         channel_close(&supervisor->channel); /* a child that waits for an answer ends */
         int how = supervisor_reap_child(supervisor);
         there = false;

@@ -52,6 +52,14 @@ struct window_export {
     int shown;    /* the seconds since then that the window shows */
 };
 
+/* The process that makes samples in place of the threads of the child, of the picture that is open. */
+struct device_process {
+    pid_t process;     /* 0: none */
+    bool asked;        /* there is a descriptor of the scene */
+    int scene;         /* its memory, while the child fills it */
+    struct share link; /* device/device_link.h */
+};
+
 struct supervisor {
     const struct options *options;
     struct options *own_options; /* the same; the user may change settings in the window */
@@ -84,6 +92,7 @@ struct supervisor {
     struct stall_check stall;
     struct script_retry retry;
     struct window_export model;
+    struct device_process device;
 };
 
 /* Seconds that a cancelled child has to end by itself before it is killed. It writes no files, so nothing is lost; and

@@ -3,6 +3,7 @@
 #include "host/supervisor_messages.h"
 
 #include "host/supervisor_child.h"
+#include "host/supervisor_device.h"
 #include "host/supervisor_export.h"
 
 #include "base/clock.h"
@@ -419,6 +420,12 @@ void supervisor_handle_message(struct supervisor *supervisor, const struct messa
         model_output_forget(&output->model);
         if (!current->open)
             supervisor_start_script_clock(supervisor);
+        return;
+    case MESSAGE_DEVICE: /* first for the scene, then for its orders */
+        if (!current->open || supervisor->options->device == DEVICE_CPU ||
+            (message->body.device.size == 0 && !supervisor->device.asked))
+            break;
+        supervisor_answer_device(supervisor, &message->body.device);
         return;
     case MESSAGE_SCRIPT:
         note_script(supervisor, &message->body.script);

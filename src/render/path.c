@@ -167,7 +167,10 @@ static bool find_glow(struct path_tracer *tracer, const struct world *world, str
 /* If the job has a device, and it can render the scene, workers give their samples to it. */
 static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
     const struct path_device *device = renderer->job->device;
-    if (!device || renderer->roams || path_scene_lacks(tracer, renderer))
+    const char *lacks = device && !renderer->roams ? path_scene_lacks(tracer, renderer) : NULL;
+    if (lacks && device->leave)
+        device->leave(device->context, lacks);
+    if (!device || renderer->roams || lacks)
         return true;
     struct bundle *scene = path_scene_bundle(tracer, renderer);
     if (!scene)
@@ -319,6 +322,17 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     return true;
 }
 
+static void count_of_device(struct worker *worker, const struct path_counts *counts) {
+    struct integrator_state *state = &worker->state;
+    worker->camera_rays += counts->camera_rays;
+    state->reflected_rays += counts->reflected_rays;
+    state->refracted_rays += counts->refracted_rays;
+    state->shadow_rays += counts->shadow_rays;
+    state->hits += counts->hits;
+    state->medium_events += counts->medium_events;
+    state->clamped = state->clamped || counts->clamped;
+}
+
 /* The same for a rectangle, by the device. What it leaves out the worker makes. */
 static bool sample_by_device(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                              const struct sample_plan *plan, struct sample_range range) {
@@ -329,7 +343,10 @@ static bool sample_by_device(const struct path_tracer *tracer, struct renderer *
     for (uint32_t y = part->y0; y < part->y1; y++)
         for (uint32_t x = part->x0; x < part->x1; x++)
             *pixel++ = begin_pixel(tracer, plan->film, lines, x, y, range.begin);
-    if (!renderer->job->device->make(renderer->job->device->context, &order, pixels))
+    struct path_counts counts = {0};
+    bool goes_on = renderer->job->device->make(renderer->job->device->context, &order, pixels, &counts);
+    count_of_device(worker, &counts);
+    if (!goes_on)
         return false;
     pixel = pixels;
     for (uint32_t y = part->y0; y < part->y1; y++)

@@ -28,6 +28,7 @@ struct path_lane {
     struct world_scratch scratch;
     struct integrator_state state;
     struct medium_stack media; /* around the eye */
+    uint64_t camera_rays;
 };
 
 size_t path_wave_state_size(void) {
@@ -49,6 +50,22 @@ void path_lane_destroy(struct path_lane *lane) {
     if (lane)
         world_scratch_destroy(&lane->scratch);
     mem_free(lane);
+}
+
+void path_counts_add(struct path_counts *to, const struct path_counts *counts) {
+    to->camera_rays += counts->camera_rays;
+    to->reflected_rays += counts->reflected_rays;
+    to->refracted_rays += counts->refracted_rays;
+    to->shadow_rays += counts->shadow_rays;
+    to->hits += counts->hits;
+    to->medium_events += counts->medium_events;
+    to->clamped = to->clamped || counts->clamped;
+}
+
+struct path_counts path_lane_counts(const struct path_lane *lane) {
+    const struct integrator_state *state = &lane->state;
+    return (struct path_counts){lane->camera_rays, state->reflected_rays, state->refracted_rays, state->shadow_rays,
+                                state->hits,       state->medium_events,  state->clamped};
 }
 
 /* --- the pieces --- */
@@ -84,6 +101,7 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, str
     wave->seen = renderer_camera_ray(renderer, &renderer->camera, &at, &state->sampler, &ray);
     if (!wave->seen)
         return false;
+    lane->camera_rays++;
     state->eye_medium_stack = &renderer->eye_medium_stack;
     if (renderer->medium_stack_by_ray) {
         const struct inside_query eye = {ray.origin, ray.time, renderer->closed, renderer->closed_count};
@@ -138,7 +156,7 @@ size_t path_scene_size(void) {
 const char *path_scene_lacks(const struct path_tracer *tracer, const struct renderer *renderer) {
     const struct lens *lens = &renderer->camera.lens;
     if (tracer->photon_lights)
-        return "photons";
+        return "photons (--caustics)";
     if (renderer->timed && renderer->job->settings.motion.moves)
         return "a camera that moves while the shutter is open";
     if (lens->stereo == STEREO_ANAGLYPH || lens->depth)

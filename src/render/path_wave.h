@@ -22,6 +22,13 @@ static inline uint64_t path_order_paths(const struct path_order *order) {
     return path_order_pixels(order) * (order->end - order->begin);
 }
 
+/* What a worker counts. */
+struct path_counts {
+    uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays, hits, medium_events;
+    bool clamped;
+};
+void path_counts_add(struct path_counts *to, const struct path_counts *counts);
+
 /* The state of a path between two pieces, path_wave_state_size() bytes; and what a thread needs for a piece. */
 struct path_wave_state;
 size_t path_wave_state_size(void);
@@ -29,6 +36,7 @@ struct path_lane;
 /* NULL: no memory. */
 struct path_lane *path_lane_create(const struct path_scene *scene);
 void path_lane_destroy(struct path_lane *lane);
+struct path_counts path_lane_counts(const struct path_lane *lane); /* of all its pieces */
 
 /* The pieces of path `number` of the order. Paths are numbered pixel by pixel. False: the path is not alive; it still
  * has to be added. */
@@ -43,11 +51,13 @@ bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struc
 
 /* Who makes the samples of rectangles in place of the threads of the render. */
 struct path_device {
+    /* Or NULL; in place of `begin`: the scene has something that devices do not have, in words. */
+    void (*leave)(void *context, const char *what);
     /* Before the first order. Errors end the render. */
     bool (*begin)(void *context, struct bundle *scene, struct error *error);
-    /* pixels: row by row; where a pixel has not all samples of the order afterwards, the thread makes them. Called from
-     * any worker. False: stopped. */
-    bool (*make)(void *context, const struct path_order *order, struct path_pixel *pixels);
+    /* pixels: row by row; where one has not all samples of the order afterwards, the thread makes them. Adds to
+     * `counts`. Called from any worker. False: stopped. */
+    bool (*make)(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts);
     void *context;
 };
 

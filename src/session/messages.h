@@ -31,6 +31,7 @@ enum message_kind {
                     * bytes if their number is known */
     MESSAGE_MODEL_WRITE, /* no body: the bytes are there; answered by MESSAGE_ANSWER when the file is written */
     MESSAGE_MODEL_END,   /* no body: the script goes on; no answer */
+    MESSAGE_DEVICE, /* struct device_request: memory for a scene is wanted, or for orders; answered by MESSAGE_FILM */
     MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, possibly much later, by MESSAGE_ANSWER: ok: run them
                      * again */
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
@@ -101,6 +102,14 @@ struct picture_report {
     uint32_t stopped;  /* not 0: a pass that was stopped */
 };
 
+/* size: bytes of the bundle of a scene, which come first; 0: they are there, a device process is to begin, and so many
+ * orders are to be made at a time. */
+enum { DEVICE_SLOTS = 1024 };
+struct device_request {
+    uint64_t size;
+    uint32_t slots; /* 1 to DEVICE_SLOTS */
+};
+
 struct message_answer {
     bool ok;
     bool already; /* to MESSAGE_BEGIN: there is nothing to do, and no film is sent */
@@ -128,6 +137,7 @@ struct message {
         struct picture_request request;
         struct picture_report report;
         struct model_request model;
+        struct device_request device;
         struct message_answer answer;
         struct message_script script;
         struct message_read read;

@@ -598,11 +598,28 @@ uint64_t options_picture_bytes(const struct options *options) {
     return options->picture_bytes > 0 ? options->picture_bytes : otherwise;
 }
 
+/* GRAY_DEVICE, where there is no option. */
+static bool take_device(struct options *options, struct error *error) {
+    static const char *const words[] = {DEVICES(LIST_WORD)};
+    const char *text = getenv("GRAY_DEVICE");
+    if (!text || text[0] == '\0')
+        return true;
+    for (int i = 0; i < LIST_COUNT(DEVICES); i++) {
+        if (strcmp(text, words[i]) != 0)
+            continue;
+        options->device = i;
+        return true;
+    }
+    return error_set(error, ERROR_USAGE, "GRAY_DEVICE is '%.64s', not one of %s", text, LIST_BARS(DEVICES));
+}
+
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error) {
     *options = (struct options){
         .settings = settings_default(), .partial = true, .checkpoint_every = 10, .farm_stall = 30, .farm_silence = 60};
     size_t room = argc > 0 ? (size_t)argc : 1;
     const char **scripts = arena_alloc_array(arena, room, sizeof *scripts);
+    if (!take_device(options, error))
+        return false;
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
                           .pixels = arena_alloc_array(arena, room, sizeof *lists.pixels),
                           .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),

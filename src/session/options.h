@@ -118,7 +118,8 @@ struct options {
     uint32_t shard, shards; /* --shard: the number of this shard, from 1, and the number of shards; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;
-    int isa; /* --isa: an index into options_isa_name */
+    int isa;    /* --isa: an index into options_isa_name */
+    int device; /* --device: an enum device */
     enum progress_mode progress;
     enum statistics_mode statistics;
 };
@@ -143,6 +144,9 @@ uint32_t options_picture_limit(const struct options *options);
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
 /* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
 uint64_t options_picture_bytes(const struct options *options);
+/* Who makes the samples of paths; pictures do not depend on it. */
+#define DEVICES(X) X(DEVICE_CPU, "cpu") X(DEVICE_EMULATE, "emulate")
+enum device { DEVICES(LIST_MEMBER) };
 /* What cpu_select_isa understands. */
 const char *options_isa_name(const struct options *options);
 /* The name of picture `number` under -o: %d, %3d or %03d is the number, and so are two # or more, which are its digits;

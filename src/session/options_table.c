@@ -59,6 +59,10 @@ static const struct setting options_table[] = {
      "sky and background."},
     {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_SIZE_AND_COLOUR, "--isa", NULL, ISA_CHOICES, NULL, FIELD(isa), 0, 0, 0,
      "auto", "Instruction set of the kernels; the picture is the same."},
+    {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_EXECUTION, "--device", NULL, LIST_BARS(DEVICES), NULL, FIELD(device), 0,
+     0, 0, "cpu",
+     "Who makes the samples of integrator path; emulate: a process of its own, in waves, as a graphics card would; the "
+     "picture is the same."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-o", "FILE", "", NULL, FIELD(output), 0, 0, 0, "the script's",
      "Name of the picture:" PICTURE_FORMATS_HELP "; '-' is standard output; for several "
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "

@@ -19,6 +19,83 @@ static void scan(const char *what, const char *says) {
     free(output);
 }
 
+/* Every scene, as threads make it and as a device process makes it. */
+static void compare(const char *scenes, const char *options) {
+    char line[4096], *root = realpath(".", NULL);
+    (void)snprintf(line, sizeof line,
+                   "bad=0; for scene in $(cd '%s' && echo %s); do rm -f *.pfm; for device in cpu emulate; do "
+                   "$gray -q %s --allow-read '%s' --device $device -o $device-%%02d.pfm '%s'/$scene "
+                   ">$device.out 2>$device.txt || { bad=1; cat $device.txt; }; done; "
+                   "cmp cpu.txt emulate.txt || bad=1; n=0; for picture in cpu-*.pfm; do n=$((n + 1)); "
+                   "cmp $picture emulate-${picture#cpu-} || { bad=1; echo $scene; }; done; done; echo $n; exit $bad",
+                   root, scenes, options, root, root);
+    free(root);
+    test_shell(line, 0, "");
+}
+
+TEST(a_device_process_gives_the_bytes_of_threads_in_twenty_scenes) {
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+    test_skip("too slow in this build; the release build renders them");
+#endif
+    compare("data/path/*.lua tests/pictures/*.lua", "--integrator path --size 32x24 --spp 3");
+}
+
+TEST(a_device_process_gives_the_bytes_of_threads_in_every_kind_of_render) {
+    compare("data/path/table.lua", "--integrator path --size 40x30 --spp 20 --noise .2");
+    compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --aov all");
+    compare("data/path/table.lua", "--integrator path --size 64x48 --spp 4 --crop 10,9,33,20");
+    compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --caustics 1000");
+    compare("data/path/table.lua", "--integrator path --size 40x30 --spp 4 --line-width 2 --denoise");
+    compare("data/06demo.lua", "--size 40x30 --integrator whitted");
+}
+
+static const char room[] =
+    "local r = gr.node('r')\n"
+    "r:add_child(gr.sphere { radius = 1, material = gr.material { kd = { .7, .3, .2 } } })\n"
+    "r:add_child(gr.rectangle { corner = { -9, -1, 9 }, along = { 18, 0, 0 }, up = { 0, 0, -18 },\n"
+    "    material = gr.material { kd = { .6, .6, .6 } } })\n"
+    "gr.render { node = r, file = 'room.pfm', width = 64, height = 64, eye = { 0, 1, 6 }, target = { 0, 0, 0 }, fov = "
+    "40,\n"
+    "    integrator = 'path', spp = 600, background = { .6, .8, 1 } }\n";
+
+/* The second child of the program is the device process. */
+static void kill_at(const char *sleeps) {
+    char line[2048];
+    (void)snprintf(
+        line, sizeof line,
+        "$gray -q -o whole.pfm scene.lua && for seconds in %s; do "
+        "$gray --device emulate -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
+        "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; sleep $seconds; "
+        "kill -9 $(pgrep -P $process | tail -n +2); wait $process || exit 1; "
+        "grep -q 'the device process was killed (signal 9, Killed); the processor goes on' killed.txt || exit 2; "
+        "cmp whole.pfm killed.pfm || exit 3; done; "
+        "$gray -q --device emulate -o killed.pfm --force scene.lua & process=$!; "
+        "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; device=$(pgrep -P $process | tail -n +2); "
+        "kill -TERM $process; wait $process; [ $? -ge 128 ] && ! kill -0 $device",
+        sleeps);
+    test_write_file(test_path("scene.lua"), room, sizeof room - 1);
+    test_need_tools("pgrep");
+    test_shell(line, 0, "");
+}
+
+TEST(the_processor_goes_on_when_the_device_process_is_killed) {
+    kill_at("0 .02 .1");
+}
+
+TEST_LONG(the_processor_goes_on_whenever_the_device_process_is_killed) {
+    kill_at("$(seq 0 .002 .4)");
+}
+
+TEST(what_device_there_is_is_an_option_or_in_the_environment) {
+    test_write_file(test_path("scene.lua"), room, sizeof room - 1);
+    test_shell("GRAY_DEVICE=emulate $gray --spp 1 --verbose scene.lua --integrator whitted 2>&1", 0,
+               "gray: the processor renders: a device has no integrator but path");
+    test_shell("GRAY_DEVICE=emulate $gray --spp 1 --verbose --force scene.lua --caustics 100 2>&1", 0,
+               "gray: the processor renders: a device has no photons (--caustics)");
+    test_shell("GRAY_DEVICE=card $gray --spp 1 scene.lua 2>&1", 2, "GRAY_DEVICE is 'card', not one of cpu|emulate");
+    test_shell("$gray --device card scene.lua 2>&1", 2, "--device");
+}
+
 TEST(what_a_ray_touches_compiles_for_cards_and_calls_nothing_else) {
     scan("calls", " functions");
 }

@@ -1,0 +1,159 @@
+#include "device/device_link.h"
+
+#include "device/emulation.h"
+#include "film/film.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* FREE, TAKEN, ASKED, MADE and again: TAKEN by the render process, while it writes or reads. WORKED on by a thread of
+ * the device. LEFT: the render was stopped, and nobody reads what is made. */
+enum slot_state { SLOT_FREE, SLOT_TAKEN, SLOT_ASKED, SLOT_WORKED, SLOT_MADE, SLOT_LEFT };
+
+struct slot {
+    _Atomic uint32_t state;
+    struct path_order order;
+    struct path_counts counts;
+    struct path_pixel pixels[FILM_TILE * FILM_TILE];
+};
+
+enum link_state { LINK_STARTS, LINK_READY, LINK_CLOSED };
+struct device_link {
+    _Atomic uint32_t state;
+    uint32_t slot_count;
+    struct pool_event asked, answered;
+    struct slot slots[];
+};
+
+/* A request to stop is noticed so soon, in seconds. */
+static const double patience = 0.01;
+
+size_t device_link_size(uint32_t slots) {
+    return sizeof(struct device_link) + slots * sizeof(struct slot);
+}
+
+void device_link_init(struct device_link *link, uint32_t slots) {
+    link->slot_count = slots;
+}
+
+void device_link_close(struct device_link *link) {
+    atomic_store(&link->state, LINK_CLOSED);
+    pool_signal(&link->asked);
+    pool_signal(&link->answered);
+}
+
+/* --- the device process --- */
+
+struct service {
+    struct device_link *link;
+    uint32_t slots;
+    struct path_device device;
+};
+
+static bool order_fits(const struct path_order *order) {
+    return order->x0 < order->x1 && order->x1 - order->x0 <= FILM_TILE && order->y0 < order->y1 &&
+           order->y1 - order->y0 <= FILM_TILE && order->begin < order->end;
+}
+
+/* The order is copied: the other process may change it. */
+static bool make_any(const struct service *service) {
+    for (uint32_t i = 0; i < service->slots; i++) {
+        struct slot *slot = &service->link->slots[i];
+        uint32_t asked = SLOT_ASKED, worked = SLOT_WORKED;
+        if (!atomic_compare_exchange_strong(&slot->state, &asked, SLOT_WORKED))
+            continue;
+        const struct path_order order = slot->order;
+        slot->counts = (struct path_counts){0};
+        if (order_fits(&order))
+            (void)service->device.make(service->device.context, &order, slot->pixels, &slot->counts);
+        if (!atomic_compare_exchange_strong(&slot->state, &worked, SLOT_MADE))
+            atomic_store(&slot->state, SLOT_FREE);
+        pool_signal(&service->link->answered);
+        return true;
+    }
+    return false;
+}
+
+static void serve(void *context, uint32_t item, int worker) {
+    const struct service *service = context;
+    struct device_link *link = service->link;
+    (void)item, (void)worker;
+    while (atomic_load(&link->state) != LINK_CLOSED) {
+        const uint32_t seen = atomic_load(&link->asked.signals);
+        if (!make_any(service))
+            pool_wait(&link->asked, seen, 0.5);
+    }
+}
+
+bool device_link_serve(struct device_link *link, void *scene, size_t size, int threads, struct error *error) {
+    char ignored[256];
+    struct pool *pool = pool_create(threads, ignored);
+    struct emulation *emulation = pool ? emulation_create(pool, 0) : NULL;
+    bool ok = emulation && emulation_open(emulation, scene, size, error);
+    if (!emulation)
+        (void)error_no_memory(error, "the scene for a device");
+    if (ok) {
+        struct service service = {link, link->slot_count, emulation_device(emulation)};
+        uint32_t starts = LINK_STARTS;
+        (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
+        pool_signal(&link->answered);
+        (void)pool_run(pool, (uint32_t)threads, serve, &service);
+    }
+    emulation_destroy(emulation);
+    if (pool)
+        pool_destroy(pool);
+    return ok;
+}
+
+/* --- the render process --- */
+
+bool device_client_wait(const struct device_client *client) {
+    struct device_link *link = client->link;
+    while (atomic_load(&link->state) == LINK_STARTS && !pool_cancelled(client->pool))
+        pool_wait(&link->answered, atomic_load(&link->answered.signals), patience);
+    return atomic_load(&link->state) == LINK_READY;
+}
+
+/* There are as many slots as workers, but some may be left with an order of a render that was stopped. */
+static struct slot *take_slot(const struct device_client *client) {
+    while (atomic_load(&client->link->state) == LINK_READY && !pool_cancelled(client->pool)) {
+        const uint32_t seen = atomic_load(&client->link->answered.signals);
+        for (uint32_t i = 0; i < client->slots; i++) {
+            struct slot *slot = &client->link->slots[i];
+            uint32_t idle = SLOT_FREE;
+            if (atomic_compare_exchange_strong(&slot->state, &idle, SLOT_TAKEN))
+                return slot;
+        }
+        pool_wait(&client->link->answered, seen, patience);
+    }
+    return NULL;
+}
+
+bool device_client_make(struct device_client *client, const struct path_order *order, struct path_pixel *pixels,
+                        struct path_counts *counts) {
+    struct device_link *link = client->link;
+    const size_t size = (size_t)path_order_pixels(order) * sizeof *pixels;
+    struct slot *slot = take_slot(client);
+    if (!slot)
+        return !pool_cancelled(client->pool);
+    slot->order = *order;
+    memcpy(slot->pixels, pixels, size);
+    atomic_store(&slot->state, SLOT_ASKED);
+    pool_signal(&link->asked);
+    for (;;) {
+        const uint32_t seen = atomic_load(&link->answered.signals);
+        uint32_t made = SLOT_MADE;
+        if (atomic_compare_exchange_strong(&slot->state, &made, SLOT_TAKEN))
+            break;
+        bool cancelled = pool_cancelled(client->pool);
+        if (cancelled || atomic_load(&link->state) != LINK_READY) {
+            atomic_store(&slot->state, SLOT_LEFT);
+            return !cancelled;
+        }
+        pool_wait(&link->answered, seen, patience);
+    }
+    memcpy(pixels, slot->pixels, size);
+    path_counts_add(counts, &slot->counts);
+    atomic_store(&slot->state, SLOT_FREE);
+    return true;
+}

@@ -1,0 +1,34 @@
+/* Memory that the render process shares with a device process: orders of samples in one direction, records of pixels in
+ * both. Neither process relies on what the other one writes there: what is not made as it was ordered, a thread of the
+ * render makes. */
+#ifndef GRAY_DEVICE_DEVICE_LINK_H
+#define GRAY_DEVICE_DEVICE_LINK_H
+
+#include "base/pool.h"
+#include "render/path_wave.h"
+
+struct device_link;
+/* Bytes for so many orders at a time. */
+size_t device_link_size(uint32_t slots);
+/* The memory is zero. */
+void device_link_init(struct device_link *link, uint32_t slots);
+/* The device process is gone, or has to go: nobody waits for it any more. From any process. */
+void device_link_close(struct device_link *link);
+
+/* The device process: opens the bundle of a scene and makes orders on so many threads until the link is closed. False:
+ * the bundle is damaged, or no memory. */
+bool device_link_serve(struct device_link *link, void *scene, size_t size, int threads, struct error *error);
+
+/* The render process. Owner: the caller. */
+struct device_client {
+    struct device_link *link;
+    const struct pool *pool;
+    uint32_t slots;
+};
+/* Waits until the device is ready. False: it is not; the link is closed. */
+bool device_client_wait(const struct device_client *client);
+/* Its `make`, of struct path_device. */
+bool device_client_make(struct device_client *client, const struct path_order *order, struct path_pixel *pixels,
+                        struct path_counts *counts);
+
+#endif

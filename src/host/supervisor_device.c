@@ -1,0 +1,112 @@
+#define _GNU_SOURCE
+#include "host/supervisor_device.h"
+
+#include "base/fault.h"
+#include "base/file.h"
+#include "device/device_link.h"
+#include "host/confine.h"
+#include "host/supervisor_child.h"
+#include "host/supervisor_messages.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* After the fork. The process needs two pieces of memory and its threads: everything else is taken away before it looks
+ * at the scene, which a render process has written. */
+static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent, uint32_t slots) {
+    static const struct options nothing;
+    struct share link = {0};
+    struct error error;
+    char report[4096];
+    size_t size = 0;
+    const bool is_confined = !supervisor->options->script.no_sandbox;
+    int orders = supervisor->device.link.descriptor, scene = supervisor->device.scene;
+    (void)signal(SIGINT, SIG_IGN);
+    (void)signal(SIGTERM, SIG_IGN);
+    (void)signal(SIGHUP, SIG_IGN);
+    (void)signal(SIGUSR1, SIG_IGN);
+    supervisor_leave(supervisor);
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
+        _exit(ERROR_MACHINE);
+    (void)file_null_input();
+    void *bytes = share_map_copy(scene, &size, &error);
+    bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error) &&
+              (!is_confined || confine_process(&nothing, STDERR_FILENO, report, sizeof report, &error)) &&
+              device_link_serve(link.block, bytes, size, (int)slots, &error);
+    if (!ok)
+        (void)fprintf(stderr, "gray: warning: %s\n", error.text);
+    _exit(ok ? 0 : (int)error.kind);
+}
+
+static bool start(struct supervisor *supervisor, uint32_t slots, struct error *error) {
+    struct device_process *device = &supervisor->device;
+    if (!share_freeze(device->scene))
+        return error_set(error, ERROR_MACHINE, "the memory of a scene cannot be sealed: %s", strerror(errno));
+    if (!share_create(&device->link, device_link_size(slots), error))
+        return false;
+    device_link_init(device->link.block, slots);
+    (void)fflush(NULL);
+    pid_t parent = getpid();
+    device->process = MAY_FAIL(fork());
+    if (device->process == 0)
+        run_as_device(supervisor, parent, slots);
+    int why = errno;
+    (void)close(device->scene);
+    device->asked = false;
+    if (device->process > 0)
+        return true;
+    device->process = 0;
+    share_destroy(&device->link);
+    return error_set(error, ERROR_MACHINE, "the device process cannot be started: %s", strerror(why));
+}
+
+void supervisor_answer_device(struct supervisor *supervisor, const struct device_request *request) {
+    struct device_process *device = &supervisor->device;
+    struct error error = {0};
+    bool ok;
+    int descriptor;
+    if (request->size > 0) {
+        supervisor_end_device(supervisor);
+        descriptor = device->scene = share_create_open((size_t)request->size, &error);
+        ok = device->asked = descriptor >= 0;
+    } else {
+        ok = start(supervisor, request->slots, &error);
+        descriptor = ok ? device->link.descriptor : -1;
+    }
+    supervisor_send_answer(supervisor, MESSAGE_FILM, ok, false, &error, descriptor);
+}
+
+void supervisor_watch_device(struct supervisor *supervisor) {
+    struct device_process *device = &supervisor->device;
+    char line[256];
+    int how;
+    if (device->process == 0 || waitpid(device->process, &how, WNOHANG) != device->process)
+        return;
+    device->process = 0;
+    device_link_close(device->link.block);
+    if (WIFSIGNALED(how))
+        (void)snprintf(line, sizeof line, "gray: warning: the device process was killed (signal %d, %s)", WTERMSIG(how),
+                       strsignal(WTERMSIG(how)));
+    else
+        (void)snprintf(line, sizeof line, "gray: warning: the device process ended with status %d", WEXITSTATUS(how));
+    (void)strncat(line, "; the processor goes on, and the picture is the same", sizeof line - strlen(line) - 1);
+    supervisor_report(supervisor, LINE_WARNING, line);
+}
+
+void supervisor_end_device(struct supervisor *supervisor) {
+    struct device_process *device = &supervisor->device;
+    if (device->process > 0) {
+        (void)kill(device->process, SIGKILL);
+        (void)waitpid(device->process, NULL, 0);
+    }
+    if (device->asked)
+        (void)close(device->scene);
+    share_destroy(&device->link);
+    device->process = 0;
+    device->asked = false;
+}
