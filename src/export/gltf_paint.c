@@ -13,15 +13,36 @@
 #include "math/elementary.h"
 #include "world/world_describe.h"
 
+#include <lauxlib.h>
 #include <math.h>
 
 /* --- numbers --- */
 
-/* A material at a place. */
+/* A material at a place, with the names that Lua gives it. */
+#define VALUES(X)                                                                                                      \
+    X(struct colour, base)                                                                                             \
+    X(struct colour, specular)                                                                                         \
+    X(struct colour, emission)                                                                                         \
+    X(struct colour, sheen)                                                                                            \
+    X(struct colour, attenuation)                                                                                      \
+    X(double, alpha)                                                                                                   \
+    X(double, metallic)                                                                                                \
+    X(double, roughness)                                                                                               \
+    X(double, ior)                                                                                                     \
+    X(double, specular_weight)                                                                                         \
+    X(double, transmission)                                                                                            \
+    X(double, distance)                                                                                                \
+    X(double, coat)                                                                                                    \
+    X(double, coat_roughness)                                                                                          \
+    X(double, sheen_roughness)                                                                                         \
+    X(double, film)                                                                                                    \
+    X(double, film_ior)                                                                                                \
+    X(double, film_thickness)                                                                                          \
+    X(double, dispersion)
+#define VALUE_MEMBER(type, name) type name;
+#define VALUE_FIELD(type, name) {#name, offsetof(struct values, name), sizeof(type) / sizeof(double)},
 struct values {
-    struct colour base, specular, emission, sheen, attenuation;
-    double alpha, metallic, roughness, ior, specular_weight, transmission, distance, coat, coat_roughness,
-        sheen_roughness, film, film_ior, film_thickness, dispersion;
+    VALUES(VALUE_MEMBER)
     bool unlit, is_solid;
     struct vec3 normal;
 };
@@ -273,10 +294,9 @@ static uint8_t encode(double light) {
     return png_write_byte(tone_apply(&tone, light));
 }
 
-/* The texture of a PNG file with these pixels. */
-static uint32_t add_picture(struct gltf_file *file, const struct pixels *pixels, uint32_t height, bool is_colour,
-                            const struct texture_image *how) {
-    static const uint32_t wraps[] = {[IMAGE_CLAMP] = 33071, [IMAGE_REPEAT] = 10497, [IMAGE_MIRROR] = 33648};
+/* Puts a PNG file with these pixels into the buffer. False: no memory. */
+static bool add_picture(const struct gltf_painter *p, const struct pixels *pixels, uint32_t height, bool is_colour,
+                        uint32_t *view) {
     const struct png_source source = {.width = pixels->width,
                                       .height = height,
                                       .bytes = row_of_pixels,
@@ -285,18 +305,10 @@ static uint32_t add_picture(struct gltf_file *file, const struct pixels *pixels,
                                       .srgb = is_colour};
     struct list png = {0};
     struct error error = {0};
-    file->failed = !png_encode(&source, NULL, put_into_list, &png, &error) || file->failed;
-    uint32_t view = gltf_add_view(file, png.items, png.count, GLTF_NO_TARGET);
+    bool ok = png_encode(&source, NULL, put_into_list, &png, &error) &&
+              gltf_add_view(p->buffer, png.items, png.count, GLTF_NO_TARGET, view);
     list_destroy(&png);
-    bool nearest = how && how->filter == IMAGE_NEAREST;
-    uint32_t image = gltf_element(file, GLTF_IMAGES, "{'bufferView':%u,'mimeType':'image/png'}", view);
-    uint32_t sampler = gltf_element(
-        file, GLTF_TEXTURE_SAMPLERS, "{'magFilter':%u,'minFilter':%u,'wrapS':%u,'wrapT':%u}", nearest ? 9728 : 9729,
-        nearest ? 9728
-        : how   ? 9987
-                : 9729, /* texels beside a place are of others */
-        wraps[how ? how->wrap : IMAGE_CLAMP], wraps[how ? (how->apart ? how->wrap_v : how->wrap) : IMAGE_CLAMP]);
-    return gltf_element(file, GLTF_TEXTURES, "{'source':%u,'sampler':%u}", image, sampler);
+    return ok;
 }
 
 /* What the numbers of a picture mean. */
@@ -317,15 +329,17 @@ static struct transfer_function transfer_of(const struct gltf_painter *p, const 
     return light;
 }
 
-static uint32_t copy_image(const struct gltf_painter *p, const struct texture_image *image, bool is_colour) {
+/* Of several textures with the picture, one is copied. */
+static bool copy_image(const struct gltf_painter *p, const struct texture_image *image, bool is_colour,
+                       uint32_t *view) {
     const uint32_t width = image_width(image->image), height = image_height(image->image);
-    const uint64_t key =
-        ((uint64_t)(uintptr_t)image->image << 1 | is_colour) * 16 + (uint64_t)image->wrap * 4 + (uint64_t)image->wrap_v;
+    const uint64_t key = (uint64_t)(uintptr_t)image->image << 1 | is_colour;
     const struct transfer_function transfer = transfer_of(p, image);
     const bool same = !is_colour || (transfer.kind == TRANSFER_SRGB && image_bits(image->image) == 8);
     const uint32_t *known = key_map_find(p->images, key);
+    *view = known ? *known : GLTF_NONE;
     if (known)
-        return *known;
+        return true;
     struct pixels pixels = {width, mem_alloc((size_t)4 * width * height)};
     for (size_t i = 0; pixels.bytes && i < (size_t)width * height; i++) {
         struct rgba texel = image_texel(image->image, (uint32_t)(i % width), (uint32_t)(i / width));
@@ -335,11 +349,9 @@ static uint32_t copy_image(const struct gltf_painter *p, const struct texture_im
                 same ? png_write_byte(colour[k]) : encode(transfer_decode(transfer, colour[k]));
         pixels.bytes[4 * i + 3] = 255;
     }
-    p->file->failed = p->file->failed || !pixels.bytes;
-    uint32_t texture = pixels.bytes ? add_picture(p->file, &pixels, height, is_colour, image) : GLTF_NONE;
+    bool ok = pixels.bytes && add_picture(p, &pixels, height, is_colour, view) && key_map_add(p->images, key, *view);
     mem_free(pixels.bytes);
-    p->file->failed = !key_map_add(p->images, key, texture) || p->file->failed;
-    return texture;
+    return ok;
 }
 
 /* --- baking --- */
@@ -477,34 +489,30 @@ static void bake_row(void *context, uint32_t y, int worker) {
     }
 }
 
-enum baked { BAKED_BASE, BAKED_ROUGH, BAKED_EMISSION, BAKED_NORMAL };
-
-static uint32_t add_baked(const struct baking *b, enum baked which, double strongest) {
+static bool add_baked(const struct baking *b, enum gltf_map which, double strongest, uint32_t *view) {
     const uint32_t size = b->size;
+    const bool is_colour = which == GLTF_BASE || which == GLTF_EMISSION;
     struct pixels pixels = {size, mem_alloc_zero((size_t)size * size, 4)};
     for (size_t i = 0; pixels.bytes && i < (size_t)size * size; i++) {
         const struct texel *at = &b->texels[i];
         /* The first row of a picture is the upper one. */
         uint8_t *out = pixels.bytes + 4 * ((size - 1 - i / size) * size + i % size);
-        const double numbers[4][3] = {[BAKED_ROUGH] = {1, (double)at->rough, (double)at->metal},
-                                      [BAKED_NORMAL] = {(double)at->normal[0] / 2 + 0.5,
-                                                        (double)at->normal[1] / 2 + 0.5,
-                                                        (double)at->normal[2] / 2 + 0.5}};
+        const double numbers[4][3] = {[GLTF_ROUGH] = {1, (double)at->rough, (double)at->metal},
+                                      [GLTF_NORMAL] = {(double)at->normal[0] / 2 + 0.5, (double)at->normal[1] / 2 + 0.5,
+                                                       (double)at->normal[2] / 2 + 0.5}};
         for (int k = 0; k < 3; k++)
-            out[k] = which == BAKED_BASE       ? encode((double)at->base[k])
-                     : which == BAKED_EMISSION ? encode((double)at->emission[k] / strongest)
-                                               : png_write_byte(numbers[which][k]);
-        out[3] = which == BAKED_BASE && b->owners[i] ? png_write_byte((double)at->base[3]) : 255;
+            out[k] = which == GLTF_BASE       ? encode((double)at->base[k])
+                     : which == GLTF_EMISSION ? encode((double)at->emission[k] / strongest)
+                                              : png_write_byte(numbers[which][k]);
+        out[3] = which == GLTF_BASE && b->owners[i] ? png_write_byte((double)at->base[3]) : 255;
     }
-    b->painter->file->failed = b->painter->file->failed || !pixels.bytes;
-    uint32_t texture = pixels.bytes ? add_picture(b->painter->file, &pixels, size,
-                                                  which == BAKED_BASE || which == BAKED_EMISSION, NULL)
-                                    : GLTF_NONE;
+    bool ok = pixels.bytes && add_picture(b->painter, &pixels, size, is_colour, view);
     mem_free(pixels.bytes);
-    return texture;
+    return ok;
 }
 
-static void add_all_baked(const struct baking *b, unsigned maps, struct gltf_paint *out) {
+static bool add_all_baked(const struct baking *b, unsigned maps, struct gltf_paint *out) {
+    bool ok = true;
     for (size_t i = 0; i < (size_t)b->size * b->size; i++) {
         double alpha = (double)b->texels[i].base[3];
         for (int k = 0; k < 3; k++)
@@ -512,11 +520,10 @@ static void add_all_baked(const struct baking *b, unsigned maps, struct gltf_pai
         out->has_holes = out->has_holes || (b->owners[i] && alpha < 1);
         out->has_veils = out->has_veils || (b->owners[i] && alpha > 0.02 && alpha < 0.98);
     }
-    out->base = maps & 1U << BAKED_BASE ? add_baked(b, BAKED_BASE, 1) : GLTF_NONE;
-    out->rough = maps & 1U << BAKED_ROUGH ? add_baked(b, BAKED_ROUGH, 1) : GLTF_NONE;
-    out->emission =
-        maps & 1U << BAKED_EMISSION && out->strongest > 0 ? add_baked(b, BAKED_EMISSION, out->strongest) : GLTF_NONE;
-    out->normal = maps & 1U << BAKED_NORMAL ? add_baked(b, BAKED_NORMAL, 1) : GLTF_NONE;
+    for (int k = 0; k < GLTF_MAP_COUNT; k++)
+        if (maps & 1U << k && (k != GLTF_EMISSION || out->strongest > 0))
+            ok = ok && add_baked(b, (enum gltf_map)k, out->strongest, &out->maps[k]);
+    return ok;
 }
 
 /* Too many triangles for a picture: each vertex has its colour. */
@@ -556,7 +563,7 @@ static bool bake(struct baking *b, struct gltf_surface *surface, unsigned maps, 
         find_owners(b, true);
         if (!pool_run(pool, b->size, bake_row, b))
             (void)error_set(error, ERROR_CANCELLED, "stopped while textures were baked");
-        add_all_baked(b, maps, out);
+        ok = add_all_baked(b, maps, out);
     }
     for (int i = 0; b->scratches && i < workers; i++)
         world_scratch_destroy(&b->scratches[i]);
@@ -581,7 +588,7 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
     unsigned maps = 0, kinds = 0;
     bool bakes = false;
     uint32_t last = GLTF_NONE;
-    *out = (struct gltf_paint){.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
+    *out = (struct gltf_paint){.maps = {GLTF_NONE, GLTF_NONE, GLTF_NONE, GLTF_NONE}};
     for (size_t i = 0; surface->has_colours && i < surface->vertices.count; i++) {
         float *c = gltf_vertices(surface)[i].colour;
         set_colour(c, gltf_light_of(painter, colour_make((double)c[0], (double)c[1], (double)c[2])));
@@ -595,10 +602,10 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
         bakes =
             bakes || ((kinds_of_material(world, m) & VARIES) && !(surface->has_uv && find_copies(painter, m, &copies)));
         kinds |= kinds_of_material(world, m);
-        maps |= KINDS(world, m, of_base) & VARIES ? 1U << BAKED_BASE | 1U << BAKED_ROUGH : 0;
-        maps |= KINDS(world, m, of_rough) & VARIES ? 1U << BAKED_ROUGH | 1U << BAKED_BASE : 0;
-        maps |= KINDS(world, m, of_emission) & VARIES ? 1U << BAKED_EMISSION : 0;
-        maps |= kinds_of_bumps(world, m) ? 1U << BAKED_NORMAL : 0;
+        maps |= KINDS(world, m, of_base) & VARIES ? 1U << GLTF_BASE | 1U << GLTF_ROUGH : 0;
+        maps |= KINDS(world, m, of_rough) & VARIES ? 1U << GLTF_ROUGH | 1U << GLTF_BASE : 0;
+        maps |= KINDS(world, m, of_emission) & VARIES ? 1U << GLTF_EMISSION : 0;
+        maps |= kinds_of_bumps(world, m) ? 1U << GLTF_NORMAL : 0;
     }
     /* Images follow u and v, also where several places have the same. */
     surface->is_unfolded = surface->is_unfolded || ((kinds & VARIES) == BY_IMAGE && is_in_square(surface));
@@ -607,142 +614,70 @@ bool gltf_paint_make(const struct gltf_painter *painter, uint32_t primitive, str
     return !bakes || bake(&baking, surface, maps, out, error);
 }
 
-/* --- materials --- */
+/* --- for Lua --- */
 
-static void put_texture(struct gltf_text *text, const char *key, uint32_t texture, const struct texture_image *how,
-                        double strength) {
-    if (texture == GLTF_NONE)
+/* A picture that the file has as it is; `map`: of its coordinates, unless it is the identity. */
+static void set_copy(lua_State *L, const char *field, const struct gltf_painter *p, const struct texture_image *image) {
+    static const char *const wraps[] = {IMAGE_WRAPS(LIST_WORD)};
+    uint32_t view;
+    if (!image)
         return;
-    gltf_put(text, "%s:{'index':%u", key, texture);
-    if (strength != 1)
-        gltf_put(text, "'scale':%g", strength);
-    if (how && how->apart) {
-        /* The inverse of read_map of formats/gltf_material.c. */
-        double a = how->scale[0], d = how->scale[1], b = -how->cross[0], c = -how->cross[1];
-        const double scale[2] = {sqrt(a * a + c * c), sqrt(b * b + d * d)};
-        const double offset[2] = {how->offset[0] - b, 1 - d - how->offset[1]};
-        double turn = scale[0] > 0 ? el_atan2(-c, a) : 0;
-        if (scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0 || turn != 0)
-            gltf_put(text, "'extensions':{'KHR_texture_transform':{'offset':%2,'rotation':%g,'scale':%2}}", offset,
-                     turn, scale);
-    }
-    gltf_put(text, "}");
+    if (!copy_image(p, image, strcmp(field, "base_copy") == 0, &view))
+        luaL_error(L, GLTF_NO_MEMORY);
+    lua_newtable(L);
+    gltf_push_view(L, p->buffer, view);
+    lua_setfield(L, -2, "picture");
+    gltf_set_flag(L, "nearest", image->filter == IMAGE_NEAREST);
+    lua_pushstring(L, wraps[image->wrap]);
+    lua_setfield(L, -2, "wrap_u");
+    lua_pushstring(L, wraps[image->apart ? image->wrap_v : image->wrap]);
+    lua_setfield(L, -2, "wrap_v");
+    const double map[6] = {image->scale[0], image->scale[1],  image->cross[0],
+                           image->cross[1], image->offset[0], image->offset[1]};
+    if (image->apart)
+        gltf_set_numbers(L, "map", map, 6);
+    lua_setfield(L, -2, field);
 }
 
-/* The members of extensions; those with the default value are left out. */
-static void put_extensions(struct gltf_text *text, const struct values *v) {
-    const bool lit = !v->unlit, clear = v->transmission > 0 && lit, solid = clear && v->is_solid;
-    const double strength = math_max(colour_max_abs(v->emission), 1);
-    const bool coat = lit && v->coat > 0, film = lit && v->film > 0, sheen = lit && colour_max_abs(v->sheen) > 0;
-    const struct {
-        const char *extension, *format; /* of the value */
-        bool is_there;
-        double value[3], otherwise[3];
-    } rows[] = {
-        {"KHR_materials_ior", "'ior':%g", lit, {v->ior}, {1.5}},
-        {"KHR_materials_specular", "'specularFactor':%g", lit, {v->specular_weight}, {1}},
-        {"KHR_materials_specular",
-         "'specularColorFactor':%3",
-         lit,
-         {v->specular.r, v->specular.g, v->specular.b},
-         {1, 1, 1}},
-        {"KHR_materials_transmission", "'transmissionFactor':%g", clear, {v->transmission}, {0}},
-        {"KHR_materials_volume", "'thicknessFactor':%g", solid, {1}, {0}},
-        {"KHR_materials_volume", "'attenuationDistance':%g", solid, {v->distance}, {0}},
-        {"KHR_materials_volume",
-         "'attenuationColor':%3",
-         solid && v->distance > 0,
-         {v->attenuation.r, v->attenuation.g, v->attenuation.b},
-         {1, 1, 1}},
-        {"KHR_materials_clearcoat", "'clearcoatFactor':%g", coat, {v->coat}, {0}},
-        {"KHR_materials_clearcoat", "'clearcoatRoughnessFactor':%g", coat, {v->coat_roughness}, {0}},
-        {"KHR_materials_sheen", "'sheenRoughnessFactor':%g", sheen, {v->sheen_roughness}, {0}},
-        {"KHR_materials_sheen", "'sheenColorFactor':%3", sheen, {v->sheen.r, v->sheen.g, v->sheen.b}, {0, 0, 0}},
-        {"KHR_materials_iridescence", "'iridescenceFactor':%g", film, {v->film}, {0}},
-        {"KHR_materials_iridescence", "'iridescenceIor':%g", film, {v->film_ior}, {1.3}},
-        {"KHR_materials_iridescence", "'iridescenceThicknessMinimum':%g", film, {v->film_thickness}, {100}},
-        {"KHR_materials_iridescence", "'iridescenceThicknessMaximum':%g", film, {v->film_thickness}, {400}},
-        {"KHR_materials_dispersion", "'dispersion':%g", solid, {v->dispersion}, {0}},
-        {"KHR_materials_emissive_strength", "'emissiveStrength':%g", true, {strength}, {1}},
-        {"KHR_materials_unlit", "", v->unlit, {1}, {0}},
-    };
-    const char *open = NULL;
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (!rows[i].is_there || memcmp(rows[i].value, rows[i].otherwise, sizeof rows[i].value) == 0)
-            continue;
-        if (!open || strcmp(open, rows[i].extension) != 0)
-            gltf_put(text, open ? "},%s:{" : "'extensions':{%s:{", rows[i].extension);
-        open = rows[i].extension;
-        if (strstr(rows[i].format, "%3"))
-            gltf_put(text, rows[i].format, rows[i].value);
-        else
-            gltf_put(text, rows[i].format, rows[i].value[0]);
-    }
-    if (open)
-        gltf_put(text, "}}");
-}
-
-static void note_losses(const struct gltf_painter *p, uint32_t index, const char *name) {
-    const struct surface_material *m = &p->world->surfaces.materials[index];
-    const struct openpbr *v = &m->openpbr;
-    if (m->has_layers && (v->subsurface_weight > 0 || colour_max_abs(v->transmission_scattering) > 0))
-        p->note(p->context, "light that is scattered under the surface is a colour of the surface", name);
-    if (m->has_layers && (v->specular_anisotropy > 0 || v->coat_anisotropy > 0))
-        p->note(p->context, "the highlight has no direction", name);
-    if (m->holds_medium || m->filled)
-        p->note(p->context, "the medium inside is left out", name);
-}
-
-uint32_t gltf_paint_material(const struct gltf_painter *painter, uint32_t material, const struct gltf_surface *surface,
-                             const struct gltf_paint *paint, struct gltf_attributes *uses) {
+void gltf_paint_push(lua_State *L, const struct gltf_painter *painter, uint32_t material,
+                     const struct gltf_surface *surface, const struct gltf_paint *paint) {
+    static const struct {
+        const char *name;
+        size_t offset;
+        int count;
+    } fields[] = {VALUES(VALUE_FIELD)};
     const struct world *world = painter->world;
-    const struct material *authored = world->authored.materials[material];
+    const struct surface_material *m = &world->surfaces.materials[material];
+    const struct openpbr *layers = &m->openpbr;
+    const char *name = world->authored.materials[material]->name;
     const struct hit nowhere = {.normal = {0, 1, 0}, .normal_geometric = {0, 1, 0}, .view = {0, 1, 0}, .front = true};
-    const unsigned kinds = kinds_of_material(world, material);
+    const bool varies = kinds_of_material(world, material) & VARIES;
     struct values v = values_at(painter, material, &nowhere);
-    struct copies copies = {.factor = {1, 1, 1}};
-    struct gltf_paint own = {.base = GLTF_NONE, .rough = GLTF_NONE, .emission = GLTF_NONE, .normal = GLTF_NONE};
-    struct gltf_text text = {0};
-    const char *name = authored->name ? authored->name : "";
-    bool baked = paint->baked && (kinds & VARIES);
-    note_losses(painter, material, name);
-    if (baked) {
-        own = *paint;
-        v.base = own.base != GLTF_NONE || own.by_vertex ? colour_all(1) : v.base;
-        v.emission = own.emission != GLTF_NONE ? colour_all(own.strongest) : v.emission;
-        v.metallic = v.roughness = own.rough != GLTF_NONE ? 1 : v.roughness;
-        v.alpha = own.base != GLTF_NONE ? 1 : v.alpha;
-    } else if ((kinds & VARIES) && find_copies(painter, material, &copies)) {
-        v.base = copies.base ? gltf_light_of(painter, colour_min(copies.factor, colour_all(1))) : v.base;
-        own.base = copies.base ? copy_image(painter, copies.base, true) : GLTF_NONE;
-        own.normal = copies.normal ? copy_image(painter, copies.normal, false) : GLTF_NONE;
+    struct copies copies = {.base = NULL};
+    bool copied = varies && !paint->baked && find_copies(painter, material, &copies);
+    if (copied && copies.base)
+        v.base = gltf_light_of(painter, colour_min(copies.factor, colour_all(1)));
+    lua_newtable(L);
+    lua_pushstring(L, name ? name : "");
+    lua_setfield(L, -2, "name");
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+        const double *numbers = (const double *)(const void *)((const char *)&v + fields[i].offset);
+        if (fields[i].count == 1)
+            gltf_set_number(L, fields[i].name, *numbers);
+        else
+            gltf_set_numbers(L, fields[i].name, numbers, fields[i].count);
     }
-    bool blends = baked && own.base != GLTF_NONE ? own.has_veils : v.alpha < 1;
-    bool masks = baked && own.base != GLTF_NONE && own.has_holes && !blends;
-    uses->tangents = own.normal != GLTF_NONE;
-    uses->uv = uses->tangents || own.base != GLTF_NONE || own.rough != GLTF_NONE || own.emission != GLTF_NONE;
-    uses->colours = own.by_vertex || (!baked && (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
-    const double base[4] = {v.base.r, v.base.g, v.base.b, v.alpha}, strength = math_max(colour_max_abs(v.emission), 1);
-    const struct colour emission = colour_scale(v.emission, 1 / strength);
-    gltf_put(&text, "{");
-    if (*name)
-        gltf_put(&text, "'name':%s", name);
-    gltf_put(&text, "'pbrMetallicRoughness':{'baseColorFactor':%4,'metallicFactor':%g,'roughnessFactor':%g", base,
-             math_min(math_max(v.metallic, 0), 1), math_min(math_max(v.roughness, 0), 1));
-    put_texture(&text, "baseColorTexture", own.base, copies.base, 1);
-    put_texture(&text, "metallicRoughnessTexture", own.rough, NULL, 1);
-    gltf_put(&text, "}");
-    put_texture(&text, "normalTexture", own.normal, copies.normal, copies.normal ? copies.height : 1);
-    if (colour_max_abs(v.emission) > 0)
-        gltf_put(&text, "'emissiveFactor':%3", &emission.r);
-    put_texture(&text, "emissiveTexture", own.emission, NULL, 1);
-    if (blends || masks)
-        gltf_put(&text, "'alphaMode':%s", blends ? "BLEND" : "MASK");
-    if (!v.is_solid && (surface->is_open || world->surfaces.materials[material].phong.two_sided))
-        gltf_put(&text, "'doubleSided':true");
-    put_extensions(&text, &v);
-    gltf_put(&text, "}");
-    uint32_t number = gltf_add(painter->file, GLTF_MATERIALS, &text);
-    list_destroy(&text.bytes);
-    return number;
+    gltf_set_number(L, "height", copied && copies.normal ? copies.height : 1);
+    gltf_set_flag(L, "unlit", v.unlit);
+    gltf_set_flag(L, "is_solid", v.is_solid);
+    gltf_set_flag(L, "two_sided", m->phong.two_sided);
+    gltf_set_flag(L, "is_baked", varies && paint->baked);
+    gltf_set_flag(L, "has_vertex_colours", (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
+    gltf_set_flag(L, "scatters",
+                  m->has_layers &&
+                      (layers->subsurface_weight > 0 || colour_max_abs(layers->transmission_scattering) > 0));
+    gltf_set_flag(L, "is_brushed", m->has_layers && (layers->specular_anisotropy > 0 || layers->coat_anisotropy > 0));
+    gltf_set_flag(L, "is_filled", m->holds_medium || m->filled);
+    set_copy(L, "base_copy", painter, copied ? copies.base : NULL);
+    set_copy(L, "normal_copy", painter, copied ? copies.normal : NULL);
 }

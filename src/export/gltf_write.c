@@ -1,296 +1,258 @@
-/* A node of the scene is a node of the file, with the mesh of its primitive; further placements of a node are further
- * nodes with the same mesh. A node of a file has a translation, a rotation and a scale: other maps are two nodes, by
- * the singular value decomposition (one-sided Jacobi: Golub and Van Loan, "Matrix Computations", 8.6.3).
- *
- * The file has lumens where the scene has light: 683 of them count for a watt, as in files of Blender, and a white
- * surface that faces a light of colour 1 has the radiance 1 (script/gr_model.c reads lights so). */
+/* A scene becomes the JSON of a file in Lua (gltf_scene.lua), which has a state of its own for all moments. Here is
+ * what it asks: the nodes in their order, and the numbers of their poses, shapes, materials and lights. */
 #include "export/gltf_write.h"
 
-#include "base/arena.h"
 #include "base/hash.h"
+#include "base/json_write.h"
 #include "export/gltf_paint_internal.h"
+#include "formats/model_format.h"
 #include "light/light.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 #include "world/node_path.h"
 
+#include <lauxlib.h>
+#include <lualib.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
-static const double lumens = 683 * PI; /* of a light of colour 1 */
-
-struct pose {
-    double move[3], turn[4], size[3]; /* turn: a unit quaternion, x y z w */
-};
-struct key {
-    double time;
-    struct pose pose;
-};
-
-struct out_node {
-    const char *name;
-    uint32_t first_child, last_child, next; /* or GLTF_NONE */
-    uint32_t mesh, camera, light;           /* likewise */
-    struct pose pose;
-    bool is_sheared;               /* the next node is the other part of its map */
-    uint32_t mesh_nodes;           /* so many nodes behind it are meshes of the same node */
-    const struct transform *below; /* its mesh is in a space of its own; or NULL */
-    struct list keys;              /* struct key; empty: it stands still */
-    struct key last;               /* of the moments so far */
-};
-
-/* What the file lacks, counted. */
-struct lack {
-    const char *what, *name; /* name: of the first thing, or "" */
-    size_t count;
-};
+extern const char *const gltf_scene_lua[];
 
 struct gltf_scene {
     struct gltf_options options;
-    struct gltf_file file;
+    struct gltf_buffer buffer;
+    struct key_map images;
+    lua_State *lua; /* its result is the table on the stack */
+    bool is_binary; /* the file that is written */
+    /* While a moment is added: */
     struct gltf_painter painter;
-    struct arena arena;
-    struct list nodes, roots, lacks; /* struct out_node, uint32_t, struct lack */
-    struct key_map meshes, images;   /* by shape and material: numbers of meshes */
-    uint32_t moments, cursor;        /* the node of the next place in a later moment */
-    bool differs;                    /* that moment has other nodes */
-};
-
-/* A moment that is being added. */
-struct visit {
-    struct gltf_scene *scene;
     const struct gltf_moment *moment;
     struct error *error;
-    bool ok;
+    struct scene_traversal traversal;
+    uint32_t next_primitive, next_light;
+    struct gltf_surface surface; /* of the last primitive */
+    struct gltf_paint paint;
 };
 
-struct gltf_scene *gltf_scene_create(const struct gltf_options *options) {
-    struct gltf_scene *scene = mem_alloc_zero(1, sizeof *scene);
-    if (scene)
-        scene->options = *options;
-    return scene;
+static struct gltf_scene *scene_of(lua_State *L) {
+    return *(struct gltf_scene **)lua_getextraspace(L);
 }
 
-static struct out_node *node_at(const struct gltf_scene *scene, uint32_t node) {
-    return (struct out_node *)scene->nodes.items + node;
-}
+/* --- maps --- */
 
-void gltf_scene_destroy(struct gltf_scene *scene) {
-    if (!scene)
-        return;
-    for (uint32_t i = 0; i < scene->nodes.count; i++)
-        list_destroy(&node_at(scene, i)->keys);
-    list_destroy(&scene->nodes);
-    list_destroy(&scene->roots);
-    list_destroy(&scene->lacks);
-    key_map_destroy(&scene->meshes);
-    key_map_destroy(&scene->images);
-    gltf_file_destroy(&scene->file);
-    arena_destroy(&scene->arena);
-    mem_free(scene);
-}
-
-/* --- what is left out --- */
-
-static void lacks(void *context, const char *what, const char *name) {
-    struct gltf_scene *scene = context;
-    struct lack *list = scene->lacks.items;
-    for (size_t i = 0; i < scene->lacks.count; i++)
-        if (strcmp(list[i].what, what) == 0) {
-            list[i].count++;
-            return;
-        }
-    struct lack lack = {what, arena_copy_text(&scene->arena, name, strlen(name)), 1};
-    scene->file.failed = !lack.name || !list_add(&scene->lacks, &lack, 1, sizeof lack) || scene->file.failed;
-}
-
-void gltf_scene_report(const struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context) {
-    const struct lack *lack = scene->lacks.items;
-    for (size_t i = 0; i < scene->lacks.count; i++) {
-        char text[400], more[40] = "";
-        bool named = lack[i].name[0] != '\0';
-        if (named && lack[i].count > 1)
-            (void)snprintf(more, sizeof more, " and %zu more", lack[i].count - 1);
-        (void)snprintf(text, sizeof text, "%s%.100s%s%s%s%s", named ? "'" : "", lack[i].name, named ? "'" : "", more,
-                       named ? ": " : "", lack[i].what);
-        warn(context, text);
+static void push_map(lua_State *L, const struct affine *map) {
+    lua_createtable(L, 12, 0);
+    for (int i = 0; i < 12; i++) {
+        lua_pushnumber(L, map->m[i / 4][i % 4]);
+        lua_rawseti(L, -2, i + 1);
     }
 }
 
-/* --- poses --- */
-
-static struct vec3 column(const struct affine *map, int k) {
-    return vec3_make(map->m[0][k], map->m[1][k], map->m[2][k]);
+/* The motion of a node within a still scene, from time 0 to time 1; returns in how many steps its pose is linear. */
+static int motion_of(const struct node *node, struct motion *out) {
+    enum { STEPS = 8 }; /* where the pose is turned and stretched */
+    *out = motion_of_velocity(node->velocity);
+    if (!node->moves_to || node->moves_to == node)
+        return 1;
+    struct transform from = node_parent_from_node(node), to = node_parent_from_node(node->moves_to);
+    return motion_interpolate(&from, &to, node->velocity, out) ? STEPS : 1;
 }
 
-static struct affine of_columns(const struct vec3 c[3], struct vec3 move) {
-    return (struct affine){
-        {{c[0].x, c[1].x, c[2].x, move.x}, {c[0].y, c[1].y, c[2].y, move.y}, {c[0].z, c[1].z, c[2].z, move.z}}};
-}
-
-/* Of a rotation by its columns. */
-static void quaternion_of(const struct vec3 columns[3], double out[4]) {
-    const struct affine turn = of_columns(columns, vec3_all(0));
-    affine_quaternion(&turn, out);
-    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3]);
-    for (int n = 0; n < 4; n++)
-        out[n] = out[n] / length + 0.0;
-}
-
-/* Turns the columns of `left` until they are at right angles; `right` is turned with them. */
-static void jacobi(struct vec3 left[3], struct vec3 right[3]) {
-    for (int step = 0; step < 60; step++) {
-        int i = step % 3, k = (i + 1) % 3;
-        double a = vec3_length_squared(left[i]), b = vec3_length_squared(left[k]), c = vec3_dot(left[i], left[k]);
-        if (fabs(c) <= 1e-15 * sqrt(a * b))
-            continue;
-        double zeta = (b - a) / (2 * c), t = (zeta < 0 ? -1 : 1) / (fabs(zeta) + sqrt(1 + zeta * zeta));
-        double cosine = 1 / sqrt(1 + t * t), sine = cosine * t;
-        struct vec3 *sides[2] = {left, right};
-        for (int s = 0; s < 2; s++) {
-            struct vec3 x = sides[s][i], y = sides[s][k];
-            sides[s][i] = vec3_add_scaled(vec3_scale(x, cosine), y, -sine);
-            sides[s][k] = vec3_add_scaled(vec3_scale(y, cosine), x, sine);
-        }
+/* The map of the node, without its spin: its own, or at a time of a still scene. */
+static int node_map(lua_State *L) {
+    const struct node *node = scene_traversal_node(&scene_of(L)->traversal);
+    struct transform own = node_parent_from_node(node), map = own;
+    struct motion motion;
+    if (!lua_isnoneornil(L, 1)) {
+        (void)motion_of(node, &motion);
+        map = motion_at(&motion, lua_tonumber(L, 1));
+        if (!motion.has_end)
+            map = transform_compose(&map, &own);
     }
+    push_map(L, &map.forward);
+    return 1;
 }
 
-/* The map as outer after inner, which is the identity unless the map shears. False: it does. */
-static bool pose_of(const struct affine *map, struct pose *outer, struct pose *inner) {
-    struct vec3 left[3] = {column(map, 0), column(map, 1), column(map, 2)};
-    struct vec3 right[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    bool is_plain = true;
-    for (int i = 0; i < 3; i++) {
-        struct vec3 a = left[i], b = left[(i + 1) % 3];
-        is_plain = is_plain && fabs(vec3_dot(a, b)) <= 1e-12 * sqrt(vec3_length_squared(a) * vec3_length_squared(b));
-    }
-    *inner = (struct pose){.turn = {0, 0, 0, 1}, .size = {1, 1, 1}};
-    if (!is_plain)
-        jacobi(left, right);
-    for (int i = 0; i < 3; i++) {
-        double size = vec3_length(left[i]);
-        outer->move[i] = map->m[i][3] + 0.0;
-        outer->size[i] = i == 0 && affine_determinant(map) < 0 ? -size : size;
-        left[i] = vec3_scale(left[i], 1 / outer->size[i]);
-    }
-    quaternion_of(left, outer->turn);
-    if (!is_plain) {
-        quaternion_of(right, inner->turn);
-        inner->turn[3] = 0.0 - inner->turn[3]; /* the turn back */
-    }
-    return is_plain;
+static int node_spin(lua_State *L) {
+    const struct node_spin *spin = scene_traversal_node(&scene_of(L)->traversal)->spin;
+    struct transform map = transform_rotate_about(spin->axis, el_fmod(spin->degrees * lua_tonumber(L, 1), 360));
+    push_map(L, &map.forward);
+    return 1;
 }
 
-static bool pose_is(const struct pose *a, const struct pose *b) {
-    return memcmp(a, b, sizeof *a) == 0;
-}
-
-/* Poses between keys are linear: a node that stands still has no keys, or those before and after. */
-static void add_key(struct gltf_scene *scene, uint32_t node, double time, struct pose pose) {
-    struct out_node *at = node_at(scene, node);
-    const double *last = at->last.pose.turn;
-    double along = 0;
-    bool ok = true;
-    for (int i = 0; i < 4; i++)
-        along += last[i] * pose.turn[i];
-    for (int i = 0; along < 0 && i < 4; i++)
-        pose.turn[i] = -pose.turn[i];
-    if (!pose_is(&at->last.pose, &pose)) {
-        const struct key *keys = at->keys.items, key = {time, pose};
-        if (at->keys.count == 0 || keys[at->keys.count - 1].time < at->last.time)
-            ok = list_add(&at->keys, &at->last, 1, sizeof key);
-        ok = ok && list_add(&at->keys, &key, 1, sizeof key);
-    }
-    at->last = (struct key){time, pose};
-    scene->file.failed = !ok || scene->file.failed;
-}
-
-static uint32_t new_node(struct gltf_scene *scene, uint32_t parent, const char *name, struct pose pose, double time) {
-    struct out_node own = {.name = arena_copy_text(&scene->arena, name, strlen(name)),
-                           .first_child = GLTF_NONE,
-                           .last_child = GLTF_NONE,
-                           .next = GLTF_NONE,
-                           .mesh = GLTF_NONE,
-                           .camera = GLTF_NONE,
-                           .light = GLTF_NONE,
-                           .pose = pose,
-                           .last = {time, pose}};
-    uint32_t number = (uint32_t)scene->nodes.count;
-    if (!own.name || !list_add(&scene->nodes, &own, 1, sizeof own) ||
-        (parent == GLTF_NONE && !list_add_index(&scene->roots, number))) {
-        scene->file.failed = true;
+/* Of a primitive that is a sphere or a box: where the one of unit size is. */
+static int unit_map(lua_State *L) {
+    struct transform map;
+    if (!gltf_surface_is_unit(primitive_geometry(scene_of(L)->moment->world, (uint32_t)lua_tointeger(L, 1)), &map))
         return 0;
-    }
-    if (parent != GLTF_NONE) {
-        struct out_node *above = node_at(scene, parent);
-        if (above->first_child == GLTF_NONE)
-            above->first_child = number;
-        else
-            node_at(scene, above->last_child)->next = number;
-        above->last_child = number;
-    }
-    return number;
+    push_map(L, &map.forward);
+    return 1;
 }
 
-/* The next node below another one, in a later moment the same; the node that is placed so is *inner. */
-static uint32_t node_for(const struct visit *visit, uint32_t parent, const char *name, const struct affine *map,
-                         uint32_t *inner) {
-    struct gltf_scene *scene = visit->scene;
-    const double time = visit->moment->time;
-    struct pose parts[2];
-    bool is_plain = pose_of(map, &parts[0], &parts[1]);
-    uint32_t number = scene->cursor;
-    *inner = number;
-    if (scene->moments == 0) {
-        number = *inner = new_node(scene, parent, name, parts[0], time);
-        if (!is_plain && !scene->file.failed) {
-            node_at(scene, number)->is_sheared = true;
-            *inner = new_node(scene, number, name, parts[1], time);
-        }
-        return number;
+static struct vec3 vector_at(lua_State *L, int index) {
+    double x[3];
+    for (int k = 0; k < 3; k++) {
+        lua_rawgeti(L, index, k + 1);
+        x[k] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
     }
-    if (number >= scene->nodes.count || strcmp(node_at(scene, number)->name, name) != 0) {
-        scene->differs = true;
-        *inner = 0;
+    return vec3_make(x[0], x[1], x[2]);
+}
+
+/* From, along, up: the map of a node that looks along -z, with y upwards. */
+static int looking(lua_State *L) {
+    struct vec3 from = vector_at(L, 1), z = vec3_normalize(vec3_negate(vector_at(L, 2))),
+                x = vec3_cross(vec3_normalize(vector_at(L, 3)), z), other;
+    if (vec3_max_abs(x) > 1e-9)
+        x = vec3_normalize(x);
+    else
+        frame_tangents(z, &x, &other);
+    struct vec3 y = vec3_cross(z, x);
+    push_map(L, &(struct affine){{{x.x, y.x, z.x, from.x}, {x.y, y.y, z.y, from.y}, {x.z, y.z, z.z, from.z}}});
+    return 1;
+}
+
+/* --- the tree --- */
+
+/* The next event of the traversal: its word, the depth, and a table about the node. */
+static int visit(lua_State *L) {
+    struct gltf_scene *scene = scene_of(L);
+    struct scene_traversal *t = &scene->traversal;
+    enum scene_event event = SCENE_LEAVE;
+    while (event == SCENE_LEAVE)
+        event = scene_traversal_next(t);
+    if (event == SCENE_NO_MEMORY)
+        return luaL_error(L, GLTF_NO_MEMORY);
+    if (event == SCENE_END)
         return 0;
+    if (pool_cancelled(scene->options.pool)) {
+        (void)error_set(scene->error, ERROR_CANCELLED, "stopped while a model was made");
+        return lua_error(L);
     }
-    add_key(scene, number, time, parts[0]);
-    *inner += node_at(scene, number)->is_sheared;
-    if (*inner > number)
-        add_key(scene, *inner, time, parts[1]);
-    else if (!is_plain)
-        lacks(scene, "it is sheared in the animation, which is left out", name);
-    scene->cursor = *inner + 1;
-    return number;
+    const struct node *node = scene_traversal_node(t);
+    lua_pushstring(L, event == SCENE_ENTER ? "enter" : "children");
+    lua_pushinteger(L, t->depth);
+    lua_createtable(L, 0, 8);
+    lua_pushstring(L, node->name);
+    lua_setfield(L, -2, "name");
+    if (event == SCENE_CHILDREN) {
+        const struct scene_step *step = &t->steps[t->depth - 1];
+        const struct transform identity = transform_identity(), map = scene_step_map(step, &identity);
+        lua_pushinteger(L, step->placement);
+        lua_setfield(L, -2, "placement");
+        push_map(L, &map.forward);
+        lua_setfield(L, -2, "map");
+        return 3;
+    }
+    struct motion unused;
+    uint32_t count = world_primitives_of(scene->moment->world, node, scene->next_primitive);
+    lua_pushinteger(L, scene->next_primitive);
+    lua_setfield(L, -2, "first");
+    lua_pushinteger(L, count);
+    lua_setfield(L, -2, "count");
+    scene->next_primitive += count;
+    gltf_set_flag(L, "is_operand", t->depth > 1 && scene_traversal_operand(t) != SCENE_CHILD);
+    gltf_set_flag(L, "is_childless", node->child_count == 0);
+    gltf_set_flag(L, "moves", node_moves(node));
+    gltf_set_number(L, "degrees", node->spin ? node->spin->degrees : 0);
+    gltf_set_number(L, "steps", node_moves(node) ? motion_of(node, &unused) : 1);
+    return 3;
 }
 
 /* --- meshes --- */
 
-static uint32_t add_attribute(struct gltf_file *file, const struct gltf_surface *s, size_t offset, int width) {
-    const size_t count = s->vertices.count;
-    float *numbers = mem_alloc((count * (size_t)width + 1) * sizeof *numbers);
-    if (!numbers) {
-        file->failed = true;
-        return GLTF_NONE;
+/* Equal primitives have equal keys. Those in a space of their own differ by where they are only if a texture does. */
+static int mesh_key(lua_State *L) {
+    const struct world *world = scene_of(L)->moment->world;
+    const uint32_t primitive = (uint32_t)lua_tointeger(L, 1);
+    const struct prototype *prototype = primitive_prototype(world, primitive);
+    struct transform unused;
+    const uint32_t numbers[] = {prototype->material, prototype->slot_count, prototype->geometry.shape.kind,
+                                prototype->geometry.csg ? world->primitives[primitive].prototype : 0};
+    uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
+    bool is_plain =
+        gltf_surface_is_unit(&prototype->geometry, &unused) && world->surfaces.materials[prototype->material].plain;
+    hash = is_plain ? hash : hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash);
+    lua_pushinteger(L, (lua_Integer)(hash | 1));
+    return 1;
+}
+
+static bool make_surface(struct gltf_scene *scene, uint32_t primitive) {
+    const struct world *world = scene->moment->world;
+    const struct box *box = &world->boxes[primitive], all = world_finite_bounds(world);
+    double size = vec3_max_abs(vec3_sub(box->max, box->min)), wanted = scene->options.tolerance;
+    double share = wanted > 0 && size > 0 ? math_min(math_max(wanted / size, 1e-6), 0.1) : 1e-3;
+    double solid_share = math_max(share, math_min(1e-3 * vec3_max_abs(vec3_sub(all.max, all.min)) / size, 4e-3));
+    const struct gltf_source source = {world, primitive, share, wanted > 0 ? share : solid_share, scene->options.pool};
+    gltf_surface_destroy(&scene->surface);
+    scene->paint = (struct gltf_paint){0};
+    return gltf_surface_make(&source, &scene->surface, scene->error) &&
+           (scene->surface.triangles.count == 0 ||
+            gltf_paint_make(&scene->painter, primitive, &scene->surface, &scene->paint, scene->error));
+}
+
+/* Sets the list of the materials in the order of their first triangles. */
+static void set_materials(lua_State *L, const struct gltf_surface *surface) {
+    const struct gltf_triangle *triangles = gltf_triangles(surface);
+    lua_newtable(L);
+    lua_newtable(L); /* of those that are known */
+    for (size_t i = 0; i < surface->triangles.count; i++) {
+        if (i > 0 && triangles[i].material == triangles[i - 1].material)
+            continue;
+        if (lua_rawgeti(L, -1, triangles[i].material) == LUA_TNIL) {
+            lua_pushinteger(L, triangles[i].material);
+            lua_rawseti(L, -4, (lua_Integer)lua_rawlen(L, -4) + 1);
+            lua_pushboolean(L, true);
+            lua_rawseti(L, -3, triangles[i].material);
+        }
+        lua_pop(L, 1);
     }
-    for (size_t i = 0; i < count; i++) {
-        memcpy(numbers + i * (size_t)width, (const char *)&gltf_vertices(s)[i] + offset, (size_t)width * sizeof(float));
-        if (offset == offsetof(struct gltf_vertex, uv)) /* v from above */
-            numbers[2 * i + 1] = 1 - numbers[2 * i + 1];
+    lua_pop(L, 1);
+    lua_setfield(L, -2, "materials");
+}
+
+/* Makes the triangles and textures of a primitive: a table about them. */
+static int surface_of(lua_State *L) {
+    static const char *const maps[] = {GLTF_MAPS(LIST_WORD)};
+    struct gltf_scene *scene = scene_of(L);
+    const uint32_t primitive = (uint32_t)lua_tointeger(L, 1);
+    const struct gltf_paint *paint = &scene->paint;
+    if (!make_surface(scene, primitive))
+        return lua_error(L);
+    lua_newtable(L);
+    lua_pushstring(L, primitive_node(scene->moment->world, primitive)->name);
+    lua_setfield(L, -2, "name");
+    lua_pushstring(L, scene->surface.why);
+    lua_setfield(L, -2, "why");
+    set_materials(L, &scene->surface);
+    gltf_set_flag(L, "has_normals", scene->surface.has_normals);
+    gltf_set_flag(L, "is_open", scene->surface.is_open);
+    gltf_set_flag(L, "by_vertex", paint->by_vertex);
+    gltf_set_flag(L, "has_holes", paint->has_holes);
+    gltf_set_flag(L, "has_veils", paint->has_veils);
+    gltf_set_number(L, "strongest", paint->strongest);
+    for (int i = 0; paint->baked && i < GLTF_MAP_COUNT; i++) {
+        if (paint->maps[i] == GLTF_NONE)
+            continue;
+        gltf_push_view(L, &scene->buffer, paint->maps[i]);
+        lua_setfield(L, -2, maps[i]);
     }
-    uint32_t accessor = gltf_add_floats(file, numbers, count, width, GLTF_VERTICES);
-    mem_free(numbers);
-    return accessor;
+    return 1;
+}
+
+static int material_of(lua_State *L) {
+    const struct gltf_scene *scene = scene_of(L);
+    gltf_paint_push(L, &scene->painter, (uint32_t)lua_tointeger(L, 1), &scene->surface, &scene->paint);
+    return 1;
 }
 
 /* The directions of u, at right angles to the normals: the last number is -1 where v runs to their right. */
-static uint32_t add_tangents(struct gltf_file *file, const struct gltf_surface *s) {
+static const float *make_tangents(lua_State *L, const struct gltf_surface *s) {
     const struct gltf_vertex *all = gltf_vertices(s);
-    struct vec3 *sums = mem_alloc_zero(2 * s->vertices.count + 1, sizeof *sums); /* along u, and along v */
-    float *out = mem_alloc((4 * s->vertices.count + 1) * sizeof *out);
-    uint32_t accessor = GLTF_NONE;
-    for (size_t i = 0; sums && i < s->triangles.count; i++) {
+    const size_t count = s->vertices.count;
+    struct vec3 *sums = lua_newuserdatauv(L, (2 * count + 1) * sizeof *sums, 0); /* along u, and along v */
+    float *out = lua_newuserdatauv(L, (4 * count + 1) * sizeof *out, 0);
+    memset(sums, 0, 2 * count * sizeof *sums);
+    for (size_t i = 0; i < s->triangles.count; i++) {
         const uint32_t *v = gltf_triangles(s)[i].vertex;
         struct vec3 along[2];
         gltf_directions(s, &gltf_triangles(s)[i], NULL, along);
@@ -299,7 +261,7 @@ static uint32_t add_tangents(struct gltf_file *file, const struct gltf_surface *
             *sum = vec3_add(*sum, along[k % 2]);
         }
     }
-    for (size_t i = 0; sums && out && i < s->vertices.count; i++) {
+    for (size_t i = 0; i < count; i++) {
         struct vec3 n = gltf_point(all[i].normal), other;
         struct vec3 t = vec3_add_scaled(sums[2 * i], n, -vec3_dot(n, sums[2 * i]));
         if (vec3_max_abs(t) > 0)
@@ -310,504 +272,306 @@ static uint32_t add_tangents(struct gltf_file *file, const struct gltf_surface *
             out[4 * i + (size_t)k] = (float)vec3_get(t, k);
         out[4 * i + 3] = vec3_dot(vec3_cross(n, t), sums[2 * i + 1]) < 0 ? -1 : 1;
     }
-    file->failed = file->failed || !sums || !out;
-    if (sums && out)
-        accessor = gltf_add_floats(file, out, s->vertices.count, 4, GLTF_VERTICES);
-    mem_free(sums);
-    mem_free(out);
-    return accessor;
+    return out;
 }
 
-/* The triangles of one material. */
-static void put_primitive(struct gltf_scene *scene, const struct gltf_surface *s, const struct gltf_paint *paint,
-                          uint32_t material, struct gltf_text *text) {
-    struct list indices = {0};
-    struct gltf_attributes uses;
-    bool ok = true;
-    uint32_t number = gltf_paint_material(&scene->painter, material, s, paint, &uses);
-    for (size_t i = 0; ok && i < s->triangles.count; i++) {
-        const struct gltf_triangle *t = &gltf_triangles(s)[i];
-        ok = t->material != material || list_add(&indices, t->vertex, 3, sizeof *t->vertex);
-    }
-    gltf_put(text, "{'attributes':{'POSITION':%u",
-             add_attribute(&scene->file, s, offsetof(struct gltf_vertex, point), 3));
-    if (s->has_normals || uses.tangents)
-        gltf_put(text, "'NORMAL':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, normal), 3));
-    if (uses.uv)
-        gltf_put(text, "'TEXCOORD_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, uv), 2));
-    if (uses.tangents)
-        gltf_put(text, "'TANGENT':%u", add_tangents(&scene->file, s));
-    if (uses.colours)
-        gltf_put(text, "'COLOR_0':%u", add_attribute(&scene->file, s, offsetof(struct gltf_vertex, colour), 3));
-    gltf_put(text, "},'indices':%u,'material':%u}",
-             gltf_add_indices(&scene->file, indices.items, indices.count, (uint32_t)s->vertices.count), number);
-    list_destroy(&indices);
-    scene->file.failed = !ok || scene->file.failed;
-}
-
-static uint32_t put_mesh(struct gltf_scene *scene, const struct gltf_surface *s, const struct gltf_paint *paint,
-                         const char *name) {
-    struct key_map seen = {0};
-    struct gltf_text text = {0};
-    bool ok = true;
-    gltf_put(&text, "{'name':%s,'primitives':[", name);
-    for (size_t i = 0; i < s->triangles.count; i++) {
-        uint32_t material = gltf_triangles(s)[i].material;
-        if (key_map_find(&seen, material + 1ULL))
+/* An attribute of the vertices by its name in the file, as an accessor. */
+static int attribute(lua_State *L) {
+    static const struct {
+        const char *name;
+        size_t offset;
+        int width;
+    } rows[] = {{"POSITION", offsetof(struct gltf_vertex, point), 3},
+                {"NORMAL", offsetof(struct gltf_vertex, normal), 3},
+                {"TEXCOORD_0", offsetof(struct gltf_vertex, uv), 2},
+                {"COLOR_0", offsetof(struct gltf_vertex, colour), 3}};
+    struct gltf_scene *scene = scene_of(L);
+    const struct gltf_surface *s = &scene->surface;
+    const size_t count = s->vertices.count;
+    const char *name = lua_tostring(L, 1);
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        if (strcmp(rows[row].name, name) != 0)
             continue;
-        ok = key_map_add(&seen, material + 1ULL, 0) && ok;
-        put_primitive(scene, s, paint, material, &text);
+        const size_t width = (size_t)rows[row].width;
+        float *numbers = lua_newuserdatauv(L, (count * width + 1) * sizeof *numbers, 0);
+        for (size_t i = 0; i < count; i++)
+            memcpy(numbers + i * width, (const char *)&gltf_vertices(s)[i] + rows[row].offset, width * sizeof *numbers);
+        for (size_t i = 0; width == 2 && i < count; i++) /* v from above */
+            numbers[2 * i + 1] = 1 - numbers[2 * i + 1];
+        return gltf_push_floats(L, &scene->buffer, numbers, count, rows[row].width, GLTF_VERTICES);
     }
-    gltf_put(&text, "]}");
-    uint32_t mesh = gltf_add(&scene->file, GLTF_MESHES, &text);
-    list_destroy(&text.bytes);
-    key_map_destroy(&seen);
-    scene->file.failed = !ok || scene->file.failed;
-    return mesh;
+    return gltf_push_floats(L, &scene->buffer, make_tangents(L, s), count, 4, GLTF_VERTICES);
 }
 
-/* Equal primitives have equal keys. Those in a space of their own differ by where they are only if a texture does. */
-static uint64_t key_of_primitive(const struct gltf_scene *scene, uint32_t primitive) {
-    const struct world *world = scene->painter.world;
-    const struct prototype *prototype = primitive_prototype(world, primitive);
-    struct transform unused;
-    const uint32_t numbers[] = {prototype->material, prototype->slot_count, prototype->geometry.shape.kind,
-                                prototype->geometry.csg ? world->primitives[primitive].prototype : 0};
-    uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
-    bool is_plain =
-        gltf_surface_is_unit(&prototype->geometry, &unused) && world->surfaces.materials[prototype->material].plain;
-    return (is_plain ? hash : hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash)) | 1;
+/* Of the triangles of one material. */
+static int indices(lua_State *L) {
+    struct gltf_scene *scene = scene_of(L);
+    const struct gltf_surface *s = &scene->surface;
+    const uint32_t material = (uint32_t)lua_tointeger(L, 1);
+    uint32_t *numbers = lua_newuserdatauv(L, (3 * s->triangles.count + 1) * sizeof *numbers, 0);
+    size_t count = 0;
+    for (size_t i = 0; i < s->triangles.count; i++)
+        for (int k = 0; k < 3 && gltf_triangles(s)[i].material == material; k++)
+            numbers[count++] = gltf_triangles(s)[i].vertex[k];
+    return gltf_push_indices(L, &scene->buffer, numbers, count, s->vertices.count);
 }
 
-/* The number of the mesh of a primitive, or GLTF_NONE: it is left out. */
-static uint32_t mesh_of(struct visit *visit, uint32_t primitive) {
-    struct gltf_scene *scene = visit->scene;
-    const struct world *world = scene->painter.world;
-    const char *name = primitive_node(world, primitive)->name;
-    const uint64_t key = key_of_primitive(scene, primitive);
-    const uint32_t *known = key_map_find(&scene->meshes, key);
-    const struct box *box = &world->boxes[primitive];
-    double size = vec3_max_abs(vec3_sub(box->max, box->min)), wanted = scene->options.tolerance;
-    const struct box all = world_finite_bounds(world);
-    double share = wanted > 0 && size > 0 ? math_min(math_max(wanted / size, 1e-6), 0.1) : 1e-3;
-    struct gltf_surface surface = {0};
-    struct gltf_paint paint;
-    uint32_t mesh = GLTF_NONE;
-    if (known)
-        return *known;
-    double solid_share = math_max(share, math_min(1e-3 * vec3_max_abs(vec3_sub(all.max, all.min)) / size, 4e-3));
-    const struct gltf_source source = {world, primitive, share, wanted > 0 ? share : solid_share, scene->options.pool};
-    visit->ok = visit->ok && gltf_surface_make(&source, &surface, visit->error);
-    if (visit->ok && surface.why)
-        lacks(scene, surface.why, name);
-    if (visit->ok && surface.triangles.count > 0) {
-        visit->ok = gltf_paint_make(&scene->painter, primitive, &surface, &paint, visit->error);
-        mesh = visit->ok ? put_mesh(scene, &surface, &paint, name) : GLTF_NONE;
+/* A list of numbers, vectors of that width, as an accessor. */
+static int floats(lua_State *L) {
+    const size_t count = lua_rawlen(L, 1);
+    const int width = (int)lua_tointeger(L, 2);
+    float *numbers = lua_newuserdatauv(L, (count + 1) * sizeof *numbers, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, 1, (lua_Integer)i + 1);
+        numbers[i] = (float)lua_tonumber(L, -1);
+        lua_pop(L, 1);
     }
-    gltf_surface_destroy(&surface);
-    scene->file.failed = !key_map_add(&scene->meshes, key, mesh) || scene->file.failed;
-    return mesh;
-}
-
-/* --- the tree --- */
-
-/* Of a node on the path: where its children are, and its operands. */
-struct frame {
-    uint32_t node, of_children;
-};
-
-/* The map of a node at a time of a still scene, without its spin. */
-static struct affine map_at(const struct node *node, const struct motion *motion, double time) {
-    struct transform own = node_parent_from_node(node), moved;
-    if (!motion)
-        return own.forward;
-    moved = motion_at(motion, time);
-    if (!motion->has_end)
-        moved = transform_compose(&moved, &own);
-    return moved.forward;
-}
-
-static struct affine spin_at(const struct node *node, double time) {
-    return transform_rotate_about(node->spin->axis, el_fmod(node->spin->degrees * time, 360)).forward;
-}
-
-/* A motion within a still scene: from time 0 to time 1. */
-static void add_motion(const struct visit *visit, const struct node *node, uint32_t outer, uint32_t inner,
-                       uint32_t spun) {
-    enum { STEPS = 8 }; /* where the pose is turned and stretched */
-    struct gltf_scene *scene = visit->scene;
-    struct motion motion = motion_of_velocity(node->velocity);
-    bool moves_on = node->moves_to && node->moves_to != node;
-    struct transform from = node_parent_from_node(node);
-    struct transform to = moves_on ? node_parent_from_node(node->moves_to) : from;
-    if (moves_on && !motion_interpolate(&from, &to, node->velocity, &motion))
-        moves_on = false;
-    int steps = moves_on ? STEPS : 1;
-    for (int i = 1; i <= steps; i++) {
-        struct affine map = map_at(node, &motion, (double)i / steps);
-        struct pose parts[2];
-        (void)pose_of(&map, &parts[0], &parts[1]);
-        add_key(scene, outer, (double)i / steps, parts[0]);
-        if (inner != outer)
-            add_key(scene, inner, (double)i / steps, parts[1]);
-    }
-    int turns = node->spin ? 1 + (int)math_min(fabs(node->spin->degrees) / 90, 10000) : 0;
-    for (int i = 1; i <= turns; i++) {
-        struct affine map = spin_at(node, (double)i / turns);
-        struct pose parts[2];
-        (void)pose_of(&map, &parts[0], &parts[1]);
-        add_key(scene, spun, (double)i / turns, parts[0]);
-    }
-}
-
-/* The node of the file that has what is below the node of the scene. */
-static uint32_t enter_node(const struct visit *visit, const struct node *node, uint32_t parent,
-                           const struct transform *below) {
-    struct gltf_scene *scene = visit->scene;
-    struct affine map = map_at(node, NULL, 0);
-    uint32_t inner, spun;
-    if (below)
-        map = affine_compose(&map, &below->forward);
-    uint32_t outer = node_for(visit, parent, node->name, &map, &inner);
-    spun = inner;
-    if (node->spin && node->spin->degrees != 0) {
-        struct affine turn = spin_at(node, visit->moment->is_frame ? visit->moment->time : 0);
-        (void)node_for(visit, inner, node->name, &turn, &spun);
-    }
-    if (node_moves(node) && scene->moments == 0 && !visit->moment->is_frame && !scene->file.failed)
-        add_motion(visit, node, outer, inner, spun);
-    return spun;
-}
-
-/* A node with its primitives: the mesh of one stands in the node itself, if it is in its space. */
-static uint32_t enter(struct visit *visit, const struct node *node, uint32_t parent, uint32_t first, uint32_t count) {
-    struct gltf_scene *scene = visit->scene;
-    const struct transform identity = transform_identity();
-    bool is_leaf = node->child_count == 0 && !node_moves(node) && count == 1;
-    if (scene->moments > 0) {
-        uint32_t at = scene->cursor < scene->nodes.count ? scene->cursor : 0;
-        uint32_t number = enter_node(visit, node, parent, node_at(scene, at)->below);
-        scene->cursor += node_at(scene, number)->mesh_nodes;
-        return number;
-    }
-    uint32_t number = GLTF_NONE, nodes = 0, start = (uint32_t)scene->nodes.count;
-    for (uint32_t i = 0; i < count; i++) {
-        struct transform below = identity;
-        uint32_t mesh = mesh_of(visit, first + i);
-        bool is_unit = gltf_surface_is_unit(primitive_geometry(visit->moment->world, first + i), &below);
-        if (i == 0)
-            number = enter_node(visit, node, parent, is_leaf && is_unit ? &below : NULL);
-        if (!visit->ok || scene->file.failed || mesh == GLTF_NONE)
-            continue;
-        uint32_t holder = number;
-        if (is_leaf && is_unit) {
-            struct transform *kept = arena_alloc(&scene->arena, sizeof *kept);
-            scene->file.failed = !kept || scene->file.failed;
-            if (kept)
-                *kept = below;
-            node_at(scene, start)->below = kept;
-        } else if (is_unit || count > 1) {
-            uint32_t made = (uint32_t)scene->nodes.count;
-            (void)node_for(visit, number, node->name, &below.forward, &holder);
-            nodes += (uint32_t)scene->nodes.count - made;
-        }
-        if (!scene->file.failed)
-            node_at(scene, holder)->mesh = mesh;
-    }
-    if (count == 0)
-        number = enter_node(visit, node, parent, NULL);
-    if (!scene->file.failed)
-        node_at(scene, number)->mesh_nodes = nodes;
-    return number;
-}
-
-static void visit_tree(struct visit *visit, uint32_t root) {
-    struct gltf_scene *scene = visit->scene;
-    struct scene_traversal t = world_traversal(visit->moment->world, visit->moment->root, sizeof(struct frame));
-    enum scene_event event = SCENE_END;
-    uint32_t next = 0;
-    while (visit->ok && !scene->file.failed && !scene->differs && (event = scene_traversal_next(&t)) < SCENE_END) {
-        const struct node *node = scene_traversal_node(&t);
-        struct frame *frame = scene_traversal_frame(&t, 0);
-        if (event == SCENE_CHILDREN) {
-            const uint32_t placement = t.steps[t.depth - 1].placement;
-            const struct transform identity = transform_identity();
-            struct transform map = scene_step_map(&t.steps[t.depth - 1], &identity);
-            char name[160];
-            frame->of_children = frame->node;
-            (void)snprintf(name, sizeof name, "%.120s [%u]", node->name, placement);
-            if (placement > 0)
-                (void)node_for(visit, frame->node, name, &map.forward, &frame->of_children);
-        } else if (event == SCENE_ENTER) {
-            const struct frame *above = t.depth > 1 ? scene_traversal_frame(&t, 1) : NULL;
-            bool is_operand = above && scene_traversal_operand(&t) != SCENE_CHILD;
-            uint32_t parent = !above ? root : is_operand ? above->node : above->of_children;
-            uint32_t count = world_primitives_of(visit->moment->world, node, next);
-            frame->node = frame->of_children = enter(visit, node, parent, next, count);
-            next += count;
-        }
-    }
-    scene_traversal_end(&t);
-    scene->file.failed = scene->file.failed || event == SCENE_NO_MEMORY;
+    return gltf_push_floats(L, &scene_of(L)->buffer, numbers, count / (size_t)width, width, GLTF_NO_TARGET);
 }
 
 /* --- the camera and the lights --- */
 
-/* A node that looks along -z, with y upwards. */
-static struct affine looking(struct vec3 from, struct vec3 along, struct vec3 up) {
-    struct vec3 z = vec3_normalize(vec3_negate(along)), x = vec3_cross(vec3_normalize(up), z), other;
-    if (vec3_max_abs(x) > 1e-9)
-        x = vec3_normalize(x);
-    else
-        frame_tangents(z, &x, &other);
-    return of_columns((const struct vec3[3]){x, vec3_cross(z, x), z}, from);
+static void set_vector(lua_State *L, const char *field, struct vec3 v) {
+    gltf_set_numbers(L, field, (const double[3]){v.x, v.y, v.z}, 3);
 }
 
-static uint32_t put_camera(struct gltf_scene *scene, const struct gltf_moment *moment) {
+/* A table about the camera of the moment, or nil. */
+static void push_camera(lua_State *L, const struct gltf_moment *moment) {
+    static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
     const struct lens *lens = moment->lens;
-    const struct box box = world_finite_bounds(moment->world);
-    double size = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, box.min));
-    double far = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(box.max, moment->camera->eye)) + size;
-    bool is_orthographic = lens->projection == PROJECTION_ORTHOGRAPHIC;
-    if (lens->projection != PROJECTION_PERSPECTIVE && !is_orthographic)
-        lacks(scene, "the camera has a perspective projection, not that of the scene", "");
-    if (lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
-        lens->shift_y != 0)
-        lacks(scene, "the camera is a pinhole, without depth of field, shift, stereo and light field", "");
-    if (is_orthographic)
-        return gltf_element(&scene->file, GLTF_CAMERAS,
-                            "{'type':'orthographic','orthographic':{'xmag':%g,'ymag':%g,'zfar':%g,'znear':0}}",
-                            lens->view_height / 2 * moment->aspect, lens->view_height / 2, 2 * far);
-    return gltf_element(&scene->file, GLTF_CAMERAS,
-                        "{'type':'perspective','perspective':{'aspectRatio':%g,'yfov':%g,'znear':%g}}", moment->aspect,
-                        moment->camera->fov * (PI / 180), far / 10000);
+    if (!moment->camera) {
+        lua_pushnil(L);
+        return;
+    }
+    lua_newtable(L);
+    set_vector(L, "eye", moment->camera->eye);
+    set_vector(L, "view", moment->camera->view);
+    set_vector(L, "up", moment->camera->up);
+    gltf_set_number(L, "fov", moment->camera->fov);
+    gltf_set_number(L, "view_height", lens->view_height);
+    gltf_set_number(L, "aspect", moment->aspect);
+    lua_pushstring(L, projections[lens->projection]);
+    lua_setfield(L, -2, "projection");
+    gltf_set_flag(L, "is_special",
+                  lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
+                      lens->shift_y != 0);
 }
 
-/* A light as the file has it. */
-struct punctual {
-    enum light_kind kind; /* LIGHT_POINT, LIGHT_SPOT or LIGHT_DIRECTIONAL */
-    struct vec3 from, along;
-    double strength, inner, outer; /* radians */
-};
+/* A table about the next light of the world. */
+static int next_light(lua_State *L) {
+    static const char *const kinds[] = {[LIGHT_POINT] = "point",
+                                        [LIGHT_DIRECTIONAL] = "directional",
+                                        [LIGHT_SPOT] = "spot",
+                                        [LIGHT_DISC] = "disc",
+                                        [LIGHT_PARALLELOGRAM] = "parallelogram",
+                                        [LIGHT_SPHERE] = "sphere",
+                                        [LIGHT_MESH] = "mesh",
+                                        [LIGHT_SKY] = "sky"};
+    static const char *const attenuations[] = {[ATTENUATION_COEFFICIENTS] = "coefficients",
+                                               [ATTENUATION_RANGE] = "range",
+                                               [ATTENUATION_INVERSE_SQUARE] = "square"};
+    struct gltf_scene *scene = scene_of(L);
+    struct light_target middle;
+    if (scene->next_light == scene->moment->world->light_count)
+        return 0;
+    const struct light *light = &scene->moment->world->lights[scene->next_light++];
+    const double largest = colour_max_abs(light->colour);
+    struct colour shown = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
+    lua_newtable(L);
+    lua_pushstring(L, kinds[light->kind]);
+    lua_setfield(L, -2, "kind");
+    lua_pushstring(L, attenuations[light->attenuation]);
+    lua_setfield(L, -2, "attenuation");
+    set_vector(L, "middle", light_middle(light, &middle) ? middle.at : vec3_all(0));
+    set_vector(L, "direction", light->direction);
+    set_vector(L, "edge1", light->edge1);
+    set_vector(L, "edge2", light->edge2);
+    gltf_set_numbers(L, "colour", &light->colour.r, 3);
+    gltf_set_numbers(L, "shown", &shown.r, 3); /* the colour in the file */
+    gltf_set_numbers(L, "falloff", light->falloff, 3);
+    gltf_set_number(L, "range", light->range);
+    gltf_set_number(L, "intensity", light->intensity);
+    gltf_set_number(L, "inner", el_acos(light->cos_inner));
+    gltf_set_number(L, "outer", el_acos(light->cos_outer));
+    gltf_set_number(L, "radius", light->radius);
+    gltf_set_flag(L, "emissive", light->emissive);
+    gltf_set_flag(L, "one_sided", light->one_sided);
+    gltf_set_flag(L, "has_profile", light->profile);
+    gltf_set_flag(L, "leaves_out", light->lit);
+    return 1;
+}
 
-/* Light that does not fall off with the square of the distance has the strength that it has in the middle of the
- * scene. */
-static double strength_of(struct gltf_scene *scene, const struct light *light, struct vec3 from) {
-    const struct box box = world_finite_bounds(scene->painter.world);
-    const double *c = light->falloff;
-    double d = box_is_empty(&box) ? 1 : vec3_length(vec3_sub(vec3_scale(vec3_add(box.min, box.max), 0.5), from));
-    double sum = c[0] + d * (c[1] + d * c[2]);
-    switch (light->attenuation) {
-    case ATTENUATION_INVERSE_SQUARE:
-        return light->intensity;
-    case ATTENUATION_COEFFICIENTS:
-        if (c[0] == 0 && c[1] == 0 && c[2] > 0)
-            return 1 / c[2];
-        lacks(scene, "a light falls off with the square of the distance; in the middle of the scene it is as before",
-              "");
-        return d * d / (sum > 0 ? sum : 1);
-    case ATTENUATION_RANGE:
-        lacks(scene, "a light falls off with the square of the distance; in the middle of the scene it is as before",
-              "");
-        return d * d * math_max(1 - d / light->range, 0);
+/* --- other helpers --- */
+
+static int arc_tangent(lua_State *L) {
+    lua_pushnumber(L, el_atan2(lua_tonumber(L, 1), lua_tonumber(L, 2)));
+    return 1;
+}
+
+/* A string of JSON, with its quotes. */
+static int quote(lua_State *L) {
+    const char *text = lua_tostring(L, 1);
+    char piece[JSON_PIECE];
+    luaL_Buffer out;
+    luaL_buffinit(L, &out);
+    luaL_addchar(&out, '"');
+    for (size_t taken; *text; text += taken)
+        luaL_addlstring(&out, piece, json_piece(text, piece, &taken));
+    luaL_addchar(&out, '"');
+    luaL_pushresult(&out);
+    return 1;
+}
+
+static int buffer(lua_State *L) {
+    gltf_push_buffer(L, &scene_of(L)->buffer, scene_of(L)->is_binary);
+    return 1;
+}
+
+/* --- the state --- */
+
+static void *allocate(void *unused, void *block, size_t old_size, size_t size) {
+    (void)unused, (void)old_size;
+    if (size > 0)
+        return mem_resize(block, size);
+    mem_free(block);
+    return NULL;
+}
+
+static const char *read_line(lua_State *L, void *lines, size_t *size) {
+    const char *const **at = lines, *line = **at;
+    (void)L;
+    *size = line ? strlen(line) : 0;
+    *at += line != NULL;
+    return line;
+}
+
+static int open_state(lua_State *L) {
+    static const luaL_Reg helpers[] = {
+        {"node_map", node_map},   {"node_spin", node_spin}, {"unit_map", unit_map},     {"looking", looking},
+        {"visit", visit},         {"mesh_key", mesh_key},   {"surface_of", surface_of}, {"material_of", material_of},
+        {"attribute", attribute}, {"indices", indices},     {"floats", floats},         {"next_light", next_light},
+        {"atan2", arc_tangent},   {"quote", quote},         {"buffer", buffer},         {NULL, NULL}};
+    const char *const *lines = gltf_scene_lua;
+    luaL_openlibs(L);
+    lua_pushglobaltable(L);
+    luaL_setfuncs(L, helpers, 0);
+    if (lua_load(L, read_line, (void *)&lines, "=gltf_scene.lua", "t") != LUA_OK)
+        return lua_error(L);
+    lua_call(L, 0, 1);
+    return 1;
+}
+
+struct gltf_scene *gltf_scene_create(const struct gltf_options *options) {
+    struct gltf_scene *scene = mem_alloc_zero(1, sizeof *scene);
+    if (!scene)
+        return NULL;
+    scene->options = *options;
+    scene->lua = lua_newstate(allocate, NULL);
+    if (scene->lua) {
+        *(struct gltf_scene **)lua_getextraspace(scene->lua) = scene;
+        lua_pushcfunction(scene->lua, open_state);
     }
+    if (scene->lua && lua_pcall(scene->lua, 0, 1, 0) == LUA_OK)
+        return scene;
+    gltf_scene_destroy(scene);
+    return NULL;
+}
+
+void gltf_scene_destroy(struct gltf_scene *scene) {
+    if (!scene)
+        return;
+    if (scene->lua)
+        lua_close(scene->lua);
+    key_map_destroy(&scene->images);
+    gltf_surface_destroy(&scene->surface);
+    gltf_buffer_destroy(&scene->buffer);
+    mem_free(scene);
+}
+
+/* Calls a function that pushes one result. */
+static bool call(struct gltf_scene *scene, lua_CFunction function, const void *argument, struct error *error) {
+    lua_State *L = scene->lua;
+    scene->error = error;
+    lua_pushcfunction(L, function);
+    lua_pushvalue(L, 1);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)argument);
+    if (lua_pcall(L, 2, 1, 0) == LUA_OK)
+        return true;
+    const char *text = lua_tostring(L, -1);
+    if (error->kind == ERROR_NONE && text && !strstr(text, GLTF_NO_MEMORY))
+        (void)error_set(error, ERROR_SCENE, "%.400s", text);
+    lua_settop(L, 1);
+    return error->kind == ERROR_NONE ? error_no_memory(error, "a model") : false;
+}
+
+static int add_moment(lua_State *L) {
+    const struct gltf_moment *moment = lua_touserdata(L, 2);
+    const struct box box = world_finite_bounds(moment->world);
+    lua_getfield(L, 1, "add");
+    lua_newtable(L);
+    gltf_set_flag(L, "is_frame", moment->is_frame);
+    gltf_set_number(L, "time", moment->time);
+    push_camera(L, moment);
+    lua_createtable(L, 6, 1);
+    for (int i = 0; i < 6; i++) {
+        lua_pushnumber(L, vec3_get(i < 3 ? box.min : box.max, i % 3));
+        lua_rawseti(L, -2, i + 1);
+    }
+    gltf_set_flag(L, "is_empty", box_is_empty(&box));
+    lua_call(L, 3, 0);
     return 0;
 }
 
-/* False: it is left out. */
-static bool punctual_of(struct gltf_scene *scene, const struct light *light, struct punctual *out) {
-    struct light_target middle;
-    const bool has_middle = light_middle(light, &middle);
-    *out = (struct punctual){.kind = LIGHT_POINT, .along = {0, -1, 0}, .outer = PI / 2, .strength = 1};
-    out->from = has_middle ? middle.at : vec3_all(0);
-    switch (light->kind) {
-    case LIGHT_POINT:
-        out->strength = strength_of(scene, light, out->from);
-        return true;
-    case LIGHT_DIRECTIONAL:
-        out->kind = LIGHT_DIRECTIONAL;
-        out->from = vec3_all(0);
-        out->along = light->direction;
-        return true;
-    case LIGHT_SPOT:
-        out->kind = LIGHT_SPOT;
-        out->along = light->direction;
-        out->strength = strength_of(scene, light, out->from);
-        out->inner = el_acos(light->cos_inner);
-        out->outer = math_min(el_acos(light->cos_outer), PI / 2);
-        return true;
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
-        lacks(scene, "a light with an extent is a point in its middle", "");
-        if (!light->emissive) {
-            out->strength = strength_of(scene, light, out->from);
-            return true;
-        }
-        out->strength = light->kind == LIGHT_PARALLELOGRAM ? vec3_length(vec3_cross(light->edge1, light->edge2)) / PI
-                                                           : light->radius * light->radius;
-        out->kind = light->one_sided && light->kind != LIGHT_SPHERE ? LIGHT_SPOT : LIGHT_POINT;
-        if (light->kind != LIGHT_SPHERE) /* which has no direction */
-            out->along = light->kind == LIGHT_DISC ? light->direction : vec3_cross(light->edge1, light->edge2);
-        return true;
-    case LIGHT_MESH:
-        lacks(scene, "the light of a mesh is left out; its surface emits it", "");
-        return false;
-    case LIGHT_SKY:
-        lacks(scene, "the light of the sky is left out", "");
-        return false;
-    }
-    return false;
-}
-
-static uint32_t put_light(struct gltf_scene *scene, const struct light *light, const struct punctual *punctual) {
-    double largest = colour_max_abs(light->colour);
-    struct colour colour = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
-    const double intensity = lumens * largest * punctual->strength;
-    if (punctual->kind == LIGHT_SPOT)
-        return gltf_element(
-            &scene->file, GLTF_LIGHTS,
-            "{'color':%3,'intensity':%g,'type':'spot','spot':{'innerConeAngle':%g,'outerConeAngle':%g}}", &colour.r,
-            intensity, math_min(punctual->inner, 0.9999 * punctual->outer), punctual->outer);
-    return gltf_element(&scene->file, GLTF_LIGHTS, "{'color':%3,'intensity':%g,'type':%s}", &colour.r, intensity,
-                        punctual->kind == LIGHT_POINT ? "point" : "directional");
-}
-
-static void add_lights(struct visit *visit, uint32_t root) {
-    struct gltf_scene *scene = visit->scene;
-    const struct world *world = visit->moment->world;
-    for (uint32_t i = 0; i < world->light_count && !scene->file.failed && !scene->differs; i++) {
-        const struct light *light = &world->lights[i];
-        struct punctual punctual;
-        uint32_t inner;
-        if (!punctual_of(scene, light, &punctual) || !(colour_max_abs(light->colour) > 0))
-            continue;
-        if (light->profile)
-            lacks(scene, "the profile of a light is left out", "");
-        if (light->lit)
-            lacks(scene, "a light that leaves out nodes lights them, too", "");
-        struct affine map = looking(punctual.from, punctual.along, vec3_make(0, 1, 0));
-        uint32_t node = node_for(visit, root, "light", &map, &inner);
-        if (scene->moments == 0 && !scene->file.failed)
-            node_at(scene, node)->light = put_light(scene, light, &punctual);
-    }
-}
-
-static void add_camera(struct visit *visit, uint32_t root) {
-    struct gltf_scene *scene = visit->scene;
-    const struct camera *camera = visit->moment->camera;
-    uint32_t inner;
-    if (!camera)
-        return;
-    struct affine map = looking(camera->eye, camera->view, camera->up);
-    uint32_t node = node_for(visit, root, "camera", &map, &inner);
-    if (scene->moments == 0 && !scene->file.failed)
-        node_at(scene, node)->camera = put_camera(scene, visit->moment);
-}
-
 bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, struct error *error) {
-    struct visit visit = {.scene = scene, .moment = moment, .error = error, .ok = true};
-    const struct camera *camera = moment->camera;
-    uint32_t root = GLTF_NONE;
-    scene->painter = (struct gltf_painter){.file = &scene->file,
+    scene->painter = (struct gltf_painter){.buffer = &scene->buffer,
                                            .world = moment->world,
                                            .pool = scene->options.pool,
                                            .linear = scene->options.linear,
-                                           .images = &scene->images,
-                                           .note = lacks,
-                                           .context = scene};
-    scene->cursor = 0;
-    /* In a file y is up. */
-    if (camera && fabs(camera->up.z) > fabs(camera->up.y)) {
-        struct affine turn = transform_rotate(0, camera->up.z > 0 ? -90 : 90).forward;
-        (void)node_for(&visit, GLTF_NONE, "upright", &turn, &root);
-    }
-    add_camera(&visit, root);
-    add_lights(&visit, root);
-    visit_tree(&visit, root);
-    if (scene->differs) {
-        lacks(scene, "a frame shows other nodes than the first one: from there on nothing moves", "");
-        scene->differs = false;
-    }
-    scene->moments++;
-    return visit.ok && (!scene->file.failed || error_no_memory(error, "a model"));
+                                           .images = &scene->images};
+    scene->moment = moment;
+    scene->next_primitive = scene->next_light = 0;
+    scene->traversal = world_traversal(moment->world, moment->root, 0);
+    bool ok = call(scene, add_moment, moment, error);
+    lua_settop(scene->lua, 1);
+    scene_traversal_end(&scene->traversal);
+    return ok;
 }
 
-/* --- the file --- */
-
-static void put_channel(struct gltf_scene *scene, uint32_t node, uint32_t input, const char *path, size_t offset,
-                        int width) {
-    const struct out_node *at = node_at(scene, node);
-    const struct key *keys = at->keys.items;
-    const size_t count = at->keys.count;
-    float *numbers = mem_alloc((count * (size_t)width + 1) * sizeof *numbers);
-    bool moves = false;
-    for (size_t i = 0; numbers && i < count; i++) {
-        const double *from = (const double *)(const void *)((const char *)&keys[i].pose + offset);
-        for (int k = 0; k < width; k++)
-            numbers[i * (size_t)width + (size_t)k] = (float)from[k];
-        moves = moves || memcmp(from, (const char *)&at->pose + offset, (size_t)width * sizeof *from) != 0;
-    }
-    scene->file.failed = scene->file.failed || !numbers;
-    if (numbers && moves) {
-        uint32_t output = gltf_add_floats(&scene->file, numbers, count, width, GLTF_NO_TARGET);
-        uint32_t sampler = gltf_element(&scene->file, GLTF_SAMPLERS,
-                                        "{'input':%u,'interpolation':'LINEAR','output':%u}", input, output);
-        (void)gltf_element(&scene->file, GLTF_CHANNELS, "{'sampler':%u,'target':{'node':%u,'path':%s}}", sampler, node,
-                           path);
-    }
-    mem_free(numbers);
+static int report(lua_State *L) {
+    lua_getfield(L, 1, "report");
+    lua_call(L, 0, 1);
+    return 1;
 }
 
-static void put_animation(struct gltf_scene *scene, uint32_t node) {
-    const struct key *keys = node_at(scene, node)->keys.items;
-    const size_t count = node_at(scene, node)->keys.count;
-    float *times = count > 0 ? mem_alloc(count * sizeof *times) : NULL;
-    scene->file.failed = scene->file.failed || (count > 0 && !times);
-    if (!times)
+void gltf_scene_report(struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context) {
+    struct error error = {0};
+    if (!call(scene, report, NULL, &error))
         return;
-    for (size_t i = 0; i < count; i++)
-        times[i] = (float)keys[i].time;
-    uint32_t input = gltf_add_floats(&scene->file, times, count, 1, GLTF_NO_TARGET);
-    mem_free(times);
-    put_channel(scene, node, input, "translation", offsetof(struct pose, move), 3);
-    put_channel(scene, node, input, "rotation", offsetof(struct pose, turn), 4);
-    put_channel(scene, node, input, "scale", offsetof(struct pose, size), 3);
+    for (lua_Integer i = 1; lua_rawgeti(scene->lua, 2, i) == LUA_TSTRING; i++) {
+        warn(context, lua_tostring(scene->lua, -1));
+        lua_pop(scene->lua, 1);
+    }
+    lua_settop(scene->lua, 1);
 }
 
-static void put_node(struct gltf_scene *scene, uint32_t number, struct gltf_text *text) {
-    static const struct pose rest = {.turn = {0, 0, 0, 1}, .size = {1, 1, 1}};
-    const struct out_node *at = node_at(scene, number);
-    gltf_put(text, "{");
-    if (at->name[0])
-        gltf_put(text, "'name':%s", at->name);
-    if (memcmp(at->pose.move, rest.move, sizeof rest.move) != 0)
-        gltf_put(text, "'translation':%3", at->pose.move);
-    if (memcmp(at->pose.turn, rest.turn, sizeof rest.turn) != 0)
-        gltf_put(text, "'rotation':%4", at->pose.turn);
-    if (memcmp(at->pose.size, rest.size, sizeof rest.size) != 0)
-        gltf_put(text, "'scale':%3", at->pose.size);
-    if (at->mesh != GLTF_NONE)
-        gltf_put(text, "'mesh':%u", at->mesh);
-    if (at->camera != GLTF_NONE)
-        gltf_put(text, "'camera':%u", at->camera);
-    if (at->light != GLTF_NONE)
-        gltf_put(text, "'extensions':{'KHR_lights_punctual':{'light':%u}}", at->light);
-    for (uint32_t child = at->first_child; child != GLTF_NONE; child = node_at(scene, child)->next)
-        gltf_put(text, child == at->first_child ? "'children':[%u" : "%u", child);
-    gltf_put(text, at->first_child != GLTF_NONE ? "]}" : "}");
-    (void)gltf_add(&scene->file, GLTF_NODES, text);
+static int write_text(lua_State *L) {
+    lua_getfield(L, 1, "write");
+    lua_call(L, 0, 1);
+    return 1;
 }
 
 bool gltf_scene_write(struct gltf_scene *scene, bool binary, struct list *out, struct error *error) {
-    struct gltf_text text = {0};
-    for (uint32_t i = 0; i < scene->nodes.count; i++) {
-        put_node(scene, i, &text);
-        put_animation(scene, i);
-    }
-    list_destroy(&text.bytes);
-    return gltf_file_write(&scene->file, binary, &scene->roots, out) ||
-           (scene->file.failed
-                ? error_no_memory(error, "a model")
-                : error_set(error, ERROR_SCENE, "the model is larger than 4 GiB, which glTF cannot hold"));
+    static const char version[] = "\"version\":\"2.0\"}";
+    struct list text = {0};
+    size_t size;
+    scene->is_binary = binary;
+    if (!call(scene, write_text, NULL, error))
+        return false;
+    const char *json = lua_tolstring(scene->lua, -1, &size);
+    bool ok = list_add_bytes(&text, model_glb_header, strlen(model_glb_header)) &&
+              list_add_bytes(&text, version, strlen(version)) && list_add_bytes(&text, json, size);
+    ok = ok ? gltf_file_write(&scene->buffer, &text, binary, out, error) : error_no_memory(error, "a model");
+    lua_settop(scene->lua, 1);
+    list_destroy(&text);
+    return ok;
 }

@@ -35,6 +35,6 @@ bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, 
 /* The bytes of a GLB, or else of a glTF file with its buffer in it. Errors: no memory, too large. */
 bool gltf_scene_write(struct gltf_scene *scene, bool binary, struct list *out, struct error *error);
 /* Calls `warn` for each kind of thing that the file lacks. */
-void gltf_scene_report(const struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context);
+void gltf_scene_report(struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context);
 
 #endif

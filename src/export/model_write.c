@@ -203,36 +203,58 @@ static bool write_coloured_ply(const struct coloured_mesh *mesh, struct list *ou
     return !w.failed;
 }
 
-/* The numbers of a vertex, three each, as an attribute. */
-static uint32_t add_floats(struct gltf_file *file, const struct coloured_mesh *mesh, bool is_colour) {
-    const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
-    const size_t count = mesh->point_count;
-    float *numbers = mem_alloc((3 * count + 1) * sizeof *numbers);
-    for (size_t i = 0; numbers && i < 3 * count; i++)
-        numbers[i] = (float)(is_colour ? transfer_decode(srgb, mesh->colours[i / 3][i % 3] / 255.0)
-                                       : vec3_get(mesh->points[i / 3], (int)(i % 3)));
-    uint32_t accessor = numbers ? gltf_add_floats(file, numbers, count, 3, GLTF_VERTICES) : GLTF_NONE;
-    file->failed = !numbers || file->failed;
-    mem_free(numbers);
-    return accessor;
+/* Adds the numbers of the vertices, three each, to the buffer; prints their accessor. */
+static void print_floats(struct writer *w, struct gltf_buffer *buffer, const float *numbers, size_t count) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    uint32_t view = 0;
+    for (size_t i = 0; i < 3 * count; i++) {
+        low[i % 3] = math_min(low[i % 3], (double)numbers[i]);
+        high[i % 3] = math_max(high[i % 3], (double)numbers[i]);
+    }
+    w->failed = !gltf_add_view(buffer, numbers, 3 * count * sizeof *numbers, GLTF_VERTICES, &view) || w->failed;
+    print(w,
+          "{\"bufferView\":%u,\"componentType\":5126,\"count\":%zu,\"max\":[%.17g,%.17g,%.17g],"
+          "\"min\":[%.17g,%.17g,%.17g],\"type\":\"VEC3\"},",
+          view, count, high[0], high[1], high[2], low[0], low[1], low[2]);
 }
 
 /* One mesh of colours that are light already (KHR_materials_unlit). */
 static bool write_coloured_glb(const struct coloured_mesh *mesh, struct list *out) {
-    struct gltf_file file = {0};
-    struct list roots = {0};
-    const uint32_t material =
-        gltf_element(&file, GLTF_MATERIALS, "{'doubleSided':true,'extensions':{'KHR_materials_unlit':{}}}");
-    const uint32_t points = add_floats(&file, mesh, false), colours = add_floats(&file, mesh, true);
-    const uint32_t indices = gltf_add_indices(&file, (const uint32_t *)mesh->triangles, 3 * mesh->triangle_count,
-                                              (uint32_t)mesh->point_count);
-    const uint32_t number = gltf_element(
-        &file, GLTF_MESHES, "{'primitives':[{'attributes':{'POSITION':%u,'COLOR_0':%u},'indices':%u,'material':%u}]}",
-        points, colours, indices, material);
-    bool ok = list_add_index(&roots, gltf_element(&file, GLTF_NODES, "{'mesh':%u}", number)) &&
-              gltf_file_write(&file, true, &roots, out);
-    list_destroy(&roots);
-    gltf_file_destroy(&file);
+    const struct transfer_function srgb = {.kind = TRANSFER_SRGB};
+    const size_t count = mesh->point_count, corners = 3 * mesh->triangle_count;
+    struct gltf_buffer buffer = {0};
+    struct list text = {0};
+    struct writer w = {.out = &text};
+    struct error unused = {0};
+    uint32_t view = 0;
+    float *numbers = mem_alloc((6 * count + 1) * sizeof *numbers), *colours = numbers + 3 * count;
+    for (size_t i = 0; numbers && i < 3 * count; i++) {
+        numbers[i] = (float)vec3_get(mesh->points[i / 3], (int)(i % 3));
+        colours[i] = (float)transfer_decode(srgb, mesh->colours[i / 3][i % 3] / 255.0);
+    }
+    print(&w, "%s\"version\":\"2.0\"},\"accessors\":[", model_glb_header);
+    if (numbers) {
+        print_floats(&w, &buffer, numbers, count);
+        print_floats(&w, &buffer, colours, count);
+    }
+    mem_free(numbers);
+    bool ok = numbers && gltf_add_indices(&buffer, (const uint32_t *)mesh->triangles, corners, count, &view);
+    print(&w, "{\"bufferView\":%u,\"componentType\":%u,\"count\":%zu,\"type\":\"SCALAR\"}],\"bufferViews\":[", view,
+          gltf_index_component(count), corners);
+    for (size_t i = 0; i < buffer.views.count; i++) {
+        const struct gltf_view *at = (const struct gltf_view *)buffer.views.items + i;
+        print(&w, "%s{\"buffer\":0,\"byteLength\":%zu,\"byteOffset\":%zu,\"target\":%u}", i ? "," : "", at->size,
+              at->start, at->target);
+    }
+    print(&w,
+          "],\"buffers\":[{\"byteLength\":%zu}],\"extensionsUsed\":[\"KHR_materials_unlit\"],\"materials\":[{"
+          "\"doubleSided\":true,\"extensions\":{\"KHR_materials_unlit\":{}}}],\"meshes\":[{\"primitives\":[{"
+          "\"attributes\":{\"COLOR_0\":1,\"POSITION\":0},\"indices\":2,\"material\":0}]}],\"nodes\":[{\"mesh\":0}],"
+          "\"scene\":0,\"scenes\":[{\"nodes\":[0]}]}",
+          buffer.bytes.count);
+    ok = ok && !w.failed && gltf_file_write(&buffer, &text, true, out, &unused);
+    gltf_buffer_destroy(&buffer);
+    list_destroy(&text);
     return ok;
 }
 

@@ -346,6 +346,21 @@ TEST(patterns_and_functions_are_baked_and_pictures_are_copied) {
     model_destroy(&model);
 }
 
+TEST(a_material_whose_bumps_alone_are_baked_is_no_metal) {
+    struct model model;
+    expect("local m = gr.openpbr_material{base_color = {0.5, 0.5, 0.5}, specular_roughness = 0.4}\n"
+           "gr.render{width = 8, height = 8, colour = 'linear', node = gr.sphere{radius = 1,\n"
+           "    material = m}:set_bump(gr.bump(function(p) return 0.1 * gr.step(p.x, 0) end))}\n",
+           "-o x.glb scene.lua", 0, NULL);
+    read_file(&model, "x.glb", -1);
+    CHECK(model.materials.count > 0);
+    if (model.materials.count > 0) {
+        check_near("metalness", model_materials(&model)[0].layers.base_metalness, 0);
+        check_near("roughness", model_materials(&model)[0].roughness, 0.4);
+    }
+    model_destroy(&model);
+}
+
 TEST(what_gltf_lacks_is_left_out_with_one_warning_each) {
     expect("gr.node{children = {gr.plane{name = 'ground', normal = {0, 1, 0}}, gr.plane{name = 'wall', normal = {1, 0, "
            "0}}, gr.sphere{}}}:export('x.glb')\n",
