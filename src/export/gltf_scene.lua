@@ -70,17 +70,11 @@ local function add_accessor(accessor, view)
     return add('accessors', accessor)
 end
 
--- The extensions of an element. Members with their default value are left out, and extensions without members.
-local function extend(element, name, members, defaults)
-    local own = {}
-    for key, value in pairs(members) do
-        if not defaults[key] or json(value) ~= json(defaults[key]) then own[key] = value end
-    end
-    if next(own) or not next(members) then
-        element.extensions = element.extensions or {}
-        element.extensions[name] = own
-        extensions[name] = true
-    end
+local function extend(element, name, member, value)
+    element.extensions = element.extensions or {}
+    local own = element.extensions[name] or {}
+    if member then own[member] = value end
+    element.extensions[name], extensions[name] = own, true
 end
 
 -- --- poses ---
@@ -267,46 +261,45 @@ local function texture_of(number, how, strength)
     local out, map = {index = number, scale = strength ~= 1 and strength or nil}, how and how.map
     if map then
         local a, d, b, c = map[1], map[2], -map[3], -map[4]
-        local size = {sqrt(a * a + c * c), sqrt(b * b + d * d)}
-        local members = {offset = {map[5] - b, 1 - d - map[6]}, rotation = size[1] > 0 and atan2(-c, a) or 0, scale = size}
-        if members.rotation ~= 0 or size[1] ~= 1 or size[2] ~= 1 or members.offset[1] ~= 0 or members.offset[2] ~= 0 then
-            extend(out, 'KHR_texture_transform', members, {})
+        local size, offset = {sqrt(a * a + c * c), sqrt(b * b + d * d)}, {map[5] - b, 1 - d - map[6]}
+        local turn = size[1] > 0 and atan2(-c, a) or 0
+        if turn ~= 0 or size[1] ~= 1 or size[2] ~= 1 or offset[1] ~= 0 or offset[2] ~= 0 then
+            extend(out, 'KHR_texture_transform', 'offset', offset)
+            extend(out, 'KHR_texture_transform', 'rotation', turn)
+            extend(out, 'KHR_texture_transform', 'scale', size)
         end
     end
     return out
 end
 
+-- The extensions of a material. Members with their default value are left out.
 local function extend_material(out, m, strength)
-    extend(out, 'KHR_materials_emissive_strength', {emissiveStrength = strength}, {emissiveStrength = 1})
-    if m.unlit then
-        extend(out, 'KHR_materials_unlit', {})
-        return
-    end
-    extend(out, 'KHR_materials_ior', {ior = m.ior}, {ior = 1.5})
-    extend(out, 'KHR_materials_specular', {specularFactor = m.specular_weight, specularColorFactor = m.specular},
-        {specularFactor = 1, specularColorFactor = {1, 1, 1}})
-    if m.transmission > 0 then
-        extend(out, 'KHR_materials_transmission', {transmissionFactor = m.transmission}, {transmissionFactor = 0})
-    end
-    if m.transmission > 0 and m.is_solid then
-        extend(out, 'KHR_materials_volume',
-            {thicknessFactor = 1, attenuationDistance = m.distance, attenuationColor = m.distance > 0 and m.attenuation or nil},
-            {thicknessFactor = 0, attenuationDistance = 0, attenuationColor = {1, 1, 1}})
-        extend(out, 'KHR_materials_dispersion', {dispersion = m.dispersion}, {dispersion = 0})
-    end
-    if m.coat > 0 then
-        extend(out, 'KHR_materials_clearcoat', {clearcoatFactor = m.coat, clearcoatRoughnessFactor = m.coat_roughness},
-            {clearcoatFactor = 0, clearcoatRoughnessFactor = 0})
-    end
-    if light_of(m.sheen) > 0 then
-        extend(out, 'KHR_materials_sheen', {sheenColorFactor = m.sheen, sheenRoughnessFactor = m.sheen_roughness},
-            {sheenColorFactor = {0, 0, 0}, sheenRoughnessFactor = 0})
-    end
-    if m.film > 0 then
-        extend(out, 'KHR_materials_iridescence',
-            {iridescenceFactor = m.film, iridescenceIor = m.film_ior,
-                iridescenceThicknessMinimum = m.film_thickness, iridescenceThicknessMaximum = m.film_thickness},
-            {iridescenceFactor = 0, iridescenceIor = 1.3, iridescenceThicknessMinimum = 100, iridescenceThicknessMaximum = 400})
+    local lit = not m.unlit
+    local clear, coat, sheen, film = lit and m.transmission > 0, lit and m.coat > 0, lit and light_of(m.sheen) > 0, lit and m.film > 0
+    local solid = clear and m.is_solid
+    local rows = { -- extension, whether it is there, member, value, default
+        {'emissive_strength', true, 'emissiveStrength', strength, 1},
+        {'unlit', m.unlit},
+        {'ior', lit, 'ior', m.ior, 1.5},
+        {'specular', lit, 'specularFactor', m.specular_weight, 1},
+        {'specular', lit, 'specularColorFactor', m.specular, {1, 1, 1}},
+        {'transmission', clear, 'transmissionFactor', m.transmission, 0},
+        {'volume', solid, 'thicknessFactor', 1, 0},
+        {'volume', solid, 'attenuationDistance', m.distance, 0},
+        {'volume', solid and m.distance > 0, 'attenuationColor', m.attenuation, {1, 1, 1}},
+        {'dispersion', solid, 'dispersion', m.dispersion, 0},
+        {'clearcoat', coat, 'clearcoatFactor', m.coat, 0},
+        {'clearcoat', coat, 'clearcoatRoughnessFactor', m.coat_roughness, 0},
+        {'sheen', sheen, 'sheenColorFactor', m.sheen, {0, 0, 0}},
+        {'sheen', sheen, 'sheenRoughnessFactor', m.sheen_roughness, 0},
+        {'iridescence', film, 'iridescenceFactor', m.film, 0},
+        {'iridescence', film, 'iridescenceIor', m.film_ior, 1.3},
+        {'iridescence', film, 'iridescenceThicknessMinimum', m.film_thickness, 100},
+        {'iridescence', film, 'iridescenceThicknessMaximum', m.film_thickness, 400}
+    }
+    for _, row in ipairs(rows) do
+        local name, is_there, member, value, default = unpack(row)
+        if is_there and (not member or json(value) ~= json(default)) then extend(out, 'KHR_materials_' .. name, member, value) end
     end
 end
 
@@ -353,25 +346,25 @@ end
 
 -- --- meshes ---
 
--- The number of the mesh of a primitive, or false: it is left out.
+-- The number of the mesh of a primitive, or false: it is left out; and where one of unit size is, or nil.
 local function mesh_of(primitive)
-    local key = mesh_key(primitive)
-    if meshes[key] ~= nil then return meshes[key] end
+    local key, unit = mesh_key(primitive)
+    if meshes[key] ~= nil then return meshes[key], unit end
     local surface, baked, primitives = surface_of(primitive), {}, {}
     if surface.why then lack(surface.why, surface.name) end
     for _, kind in ipairs {'base', 'rough', 'emission', 'normal'} do
         baked[kind] = surface[kind] and add_texture(surface[kind])
     end
-    for k, index in ipairs(surface.materials) do
+    for _, index in ipairs(surface.materials) do
         local material, uses = add_material(index, surface, baked)
         local attributes = {POSITION = add_accessor(attribute 'POSITION')}
         for _, kind in ipairs {'NORMAL', 'TEXCOORD_0', 'TANGENT', 'COLOR_0'} do
             attributes[kind] = uses[kind] and add_accessor(attribute(kind)) or nil
         end
-        primitives[k] = {attributes = attributes, indices = add_accessor(indices(index)), material = material}
+        primitives[#primitives + 1] = {attributes = attributes, indices = add_accessor(indices(index)), material = material}
     end
     meshes[key] = #primitives > 0 and add('meshes', {name = surface.name, primitives = primitives})
-    return meshes[key]
+    return meshes[key], unit
 end
 
 -- --- the tree ---
@@ -397,7 +390,7 @@ local function enter(parent, about)
     local is_leaf = about.is_childless and not about.moves and about.count == 1
     local node, outer
     for i = about.first, about.first + about.count - 1 do
-        local mesh, unit = mesh_of(i), unit_map(i)
+        local mesh, unit = mesh_of(i)
         if not node then node, outer = enter_node(parent, about, is_leaf and unit) end
         local holder, before = node, #nodes
         if is_leaf then
@@ -428,10 +421,11 @@ end
 
 -- --- the camera and the lights ---
 
-local function add_camera(camera, bounds)
+local function add_camera(camera)
+    local bounds = moment.bounds
     local far = length {bounds[4] - camera.eye[1], bounds[5] - camera.eye[2], bounds[6] - camera.eye[3]} +
         length {bounds[4] - bounds[1], bounds[5] - bounds[2], bounds[6] - bounds[3]}
-    if bounds.is_empty then far = 1 end
+    if moment.is_empty then far = 1 end
     if camera.projection ~= 'perspective' and camera.projection ~= 'orthographic' then
         lack 'the camera has a perspective projection, not that of the scene'
     end
@@ -445,13 +439,10 @@ local function add_camera(camera, bounds)
 end
 
 -- Light that does not fall off with the square of the distance has the strength that it has in the middle of the scene.
-local function strength_of(light, bounds)
-    local c, d = light.falloff, 1
-    if not bounds.is_empty then
-        local half = {}
-        for k = 1, 3 do half[k] = (bounds[k] + bounds[3 + k]) * 0.5 - light.middle[k] end
-        d = length(half)
-    end
+local function strength_of(light)
+    local c, d, bounds, to = light.falloff, 1, moment.bounds, {}
+    for k = 1, 3 do to[k] = (bounds[k] + bounds[3 + k]) * 0.5 - light.middle[k] end
+    if not moment.is_empty then d = length(to) end
     if light.attenuation == 'square' then return light.intensity end
     if light.attenuation == 'coefficients' and c[1] == 0 and c[2] == 0 and c[3] > 0 then return 1 / c[3] end
     lack 'a light falls off with the square of the distance; in the middle of the scene it is as before'
@@ -461,23 +452,23 @@ local function strength_of(light, bounds)
 end
 
 -- As the file has it: kind, strength and direction; nil: it is left out.
-local function punctual_of(light, bounds)
+local function punctual_of(light)
     local kind, across = light.kind, cross(light.edge1, light.edge2)
     if kind == 'mesh' then
         lack 'the light of a mesh is left out; its surface emits it'
     elseif kind == 'sky' then
         lack 'the light of the sky is left out'
     elseif kind == 'point' then
-        return kind, strength_of(light, bounds), {0, -1, 0}
+        return kind, strength_of(light), {0, -1, 0}
     elseif kind == 'directional' then
         return kind, 1, light.direction
     elseif kind == 'spot' then
         light.outer = min(light.outer, pi / 2)
         light.inner = min(light.inner, 0.9999 * light.outer)
-        return kind, strength_of(light, bounds), light.direction
+        return kind, strength_of(light), light.direction
     else
         lack 'a light with an extent is a point in its middle'
-        if not light.emissive then return 'point', strength_of(light, bounds), {0, -1, 0} end
+        if not light.emissive then return 'point', strength_of(light), {0, -1, 0} end
         light.inner, light.outer = 0, pi / 2
         local is_spot, area = light.one_sided and kind ~= 'sphere', kind == 'parallelogram' and length(across) / pi
         local along = kind == 'sphere' and {0, -1, 0} or kind == 'disc' and light.direction or across
@@ -490,9 +481,9 @@ local function add_light(light, kind, strength)
     return add('lights', {color = light.shown, intensity = LUMENS * light_of(light.colour) * strength, type = kind, spot = spot})
 end
 
-local function add_lights(root, bounds)
+local function add_lights(root)
     for light in next_light do
-        local kind, strength, along = punctual_of(light, bounds)
+        local kind, strength, along = punctual_of(light)
         if kind and light_of(light.colour) > 0 then
             if light.has_profile then lack 'the profile of a light is left out' end
             if light.leaves_out then lack 'a light that leaves out nodes lights them, too' end
@@ -506,17 +497,17 @@ local function add_lights(root, bounds)
     end
 end
 
-local function add_scene(camera, bounds)
-    local root
+local function add_scene()
+    local camera, root = moment.camera, nil
     if camera and abs(camera.up[3]) > abs(camera.up[2]) then -- in a file y is up
         local side = camera.up[3] > 0 and 1.0 or -1.0
         root = node_for(nil, 'upright', {1, 0, 0, 0, 0, 0, side, 0, 0, -side, 0, 0})
     end
     if camera then
         local node = node_for(root, 'camera', looking(camera.eye, camera.view, camera.up))
-        if moments == 0 then node.camera = add_camera(camera, bounds) end
+        if moments == 0 then node.camera = add_camera(camera) end
     end
-    add_lights(root, bounds)
+    add_lights(root)
     visit_tree(root)
 end
 
@@ -551,25 +542,21 @@ local function list_text(texts)
 end
 
 return {
-    add = function(at, camera, bounds)
+    add = function(at)
         moment, cursor = at, 1
-        local ok, caught = pcall(add_scene, camera, bounds)
+        local ok, caught = pcall(add_scene)
         if not ok and caught ~= DIFFERS then error(caught, 0) end
         if not ok then lack 'a frame shows other nodes than the first one: from there on nothing moves' end
         moments = moments + 1
     end,
-    report = function()
-        local out = {}
-        for k, what in ipairs(lacks) do
-            local name, count = lacks[what].name, lacks[what].count
-            local more = count > 1 and format(' and %d more', count - 1) or ''
-            out[k] = (name == '' and '' or format("'%s'%s: ", name, more)) .. what
-        end
-        return out
-    end,
-    -- The text without its first member, with which gray knows its files.
+    -- Warns, and returns the text without its first member, by which gray knows its files.
     write = function()
         local texts, names, out = {}, {}, {}
+        for _, what in ipairs(lacks) do
+            local name, count = lacks[what].name, lacks[what].count
+            local more = count > 1 and format(' and %d more', count - 1) or ''
+            warn_of((name == '' and '' or format("'%s'%s: ", sub(name, 1, 100), more)) .. what)
+        end
         for k, node in ipairs(nodes) do
             texts[k] = node_text(node)
             if #node.keys > 0 then

@@ -22,7 +22,10 @@ struct gltf_scene {
     struct gltf_buffer buffer;
     struct key_map images;
     lua_State *lua; /* its result is the table on the stack */
-    bool is_binary; /* the file that is written */
+    /* While the file is written: */
+    bool is_binary;
+    gltf_warn *warn;
+    void *context;
     /* While a moment is added: */
     struct gltf_painter painter;
     const struct gltf_moment *moment;
@@ -75,15 +78,6 @@ static int node_map(lua_State *L) {
 static int node_spin(lua_State *L) {
     const struct node_spin *spin = scene_traversal_node(&scene_of(L)->traversal)->spin;
     struct transform map = transform_rotate_about(spin->axis, el_fmod(spin->degrees * lua_tonumber(L, 1), 360));
-    push_map(L, &map.forward);
-    return 1;
-}
-
-/* Of a primitive that is a sphere or a box: where the one of unit size is. */
-static int unit_map(lua_State *L) {
-    struct transform map;
-    if (!gltf_surface_is_unit(primitive_geometry(scene_of(L)->moment->world, (uint32_t)lua_tointeger(L, 1)), &map))
-        return 0;
     push_map(L, &map.forward);
     return 1;
 }
@@ -160,20 +154,23 @@ static int visit(lua_State *L) {
 
 /* --- meshes --- */
 
-/* Equal primitives have equal keys. Those in a space of their own differ by where they are only if a texture does. */
+/* Equal primitives have equal keys. Those in a space of their own, whose map is the second result, differ by where they
+ * are only if a texture does. */
 static int mesh_key(lua_State *L) {
     const struct world *world = scene_of(L)->moment->world;
     const uint32_t primitive = (uint32_t)lua_tointeger(L, 1);
     const struct prototype *prototype = primitive_prototype(world, primitive);
-    struct transform unused;
+    struct transform map;
     const uint32_t numbers[] = {prototype->material, prototype->slot_count, prototype->geometry.shape.kind,
                                 prototype->geometry.csg ? world->primitives[primitive].prototype : 0};
     uint64_t hash = hash_bytes(numbers, sizeof numbers, 1);
-    bool is_plain =
-        gltf_surface_is_unit(&prototype->geometry, &unused) && world->surfaces.materials[prototype->material].plain;
-    hash = is_plain ? hash : hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash);
+    bool is_unit = gltf_surface_is_unit(&prototype->geometry, &map);
+    if (!is_unit || !world->surfaces.materials[prototype->material].plain)
+        hash = hash_bytes(&prototype->geometry.shape, sizeof(struct shape), hash);
     lua_pushinteger(L, (lua_Integer)(hash | 1));
-    return 1;
+    if (is_unit)
+        push_map(L, &map.forward);
+    return 1 + is_unit;
 }
 
 static bool make_surface(struct gltf_scene *scene, uint32_t primitive) {
@@ -194,15 +191,16 @@ static bool make_surface(struct gltf_scene *scene, uint32_t primitive) {
 static void set_materials(lua_State *L, const struct gltf_surface *surface) {
     const struct gltf_triangle *triangles = gltf_triangles(surface);
     lua_newtable(L);
-    lua_newtable(L); /* of those that are known */
+    lua_newtable(L); /* the known ones */
     for (size_t i = 0; i < surface->triangles.count; i++) {
-        if (i > 0 && triangles[i].material == triangles[i - 1].material)
+        const uint32_t material = triangles[i].material;
+        if (i > 0 && material == triangles[i - 1].material)
             continue;
-        if (lua_rawgeti(L, -1, triangles[i].material) == LUA_TNIL) {
-            lua_pushinteger(L, triangles[i].material);
+        if (lua_rawgeti(L, -1, material) == LUA_TNIL) {
+            lua_pushinteger(L, material);
+            lua_pushvalue(L, -1);
+            lua_rawseti(L, -4, material);
             lua_rawseti(L, -4, (lua_Integer)lua_rawlen(L, -4) + 1);
-            lua_pushboolean(L, true);
-            lua_rawseti(L, -3, triangles[i].material);
         }
         lua_pop(L, 1);
     }
@@ -277,30 +275,24 @@ static const float *make_tangents(lua_State *L, const struct gltf_surface *s) {
 
 /* An attribute of the vertices by its name in the file, as an accessor. */
 static int attribute(lua_State *L) {
-    static const struct {
-        const char *name;
-        size_t offset;
-        int width;
-    } rows[] = {{"POSITION", offsetof(struct gltf_vertex, point), 3},
-                {"NORMAL", offsetof(struct gltf_vertex, normal), 3},
-                {"TEXCOORD_0", offsetof(struct gltf_vertex, uv), 2},
-                {"COLOR_0", offsetof(struct gltf_vertex, colour), 3}};
+    enum { UV = 2, TANGENT = 4 };
+    static const char *const names[] = {"POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0", "TANGENT", NULL};
+    static const size_t offsets[] = {offsetof(struct gltf_vertex, point), offsetof(struct gltf_vertex, normal),
+                                     offsetof(struct gltf_vertex, uv), offsetof(struct gltf_vertex, colour)};
     struct gltf_scene *scene = scene_of(L);
     const struct gltf_surface *s = &scene->surface;
     const size_t count = s->vertices.count;
-    const char *name = lua_tostring(L, 1);
-    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
-        if (strcmp(rows[row].name, name) != 0)
-            continue;
-        const size_t width = (size_t)rows[row].width;
-        float *numbers = lua_newuserdatauv(L, (count * width + 1) * sizeof *numbers, 0);
-        for (size_t i = 0; i < count; i++)
-            memcpy(numbers + i * width, (const char *)&gltf_vertices(s)[i] + rows[row].offset, width * sizeof *numbers);
-        for (size_t i = 0; width == 2 && i < count; i++) /* v from above */
+    const int which = luaL_checkoption(L, 1, NULL, names);
+    const size_t width = which == UV ? 2 : 3;
+    if (which == TANGENT)
+        return gltf_push_floats(L, &scene->buffer, make_tangents(L, s), count, 4, GLTF_VERTICES);
+    float *numbers = lua_newuserdatauv(L, (count * width + 1) * sizeof *numbers, 0);
+    for (size_t i = 0; i < count; i++) {
+        memcpy(numbers + i * width, (const char *)&gltf_vertices(s)[i] + offsets[which], width * sizeof *numbers);
+        if (which == UV) /* v from above */
             numbers[2 * i + 1] = 1 - numbers[2 * i + 1];
-        return gltf_push_floats(L, &scene->buffer, numbers, count, rows[row].width, GLTF_VERTICES);
     }
-    return gltf_push_floats(L, &scene->buffer, make_tangents(L, s), count, 4, GLTF_VERTICES);
+    return gltf_push_floats(L, &scene->buffer, numbers, count, (int)width, GLTF_VERTICES);
 }
 
 /* Of the triangles of one material. */
@@ -335,14 +327,9 @@ static void set_vector(lua_State *L, const char *field, struct vec3 v) {
     gltf_set_numbers(L, field, (const double[3]){v.x, v.y, v.z}, 3);
 }
 
-/* A table about the camera of the moment, or nil. */
-static void push_camera(lua_State *L, const struct gltf_moment *moment) {
+static void set_camera(lua_State *L, const struct gltf_moment *moment) {
     static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
     const struct lens *lens = moment->lens;
-    if (!moment->camera) {
-        lua_pushnil(L);
-        return;
-    }
     lua_newtable(L);
     set_vector(L, "eye", moment->camera->eye);
     set_vector(L, "view", moment->camera->view);
@@ -355,6 +342,7 @@ static void push_camera(lua_State *L, const struct gltf_moment *moment) {
     gltf_set_flag(L, "is_special",
                   lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
                       lens->shift_y != 0);
+    lua_setfield(L, -2, "camera");
 }
 
 /* A table about the next light of the world. */
@@ -422,6 +410,11 @@ static int quote(lua_State *L) {
     return 1;
 }
 
+static int warn_of(lua_State *L) {
+    scene_of(L)->warn(scene_of(L)->context, lua_tostring(L, 1));
+    return 0;
+}
+
 static int buffer(lua_State *L) {
     gltf_push_buffer(L, &scene_of(L)->buffer, scene_of(L)->is_binary);
     return 1;
@@ -447,10 +440,10 @@ static const char *read_line(lua_State *L, void *lines, size_t *size) {
 
 static int open_state(lua_State *L) {
     static const luaL_Reg helpers[] = {
-        {"node_map", node_map},   {"node_spin", node_spin}, {"unit_map", unit_map},     {"looking", looking},
-        {"visit", visit},         {"mesh_key", mesh_key},   {"surface_of", surface_of}, {"material_of", material_of},
-        {"attribute", attribute}, {"indices", indices},     {"floats", floats},         {"next_light", next_light},
-        {"atan2", arc_tangent},   {"quote", quote},         {"buffer", buffer},         {NULL, NULL}};
+        {"node_map", node_map}, {"node_spin", node_spin},   {"looking", looking},         {"visit", visit},
+        {"mesh_key", mesh_key}, {"surface_of", surface_of}, {"material_of", material_of}, {"attribute", attribute},
+        {"indices", indices},   {"floats", floats},         {"next_light", next_light},   {"atan2", arc_tangent},
+        {"quote", quote},       {"buffer", buffer},         {"warn_of", warn_of},         {NULL, NULL}};
     const char *const *lines = gltf_scene_lua;
     luaL_openlibs(L);
     lua_pushglobaltable(L);
@@ -511,14 +504,12 @@ static int add_moment(lua_State *L) {
     lua_newtable(L);
     gltf_set_flag(L, "is_frame", moment->is_frame);
     gltf_set_number(L, "time", moment->time);
-    push_camera(L, moment);
-    lua_createtable(L, 6, 1);
-    for (int i = 0; i < 6; i++) {
-        lua_pushnumber(L, vec3_get(i < 3 ? box.min : box.max, i % 3));
-        lua_rawseti(L, -2, i + 1);
-    }
     gltf_set_flag(L, "is_empty", box_is_empty(&box));
-    lua_call(L, 3, 0);
+    gltf_set_numbers(L, "bounds", (const double[]){box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z},
+                     6);
+    if (moment->camera)
+        set_camera(L, moment);
+    lua_call(L, 1, 0);
     return 0;
 }
 
@@ -537,34 +528,20 @@ bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, 
     return ok;
 }
 
-static int report(lua_State *L) {
-    lua_getfield(L, 1, "report");
-    lua_call(L, 0, 1);
-    return 1;
-}
-
-void gltf_scene_report(struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context) {
-    struct error error = {0};
-    if (!call(scene, report, NULL, &error))
-        return;
-    for (lua_Integer i = 1; lua_rawgeti(scene->lua, 2, i) == LUA_TSTRING; i++) {
-        warn(context, lua_tostring(scene->lua, -1));
-        lua_pop(scene->lua, 1);
-    }
-    lua_settop(scene->lua, 1);
-}
-
 static int write_text(lua_State *L) {
     lua_getfield(L, 1, "write");
     lua_call(L, 0, 1);
     return 1;
 }
 
-bool gltf_scene_write(struct gltf_scene *scene, bool binary, struct list *out, struct error *error) {
+bool gltf_scene_write(struct gltf_scene *scene, bool binary, gltf_warn *warn, void *context, struct list *out,
+                      struct error *error) {
     static const char version[] = "\"version\":\"2.0\"}";
     struct list text = {0};
     size_t size;
     scene->is_binary = binary;
+    scene->warn = warn;
+    scene->context = context;
     if (!call(scene, write_text, NULL, error))
         return false;
     const char *json = lua_tolstring(scene->lua, -1, &size);

@@ -32,9 +32,10 @@ void gltf_scene_destroy(struct gltf_scene *scene);
 /* The first moment is the scene at rest; from the later ones the file has the poses of the same nodes. The nodes and
  * the world may go afterwards. Errors: no memory, cancelled. */
 bool gltf_scene_add(struct gltf_scene *scene, const struct gltf_moment *moment, struct error *error);
-/* The bytes of a GLB, or else of a glTF file with its buffer in it. Errors: no memory, too large. */
-bool gltf_scene_write(struct gltf_scene *scene, bool binary, struct list *out, struct error *error);
-/* Calls `warn` for each kind of thing that the file lacks. */
-void gltf_scene_report(struct gltf_scene *scene, void (*warn)(void *context, const char *text), void *context);
+typedef void gltf_warn(void *context, const char *text);
+/* The bytes of a GLB, or else of a glTF file with its buffer in it; `warn` is called for each kind of thing that the
+ * file lacks. Errors: no memory, too large. */
+bool gltf_scene_write(struct gltf_scene *scene, bool binary, gltf_warn *warn, void *context, struct list *out,
+                      struct error *error);
 
 #endif

@@ -225,8 +225,7 @@ static struct gltf_scene *begin_scene(struct model_work *work, struct error *err
 }
 
 static bool write_scene(struct model_work *work, struct gltf_scene *scene, struct error *error) {
-    gltf_scene_report(scene, warn, work);
-    return gltf_scene_write(scene, work->write.format == FORMAT_GLB, &work->made.files.model, error);
+    return gltf_scene_write(scene, work->write.format == FORMAT_GLB, warn, work, &work->made.files.model, error);
 }
 
 static bool make_scene(struct model_work *work, struct error *error) {
