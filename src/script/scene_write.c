@@ -55,73 +55,6 @@ static int quote(lua_State *L) {
     return 1;
 }
 
-/* The shortest that is read as the same number. */
-static int number_text(lua_State *L) {
-    char text[40];
-    double x = lua_tonumber(L, 1);
-    if (lua_isinteger(L, 1))
-        (void)snprintf(text, sizeof text, LUA_INTEGER_FMT, lua_tointeger(L, 1));
-    else if (x == 0)
-        (void)snprintf(text, sizeof text, signbit(x) ? "-0.0" : "0");
-    else if (x == floor(x) && fabs(x) < 1e15)
-        (void)snprintf(text, sizeof text, "%.0f", x);
-    else
-        json_number(text, x);
-    lua_pushstring(L, text);
-    return 1;
-}
-
-static const char *part(lua_State *L, lua_Integer index, size_t *length) {
-    lua_rawgeti(L, 1, index);
-    const char *text = lua_tolstring(L, -1, length);
-    lua_pop(L, 1);
-    return text;
-}
-
-/* One line if it is short, else a line for each part, and for numbers as many as fit. Arguments: the parts, the text
- * before and after them, the indentation of the whole, that of the parts beyond it, the longest line. */
-static int join(lua_State *L) {
-    enum { SHORT = 30 };
-    lua_Integer count = (lua_Integer)lua_rawlen(L, 1);
-    const char *open = lua_tostring(L, 2), *close = lua_tostring(L, 3), *indent = lua_tostring(L, 4),
-               *step = lua_tostring(L, 5);
-    size_t limit = (size_t)lua_tointeger(L, 6), margin = strlen(indent) + strlen(step), line = 0, length;
-    size_t width = strlen(open) + strlen(close) + strlen(indent) + 2 * (size_t)count;
-    bool lines = false;
-    for (lua_Integer k = 1; k <= count && !lines; k++) {
-        const char *text = part(L, k, &length);
-        width += length;
-        lines = width > limit || memchr(text, '\n', length);
-    }
-    luaL_Buffer out;
-    luaL_buffinit(L, &out);
-    luaL_addstring(&out, open);
-    for (lua_Integer k = 1; k <= count; k++) {
-        const char *text = part(L, k, &length);
-        bool is_short = !lines || (length < SHORT && !memchr(text, '\n', length) && !memchr(text, '{', length));
-        if (lines && (line == 0 || !is_short || line + length + (k < count) + margin >= limit)) {
-            luaL_addchar(&out, '\n');
-            luaL_addstring(&out, indent);
-            luaL_addstring(&out, step);
-            line = 0;
-        } else if (k > 1) {
-            luaL_addchar(&out, ' ');
-            line++;
-        }
-        luaL_addlstring(&out, text, length);
-        if (k < count)
-            luaL_addchar(&out, ',');
-        line = is_short ? line + length + (k < count) : 0;
-    }
-    if (lines) {
-        luaL_addchar(&out, '\n');
-        luaL_addstring(&out, indent);
-    }
-    luaL_addstring(&out, close);
-    luaL_pushresult(&out);
-    return 1;
-}
-
 /* The function of a picture that texture:at has made, or NULL. */
 static int image_function(lua_State *L) {
     const struct script_texture *texture = lua_touserdata(L, 1);
@@ -376,9 +309,8 @@ bool scene_write_picture(struct script_context *context, const struct render_req
 }
 
 void scene_write_open(lua_State *L) {
-    static const luaL_Reg helpers[] = {{"address", address}, {"quote", quote}, {"number_text", number_text},
-                                       {"join", join},       {"forms", forms}, {"image_function", image_function},
-                                       {NULL, NULL}};
+    static const luaL_Reg helpers[] = {
+        {"address", address}, {"quote", quote}, {"forms", forms}, {"image_function", image_function}, {NULL, NULL}};
     embedded_run(L, scene_write_lua, helpers);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &writer);
     context_of(L)->noted = note;

@@ -5,8 +5,8 @@
 local type, next, rawget, rawlen, setmetatable, getmetatable = type, next, rawget, rawlen, setmetatable, getmetatable
 local sort, concat = table.sort, table.concat
 local format, gmatch, gsub, match, rep, sub, find = string.format, string.gmatch, string.gsub, string.match, string.rep, string.sub, string.find
-local tostring, raise = tostring, raise
-local WIDTH, JSON_NESTED, LUA_NESTED, LOCALS = 120, 150, 20, 100
+local tostring, tonumber, number_type, raise = tostring, tonumber, math.type, raise
+local WIDTH, SHORT, JSON_NESTED, LUA_NESTED, LOCALS = 120, 30, 150, 20, 100
 
 local OBJECT = {} -- the metatable of records
 local records = {} -- by the address of what they made
@@ -191,6 +191,39 @@ local function survey(roots, nested)
     return uses, list, orders
 end
 
+-- The shortest that is read as the same number.
+local function number_text(x)
+    if number_type(x) == 'integer' then return format('%d', x) end
+    if x == 0 then return 1 / x < 0 and '-0.0' or '0' end
+    if x % 1 == 0 and -1e15 < x and x < 1e15 then return format('%.0f', x) end
+    local text = format('%.15g', x)
+    if tonumber(text) ~= x then text = format('%.16g', x) end
+    return tonumber(text) == x and text or format('%.17g', x)
+end
+
+-- One line if it is short, else a line for each part, and for numbers as many as fit; `step`: their indentation beyond that
+-- of the whole.
+local function join(parts, open, close, indent, step)
+    local count, width, lines = #parts, #open + #close + #indent + 2 * #parts, false
+    for k = 1, count do
+        width = width + #parts[k]
+        lines = width > WIDTH or find(parts[k], '\n', 1, true)
+        if lines then break end
+    end
+    if not lines then return open .. concat(parts, ', ') .. close end
+    local out, margin = {open}, '\n' .. indent .. step
+    local line = 0
+    for k = 1, count do
+        local text = k < count and parts[k] .. ',' or parts[k]
+        local is_short = #parts[k] < SHORT and not find(text, '[\n{]')
+        local ends = line == 0 or not is_short or line + #text + #margin > WIDTH
+        out[2 * k], out[2 * k + 1] = ends and margin or ' ', text
+        line = is_short and (ends and 0 or line + 1) + #text or 0
+    end
+    out[#out + 1] = '\n' .. indent .. close
+    return concat(out)
+end
+
 -- Names of the records that are used more than once.
 local function name_records(uses, list, pattern, reserved)
     local names, taken, numbers = {}, {}, {}
@@ -218,7 +251,7 @@ local function json_of(names)
     local function object(t, indent)
         local parts, inner = {}, indent .. ' '
         for k, key in ipairs(sorted_keys(t)) do parts[k] = labels[key] .. text_of(t[key], inner) end
-        return join(parts, '{', '}', indent, ' ', WIDTH)
+        return join(parts, '{', '}', indent, ' ')
     end
     function text_of(value, indent, defines)
         local kind = type(value)
@@ -232,7 +265,7 @@ local function json_of(names)
         if not is_list(value) then return object(value, indent) end
         local parts, inner = {}, indent .. ' '
         for k, entry in ipairs(value) do parts[k] = type(entry) == 'number' and number_text(entry) or text_of(entry, inner) end
-        return join(parts, '[', ']', indent, ' ', WIDTH)
+        return join(parts, '[', ']', indent, ' ')
     end
     return text_of, object
 end
@@ -299,7 +332,7 @@ local function lua_of(names)
             local name = find(key, '^[%a_][%w_]*$') and (key == 'scene' or not KEYWORDS[key]) and key or '[' .. lua_string(key) .. ']'
             parts[k] = name .. ' = ' .. (key == 'code' and code_text(t[key]) or text_of(t[key], inner))
         end
-        return join(parts, '{', '}', indent, '  ', WIDTH)
+        return join(parts, '{', '}', indent, '  ')
     end
     local function record_text(record, indent)
         local fields, calls = {}, {}
@@ -324,7 +357,7 @@ local function lua_of(names)
         if not is_list(value) then return fields_text(value, indent) end
         local parts = {}
         for k, entry in ipairs(value) do parts[k] = text_of(entry, indent .. '  ') end
-        return join(parts, '{', '}', indent, '  ', WIDTH)
+        return join(parts, '{', '}', indent, '  ')
     end
     return text_of
 end
