@@ -275,16 +275,6 @@ static bool find_copies(const struct gltf_painter *p, uint32_t index, struct cop
 
 /* --- pictures --- */
 
-struct pixels {
-    uint32_t width;
-    uint8_t *bytes; /* four to a pixel */
-};
-
-static void row_of_pixels(void *context, uint32_t y, uint8_t *line) {
-    const struct pixels *pixels = context;
-    memcpy(line, pixels->bytes + (size_t)4 * pixels->width * y, (size_t)4 * pixels->width);
-}
-
 static bool put_into_list(void *list, const void *bytes, size_t size, struct error *error) {
     return list_add_bytes(list, bytes, size) || error_no_memory(error, "a picture");
 }
@@ -294,18 +284,11 @@ static uint8_t encode(double light) {
     return png_write_byte(tone_apply(&tone, light));
 }
 
-/* Puts a PNG file with these pixels into the buffer. False: no memory. */
-static bool add_picture(const struct gltf_painter *p, const struct pixels *pixels, uint32_t height, bool is_colour,
-                        uint32_t *view) {
-    const struct png_source source = {.width = pixels->width,
-                                      .height = height,
-                                      .bytes = row_of_pixels,
-                                      .context = (void *)(uintptr_t)pixels,
-                                      .alpha = true,
-                                      .srgb = is_colour};
+/* Puts a PNG file into the buffer: its view. False: no memory. */
+static bool add_picture(const struct gltf_painter *p, const struct png_source *source, uint32_t *view) {
     struct list png = {0};
     struct error error = {0};
-    bool ok = png_encode(&source, NULL, put_into_list, &png, &error) &&
+    bool ok = png_encode(source, NULL, put_into_list, &png, &error) &&
               gltf_add_view(p->buffer, png.items, png.count, GLTF_NO_TARGET, view);
     list_destroy(&png);
     return ok;
@@ -329,29 +312,38 @@ static struct transfer_function transfer_of(const struct gltf_painter *p, const 
     return light;
 }
 
+struct copy {
+    const struct image *image;
+    struct transfer_function transfer;
+    bool same; /* its numbers as they are */
+};
+
+static void copy_row(void *context, uint32_t y, uint8_t *line) {
+    const struct copy *copy = context;
+    for (uint32_t x = 0; x < image_width(copy->image); x++, line += 4) {
+        const struct rgba texel = image_texel(copy->image, x, y);
+        const double colour[3] = {texel.r, texel.g, texel.b};
+        for (int k = 0; k < 3; k++)
+            line[k] = copy->same ? png_write_byte(colour[k]) : encode(transfer_decode(copy->transfer, colour[k]));
+        line[3] = 255;
+    }
+}
+
 /* Of several textures with the picture, one is copied. */
 static bool copy_image(const struct gltf_painter *p, const struct texture_image *image, bool is_colour,
                        uint32_t *view) {
-    const uint32_t width = image_width(image->image), height = image_height(image->image);
+    struct copy copy = {.image = image->image, .transfer = transfer_of(p, image)};
+    copy.same = !is_colour || (copy.transfer.kind == TRANSFER_SRGB && image_bits(image->image) == 8);
+    const struct png_source source = {.width = image_width(image->image),
+                                      .height = image_height(image->image),
+                                      .bytes = copy_row,
+                                      .context = &copy,
+                                      .alpha = true,
+                                      .srgb = is_colour};
     const uint64_t key = (uint64_t)(uintptr_t)image->image << 1 | is_colour;
-    const struct transfer_function transfer = transfer_of(p, image);
-    const bool same = !is_colour || (transfer.kind == TRANSFER_SRGB && image_bits(image->image) == 8);
     const uint32_t *known = key_map_find(p->images, key);
     *view = known ? *known : GLTF_NONE;
-    if (known)
-        return true;
-    struct pixels pixels = {width, mem_alloc((size_t)4 * width * height)};
-    for (size_t i = 0; pixels.bytes && i < (size_t)width * height; i++) {
-        struct rgba texel = image_texel(image->image, (uint32_t)(i % width), (uint32_t)(i / width));
-        const double colour[3] = {texel.r, texel.g, texel.b};
-        for (int k = 0; k < 3; k++)
-            pixels.bytes[4 * i + (size_t)k] =
-                same ? png_write_byte(colour[k]) : encode(transfer_decode(transfer, colour[k]));
-        pixels.bytes[4 * i + 3] = 255;
-    }
-    bool ok = pixels.bytes && add_picture(p, &pixels, height, is_colour, view) && key_map_add(p->images, key, *view);
-    mem_free(pixels.bytes);
-    return ok;
+    return known || (add_picture(p, &source, view) && key_map_add(p->images, key, *view));
 }
 
 /* --- baking --- */
@@ -489,26 +481,27 @@ static void bake_row(void *context, uint32_t y, int worker) {
     }
 }
 
-static bool add_baked(const struct baking *b, enum gltf_map which, double strongest, uint32_t *view) {
-    const uint32_t size = b->size;
-    const bool is_colour = which == GLTF_BASE || which == GLTF_EMISSION;
-    struct pixels pixels = {size, mem_alloc_zero((size_t)size * size, 4)};
-    for (size_t i = 0; pixels.bytes && i < (size_t)size * size; i++) {
-        const struct texel *at = &b->texels[i];
-        /* The first row of a picture is the upper one. */
-        uint8_t *out = pixels.bytes + 4 * ((size - 1 - i / size) * size + i % size);
-        const double numbers[4][3] = {[GLTF_ROUGH] = {1, (double)at->rough, (double)at->metal},
-                                      [GLTF_NORMAL] = {(double)at->normal[0] / 2 + 0.5, (double)at->normal[1] / 2 + 0.5,
-                                                       (double)at->normal[2] / 2 + 0.5}};
+struct baked {
+    const struct baking *baking;
+    enum gltf_map which;
+    double strongest;
+};
+
+static void baked_row(void *context, uint32_t y, uint8_t *line) {
+    const struct baked *baked = context;
+    const uint32_t size = baked->baking->size;
+    /* The first row of a picture is the upper one. */
+    size_t i = (size_t)(size - 1 - y) * size;
+    for (const size_t end = i + size; i < end; i++, line += 4) {
+        const struct texel *at = &baked->baking->texels[i];
+        const float rough[3] = {1, at->rough, at->metal};
         for (int k = 0; k < 3; k++)
-            out[k] = which == GLTF_BASE       ? encode((double)at->base[k])
-                     : which == GLTF_EMISSION ? encode((double)at->emission[k] / strongest)
-                                              : png_write_byte(numbers[which][k]);
-        out[3] = which == GLTF_BASE && b->owners[i] ? png_write_byte((double)at->base[3]) : 255;
+            line[k] = baked->which == GLTF_BASE       ? encode((double)at->base[k])
+                      : baked->which == GLTF_EMISSION ? encode((double)at->emission[k] / baked->strongest)
+                      : baked->which == GLTF_ROUGH    ? png_write_byte((double)rough[k])
+                                                      : png_write_byte((double)at->normal[k] / 2 + 0.5);
+        line[3] = baked->which == GLTF_BASE && baked->baking->owners[i] ? png_write_byte((double)at->base[3]) : 255;
     }
-    bool ok = pixels.bytes && add_picture(b->painter, &pixels, size, is_colour, view);
-    mem_free(pixels.bytes);
-    return ok;
 }
 
 static bool add_all_baked(const struct baking *b, unsigned maps, struct gltf_paint *out) {
@@ -520,9 +513,17 @@ static bool add_all_baked(const struct baking *b, unsigned maps, struct gltf_pai
         out->has_holes = out->has_holes || (b->owners[i] && alpha < 1);
         out->has_veils = out->has_veils || (b->owners[i] && alpha > 0.02 && alpha < 0.98);
     }
-    for (int k = 0; k < GLTF_MAP_COUNT; k++)
+    for (int k = 0; k < GLTF_MAP_COUNT; k++) {
+        struct baked baked = {b, (enum gltf_map)k, out->strongest};
+        const struct png_source source = {.width = b->size,
+                                          .height = b->size,
+                                          .bytes = baked_row,
+                                          .context = &baked,
+                                          .alpha = true,
+                                          .srgb = k == GLTF_BASE || k == GLTF_EMISSION};
         if (maps & 1U << k && (k != GLTF_EMISSION || out->strongest > 0))
-            ok = ok && add_baked(b, (enum gltf_map)k, out->strongest, &out->maps[k]);
+            ok = ok && add_picture(b->painter, &source, &out->maps[k]);
+    }
     return ok;
 }
 

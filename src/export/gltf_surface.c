@@ -519,30 +519,7 @@ static const char *why_left_out(const struct geometry *geometry) {
     struct box box = geometry_bounds(geometry);
     if (!vec3_finite(box.min) || !vec3_finite(box.max) || (geometry->csg && geometry->csg->inside_out))
         return "has no end";
-    if (geometry->csg)
-        return geometry->csg->clipped ? "is cut open" : NULL;
-    switch (geometry->shape.kind) {
-    case SHAPE_QUADRIC:
-    case SHAPE_LATHE:
-    case SHAPE_IMPLICIT:
-        return shape_why_open(&geometry->shape);
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR:
-    case SHAPE_PRISM:
-    case SHAPE_BEVELLED:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_CURVE:
-    case SHAPE_MESH:
-        break;
-    }
-    return NULL;
+    return geometry->csg && geometry->csg->clipped ? "is cut open" : NULL;
 }
 
 bool gltf_surface_is_unit(const struct geometry *geometry, struct transform *object_from_surface) {
@@ -616,12 +593,15 @@ bool gltf_surface_make(const struct gltf_source *source, struct gltf_surface *ou
         ok = add_mesh(out, shape->mesh, prototype);
         break;
     case SHAPE_QUADRIC:
-    case SHAPE_SUPERELLIPSOID:
     case SHAPE_LATHE:
+    case SHAPE_IMPLICIT:
+        out->why = shape_why_open(shape);
+        is_solid = true;
+        break;
+    case SHAPE_SUPERELLIPSOID:
     case SHAPE_PRISM:
     case SHAPE_BEVELLED:
     case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
         is_solid = true;
         break;
     }
