@@ -1,46 +1,27 @@
-/* A definition for each function that makes an object, one for each kind of argument, and one for each kind of object,
- * which is any of its functions or a reference. What a schema cannot say (a sorted interval, rows of equal length)
- * remains to the reader. */
+/* --json-schema: schema.lua writes it from the table of functions, which it gets here. */
 #include "script/schema.h"
 
 #include "base/document.h"
+#include "sandbox/embedded.h"
 #include "script/scene_json_internal.h"
 #include "script/table_internal.h"
 
-#include <math.h>
-#include <string.h>
+#include <lauxlib.h>
+#include <lualib.h>
 
-extern const char *const schema_txt[];
+extern const char *const schema_lua[];
 
-static void add_words(struct document *document, const struct script_parameter *p) {
-    const char *separator = "";
-    for (const char *word = p->choices; *word; separator = ", ") {
-        int length = (int)strcspn(word, " ");
-        document_add(document, "%s\"%.*s\"", separator, length, word);
-        if (p->kind == KIND_AXIS)
-            document_add(document, ", \"%c\"", word[0] - 'a' + 'A');
-        word += length + (word[length] == ' ');
-    }
+static void set_text(lua_State *L, const char *field, const char *text) {
+    lua_pushstring(L, text ? text : "");
+    lua_setfield(L, -2, field);
 }
 
-static void add_scalar(struct document *document, const struct script_parameter *p) {
-    bool is_bounded = p->low != 0 || p->high != 0;
-    document_add(document, "{\"type\": \"%s\"", p->kind == KIND_WHOLE ? "integer" : "number");
-    if (is_bounded)
-        document_add(document, ", \"%s\": %.17g", p->flags & LOW_OPEN ? "exclusiveMinimum" : "minimum", p->low);
-    if (is_bounded && isfinite(p->high))
-        document_add(document, ", \"%s\": %.17g", p->flags & HIGH_OPEN ? "exclusiveMaximum" : "maximum", p->high);
-    document_add(document, "}");
+static void set_flag(lua_State *L, const char *field, bool flag) {
+    lua_pushboolean(L, flag);
+    lua_setfield(L, -2, field);
 }
 
-static void add_reference(struct document *document, const char *name) {
-    document_add(document, "{\"$ref\": \"#/$defs/%s\"}", name);
-}
-
-/* {"description": ..., "anyOf": [...]}: the kind, and what its flags accept beside it. */
-static void add_parameter(struct document *document, const struct script_parameter *p) {
-#define KIND_NAME(kind, word, ...) [kind] = "kind." word,
-    static const char *const kinds[] = {KIND_LIST(KIND_NAME)};
+static void push_parameter(lua_State *L, const struct script_parameter *p) {
     static const struct {
         unsigned flag;
         const char *name;
@@ -51,120 +32,70 @@ static void add_parameter(struct document *document, const struct script_paramet
                   {OR_COMPASS, "compass"},
                   {OR_PAIR, "kind.interval"},
                   {OR_SKY, "sky"}};
-    const bool is_number = p->kind == KIND_NUMBER || p->kind == KIND_WHOLE;
-    const bool is_word = p->kind == KIND_CHOICE || p->kind == KIND_AXIS;
-    document_add(document, "\"%s\": {\"anyOf\": [", strcmp(p->name, "type") == 0 ? SCENE_JSON_FIELD_TYPE : p->name);
-    if (is_number)
-        add_scalar(document, p);
-    else if (!is_word)
-        add_reference(document, kinds[p->kind]);
-    if ((is_number || is_word) && p->choices && p->choices[0]) {
-        document_add(document, is_number ? ", {\"enum\": [" : "{\"enum\": [");
-        add_words(document, p);
-        document_add(document, "]}");
-    }
+    lua_newtable(L);
+    set_text(L, "name", p->name);
+    set_text(L, "kind", kind_name(p->kind));
+    set_text(L, "help", p->help);
+    set_text(L, "choices", p->choices);
+    lua_pushnumber(L, p->low);
+    lua_setfield(L, -2, "low");
+    lua_pushnumber(L, p->high);
+    lua_setfield(L, -2, "high");
+    set_flag(L, "low_open", p->flags & LOW_OPEN);
+    set_flag(L, "high_open", p->flags & HIGH_OPEN);
+    set_flag(L, "optional", p->flags & OPTIONAL);
+    lua_newtable(L);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         if (!(p->flags & others[i].flag))
             continue;
-        document_add(document, ", ");
-        add_reference(document, others[i].name);
+        lua_pushstring(L, others[i].name);
+        lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
     }
-    document_add(document, "], \"description\": \"");
-    for (const char *c = p->help; *c; c++)
-        document_add(document, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
-    document_add(document, "\"}");
+    lua_setfield(L, -2, "others");
 }
 
-/* The members after the type: fields, then what every node has. */
-static void add_fields(struct document *document, const struct script_function *function, const char *without) {
-    bool has_children = false;
-    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
-        const struct script_parameter *p = &function->parameters[k];
-        if (strcmp(p->name, without) == 0)
-            continue;
-        has_children |= strcmp(p->name, "children") == 0;
-        document_add(document, ",\n   ");
-        add_parameter(document, p);
+static void push_function(lua_State *L, const struct script_function *function) {
+    static const char *const results[] = {RESULT_KINDS(LIST_WORD)};
+    const int first = function->owner == OWNER_NODE; /* behind the node itself */
+    int unused;
+    lua_newtable(L);
+    set_text(L, "name", function->name);
+    set_text(L, "owner", first ? "node" : "gr");
+    set_text(L, "result", results[function->result]);
+    set_flag(L, "renders", function_renders(function));
+    set_flag(L, "has_rest", function_rest(function, &unused));
+    lua_newtable(L);
+    for (int k = first; k < function->parameter_count; k++) {
+        push_parameter(L, &function->parameters[k]);
+        lua_rawseti(L, -2, k - first + 1);
     }
-    if (function->result == RESULT_NODE && !has_children)
-        document_add(document, ",\n   \"children\": {\"$ref\": \"#/$defs/kind.nodes\"}");
-    if (function->result == RESULT_NODE)
-        document_add(document, ",\n   \"transform\": {\"$ref\": \"#/$defs/transform\"}");
-    document_add(document, "},\n  \"additionalProperties\": false");
+    lua_setfield(L, -2, "parameters");
 }
 
-static void add_function(struct document *document, const struct script_function *function) {
-    int rest;
-    document_add(document, ",\n \"gr.%s\": {\"type\": \"object\", \"properties\": {\n   \"type\": {\"const\": \"%s\"}",
-                 function->name, function->name);
-    add_fields(document, function, "");
-    document_add(document, ", \"required\": [\"type\"");
-    for (int k = 0; !function_rest(function, &rest) && k < function->parameter_count; k++)
-        if (!(function->parameters[k].flags & OPTIONAL))
-            document_add(document, ", \"%s\"", function->parameters[k].name);
-    document_add(document, "]}");
-}
-
-/* The names of the functions of that owner and result, with what stands around each. */
-static void add_names(struct document *document, enum function_owner owner, enum result_kind result, const char *before,
-                      const char *after) {
-    const char *separator = "";
+static int write_schema(lua_State *L) {
+    static const luaL_Reg none[] = {{NULL, NULL}};
+    luaL_openlibs(L);
+    embedded_open(L);
+    embedded_run(L, schema_lua, none);
+    lua_newtable(L);
     for (int k = 0; k < function_count(); k++) {
-        const struct script_function *function = function_at(k);
-        bool renders = result == RESULT_NOTHING && function_renders(function);
-        if (function->owner != owner || !(renders || (result != RESULT_NOTHING && function->result == result)))
-            continue;
-        document_add(document, "%s%s%s%s", separator, before, function->name, after);
-        separator = ",\n   ";
+        push_function(L, function_at(k));
+        lua_rawseti(L, -2, k + 1);
     }
-}
-
-/* A kind of object: a reference, or one of the functions that make it. The type chooses its definition, so a checker
- * tries no other. */
-static void add_result(struct document *document, const char *name, enum result_kind result) {
-    document_add(document, ",\n \"%s\": {\"if\": {\"required\": [\"ref\"]}, \"then\": ", name);
-    add_reference(document, "ref");
-    document_add(document, ", \"else\": {\"type\": \"object\", \"required\": [\"type\"], \"properties\": {\"type\": "
-                           "{\"enum\": [");
-    add_names(document, OWNER_GR, result, "\"", "\"");
-    document_add(document, "]}}, \"allOf\": [");
-    for (int k = 0, count = 0; k < function_count(); k++) {
-        const struct script_function *function = function_at(k);
-        if (function->owner != OWNER_GR || function->result != result)
-            continue;
-        document_add(document,
-                     "%s\n  {\"if\": {\"properties\": {\"type\": {\"const\": \"%s\"}}}, \"then\": {\"$ref\": "
-                     "\"#/$defs/gr.%s\"}}",
-                     count++ ? "," : "", function->name, function->name);
-    }
-    document_add(document, "]}}");
-    for (int k = 0; k < function_count(); k++)
-        if (function_at(k)->owner == OWNER_GR && function_at(k)->result == result)
-            add_function(document, function_at(k));
+    lua_pushinteger(L, SCENE_JSON_VERSION);
+    lua_call(L, 2, 1);
+    return 1;
 }
 
 void script_json_schema(struct document *document) {
-    static const struct {
-        enum result_kind kind;
-        const char *name;
-    } results[] = {{RESULT_NODE, "node"},       {RESULT_MATERIAL, "material"}, {RESULT_LIGHT, "light"},
-                   {RESULT_TEXTURE, "texture"}, {RESULT_FOG, "fog"},           {RESULT_MEDIUM, "medium"},
-                   {RESULT_SKY, "sky"}};
-    for (const char *const *line = schema_txt; *line; line++) {
-        if (strcmp(*line, "@version") == 0)
-            document_add(document, "%d", SCENE_JSON_VERSION);
-        else if (strcmp(*line, "@orders") == 0)
-            add_words(document, &function_find(OWNER_GR, "transform_order")->parameters[0]);
-        else if (strcmp(*line, "@pictures") == 0)
-            add_names(document, OWNER_GR, RESULT_NOTHING, "\"", "\"");
-        else if (strcmp(*line, "@picture") == 0)
-            add_fields(document, function_find(OWNER_GR, "render"), "node");
-        else if (strcmp(*line, "@methods") == 0)
-            add_names(document, OWNER_NODE, RESULT_SELF, "\"", "\": true");
-        else if (strcmp(*line, "@results") == 0)
-            for (size_t i = 0; i < sizeof results / sizeof *results; i++)
-                add_result(document, results[i].name, results[i].kind);
-        else
-            document_add(document, "%s\n", *line);
-    }
+    lua_State *L = luaL_newstate();
+    document->failed = !L;
+    if (!L)
+        return;
+    lua_pushcfunction(L, write_schema);
+    if (lua_pcall(L, 0, 1, 0) == LUA_OK)
+        document_lines(document, lua_tostring(L, -1));
+    else
+        document->failed = true;
+    lua_close(L);
 }
