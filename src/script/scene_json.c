@@ -1,7 +1,6 @@
 /* Reads a scene in JSON. Each object with a type is a call of that function of gr with the other members as fields, so
  * names, ranges, defaults and errors are those of the table of functions, and nothing here knows a shape. Values are
- * made from the innermost outwards; what `define` names is made at its first use. `position` leads from the value that
- * is read to the top of the file, for messages. */
+ * made from the innermost outwards; what `define` names is made at its first use. */
 #include "script/scene_json_internal.h"
 
 #include "base/file.h"
@@ -33,14 +32,7 @@ void scene_json_run(lua_State *L) {
 #else
 
 /* Of values in each other, through `ref`, too. */
-enum { DEPTH = 1000 };
-
-/* A member by its key, or an entry by its index if the key is NULL. */
-struct position {
-    const struct position *outer;
-    const char *key;
-    size_t index;
-};
+enum { DEPTH = 1000, PATH = 4 * DEPTH + 8 };
 
 /* Stack indices. made: the table of what `define` has made; true while it is being made. calls: those of the functions
  * that a file may name, by their names. */
@@ -48,24 +40,31 @@ struct scene_reader {
     lua_State *L;
     struct script *script;
     json_t *defined;
-    const struct position *position;
     int depth, made, calls[2], add_child;
+    /* The way to the value that is read, for messages: a member by its key, or an entry by its index if the key is
+     * NULL. Within `define` it begins there. */
+    struct {
+        const char *key;
+        size_t index;
+    } path[PATH];
+    int path_start, path_end;
 };
 
 /* --- messages --- */
 
+static void enter(struct scene_reader *r, const char *key, size_t index) {
+    r->path[r->path_end].key = key;
+    r->path[r->path_end++].index = index;
+}
+
 /* Of a deep one, the outer part. */
-static void print_position(const struct position *position, char *out, size_t size) {
-    if (!position)
-        return;
-    print_position(position->outer, out, size);
-    size_t used = strlen(out);
-    if (used + 4 > size)
-        return;
-    if (position->key)
-        (void)snprintf(out + used, size - used, "%s%.80s", used > 0 ? "." : "", position->key);
-    else
-        (void)snprintf(out + used, size - used, "[%zu]", position->index);
+static void print_position(const struct scene_reader *r, char *out, size_t size) {
+    size_t used = 0;
+    for (int k = r->path_start; k < r->path_end && used + 4 <= size; k++, used = strlen(out))
+        if (r->path[k].key)
+            (void)snprintf(out + used, size - used, "%s%.80s", used > 0 ? "." : "", r->path[k].key);
+        else
+            (void)snprintf(out + used, size - used, "[%zu]", r->path[k].index);
 }
 
 static bool has_parameter(const struct script_function *function, const char *name, size_t length) {
@@ -110,7 +109,7 @@ static void print_argument(const struct script_context *context, char *error, ch
 static void locate(const struct sandbox *sandbox, char *out, size_t size) {
     struct script_context *context = context_of(sandbox->lua);
     char position[400] = "", argument[256] = "";
-    print_position(script_of(context)->reader->position, position, sizeof position);
+    print_position(script_of(context)->reader, position, sizeof position);
     print_argument(context, context->sandbox.raised, argument, sizeof argument);
     if (position[0] || argument[0])
         (void)snprintf(out, size, "%s%s: ", position, argument + (position[0] == '\0' && argument[0] == '.'));
@@ -130,10 +129,9 @@ _Noreturn static void fail_unknown(struct scene_reader *r, const char *what, con
 static void push_value(struct scene_reader *r, const json_t *json);
 
 static void push_entry(struct scene_reader *r, size_t index, const json_t *json) {
-    const struct position position = {r->position, NULL, index};
-    r->position = &position;
+    enter(r, NULL, index);
     push_value(r, json);
-    r->position = position.outer;
+    r->path_end--;
 }
 
 static void push_list(struct scene_reader *r, const json_t *list) {
@@ -152,7 +150,7 @@ static bool is_call(const json_t *value) {
 
 /* An object of a kind that only functions make; its position is set. */
 static void check_type(struct scene_reader *r, const struct script_function *function, const json_t *value) {
-    const char *key = r->position->key;
+    const char *key = r->path[r->path_end - 1].key;
     for (int k = 0; json_is_object(value) && !is_call(value) && k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         bool is_node = p->kind == KIND_NODE;
@@ -174,12 +172,11 @@ static void push_fields(struct scene_reader *r, const struct script_function *fu
             other++;
         if (*other)
             continue;
-        const struct position position = {r->position, key, 0};
-        r->position = &position;
+        enter(r, key, 0);
         if (function)
             check_type(r, function, json_object_iter_value(at));
         push_value(r, json_object_iter_value(at));
-        r->position = position.outer;
+        r->path_end--;
         bool is_type = function && strcmp(key, SCENE_JSON_FIELD_TYPE) == 0 && has_parameter(function, "type", 4);
         lua_setfield(r->L, -2, is_type ? "type" : key);
     }
@@ -228,9 +225,8 @@ static const struct script_function *find_function(struct scene_reader *r, enum 
 static void call_method(struct scene_reader *r, const char *name, const json_t *value) {
     static const char *const none[] = {NULL};
     lua_State *L = r->L;
-    const struct position position = {r->position, name, 0};
     int count = 1;
-    r->position = &position;
+    enter(r, name, 0);
     luaL_checkstack(L, 20, NULL);
     const struct script_function *function = find_function(r, OWNER_NODE, name);
     lua_pushvalue(L, -2);
@@ -247,13 +243,12 @@ static void call_method(struct scene_reader *r, const char *name, const json_t *
         push_value(r, value);
     }
     lua_call(L, count + 1, 0);
-    r->position = position.outer;
+    r->path_end--;
 }
 
 static void push_node(struct scene_reader *r, const json_t *list, size_t index) {
-    const struct position position = {r->position, NULL, index};
     const json_t *json = json_array_get(list, index);
-    r->position = &position;
+    enter(r, NULL, index);
     push_value(r, json);
     const struct handle *handle = handle_at(r->L, -1);
     if (!handle || handle->type != HANDLE_NODE)
@@ -261,14 +256,13 @@ static void push_node(struct scene_reader *r, const json_t *list, size_t index) 
                       json_is_array(json)               ? "a list"
                       : json_is_object(json) && !handle ? "an object without a type"
                                                         : value_words(r->L, -1));
-    r->position = position.outer;
+    r->path_end--;
 }
 
 /* To the node on top. */
 static void add_children(struct scene_reader *r, const char *key, const json_t *children) {
     lua_State *L = r->L;
-    const struct position position = {r->position, key, 0};
-    r->position = &position;
+    enter(r, key, 0);
     if (!json_is_array(children))
         sandbox_raise(sandbox_enter(L), "it must be a list of nodes");
     for (size_t i = 0; i < json_array_size(children); i++) {
@@ -277,24 +271,23 @@ static void add_children(struct scene_reader *r, const char *key, const json_t *
         push_node(r, children, i);
         lua_call(L, 2, 0);
     }
-    r->position = position.outer;
+    r->path_end--;
 }
 
 static void transform(struct scene_reader *r, const json_t *calls) {
-    const struct position position = {r->position, "transform", 0};
-    r->position = &position;
+    enter(r, "transform", 0);
     if (!json_is_array(calls))
         sandbox_raise(sandbox_enter(r->L), "it must be a list such as [{\"translate\": [1, 0, 0]}]");
     for (size_t i = 0; i < json_array_size(calls); i++) {
-        const struct position inner = {&position, NULL, i};
         json_t *call = json_array_get(calls, i);
         void *at = json_is_object(call) ? json_object_iter(call) : NULL;
-        r->position = &inner;
+        enter(r, NULL, i);
         if (!at || json_object_size(call) != 1)
             sandbox_raise(sandbox_enter(r->L), "it must be an object with one method, as {\"translate\": [1, 0, 0]}");
         call_method(r, json_object_iter_key(at), json_object_iter_value(at));
+        r->path_end--;
     }
-    r->position = position.outer;
+    r->path_end--;
 }
 
 /* The object that a function of gr makes. */
@@ -334,13 +327,15 @@ static void push_reference(struct scene_reader *r, const char *name) {
     lua_pushboolean(L, 1);
     lua_setfield(L, r->made, name);
     lua_pop(L, 1);
-    /* Its position is in `define`. */
-    const struct position *position = r->position, define = {NULL, "define", 0}, own = {&define, name, 0};
-    r->position = &own;
+    const int start = r->path_start;
+    r->path_start = r->path_end;
+    enter(r, "define", 0);
+    enter(r, name, 0);
     if (!is_call(json))
         sandbox_raise(sandbox_enter(L), "it must be an object with a type, such as {\"type\": \"sphere\"}");
     push_value(r, json);
-    r->position = position;
+    r->path_end = r->path_start;
+    r->path_start = start;
     lua_pushvalue(L, -1);
     lua_setfield(L, r->made, name);
 }
@@ -452,19 +447,16 @@ static void set_state(struct scene_reader *r, const json_t *root) {
 static void push_root(struct scene_reader *r, const json_t *nodes) {
     const char *name;
     json_t *value;
-    const struct position position = {NULL, "nodes", 0};
-    r->position = &position;
-    bool several = json_array_size(nodes) > 1;
-    if (several) {
+    if (json_array_size(nodes) > 1) {
         dispatch_push(r->L, function_find(OWNER_GR, "node"));
         lua_pushliteral(r->L, "scene");
         lua_call(r->L, 1, 1);
-        r->position = NULL;
         add_children(r, "nodes", nodes);
     } else {
+        enter(r, "nodes", 0);
         push_node(r, nodes, 0);
+        r->path_end--;
     }
-    r->position = NULL;
     json_object_foreach(r->defined, name, value) { /* those that nothing uses, for their errors */
         push_reference(r, name);
         lua_pop(r->L, 1);
@@ -478,8 +470,7 @@ static void render(struct scene_reader *r, const json_t *root) {
     const char *type = json_string_value(json_object_get(picture, "type"));
     const struct script_function *function = function_find(OWNER_GR, type ? type : "render");
     push_root(r, json_object_get(root, "nodes"));
-    const struct position position = {NULL, "picture", 0};
-    r->position = &position;
+    enter(r, "picture", 0);
     if (!function || !function_renders(function))
         sandbox_raise(sandbox_enter(L), "the type must be \"render\", \"render_skybox\" or \"light_field\"");
     if (picture)
@@ -491,7 +482,7 @@ static void render(struct scene_reader *r, const json_t *root) {
     dispatch_push(L, function);
     lua_insert(L, -2);
     lua_call(L, 1, 0);
-    r->position = NULL;
+    r->path_end--;
 }
 
 static json_t *read_file(lua_State *L, const char *path) {
