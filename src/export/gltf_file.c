@@ -41,43 +41,23 @@ void gltf_buffer_destroy(struct gltf_buffer *buffer) {
 
 /* --- for Lua --- */
 
-void gltf_set_numbers(lua_State *L, const char *field, const double *numbers, int count) {
-    lua_createtable(L, count, 0);
-    for (int i = 0; i < count; i++) {
-        lua_pushnumber(L, numbers[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, field);
-}
-
-void gltf_set_number(lua_State *L, const char *field, double number) {
-    lua_pushnumber(L, number);
-    lua_setfield(L, -2, field);
-}
-
-void gltf_set_flag(lua_State *L, const char *field, bool flag) {
-    lua_pushboolean(L, flag);
-    lua_setfield(L, -2, field);
-}
-
 void gltf_push_view(lua_State *L, const struct gltf_buffer *buffer, uint32_t number) {
     const struct gltf_view *view = (const struct gltf_view *)buffer->views.items + number;
     lua_createtable(L, 0, 4);
-    gltf_set_number(L, "buffer", 0);
-    gltf_set_number(L, "byteOffset", (double)view->start);
-    gltf_set_number(L, "byteLength", (double)view->size);
+    field_number(L, "buffer", 0);
+    field_number(L, "byteOffset", (double)view->start);
+    field_number(L, "byteLength", (double)view->size);
     if (view->target != GLTF_NO_TARGET)
-        gltf_set_number(L, "target", view->target);
+        field_number(L, "target", view->target);
 }
 
 /* Pushes an accessor, with the number of the constant of its components. */
 static void push_accessor(lua_State *L, int width, double component, size_t count) {
     static const char *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     lua_createtable(L, 0, 6);
-    lua_pushstring(L, types[width - 1]);
-    lua_setfield(L, -2, "type");
-    gltf_set_number(L, "componentType", component);
-    gltf_set_number(L, "count", (double)count);
+    field_text(L, "type", types[width - 1]);
+    field_number(L, "componentType", component);
+    field_number(L, "count", (double)count);
 }
 
 int gltf_push_floats(lua_State *L, struct gltf_buffer *buffer, const float *numbers, size_t count, int width,
@@ -90,8 +70,8 @@ int gltf_push_floats(lua_State *L, struct gltf_buffer *buffer, const float *numb
         high[k] = i == k || x > high[k] ? x : high[k];
     }
     push_accessor(L, width, 5126, count);
-    gltf_set_numbers(L, "min", low, width);
-    gltf_set_numbers(L, "max", high, width);
+    field_numbers(L, "min", low, width);
+    field_numbers(L, "max", high, width);
     uint32_t number;
     if (!gltf_add_view(buffer, numbers, count * (size_t)width * sizeof *numbers, target, &number))
         return luaL_error(L, GLTF_NO_MEMORY);
@@ -117,7 +97,7 @@ void gltf_push_buffer(lua_State *L, const struct gltf_buffer *buffer, bool binar
         return;
     }
     lua_createtable(L, 0, 2);
-    gltf_set_number(L, "byteLength", (double)size);
+    field_number(L, "byteLength", (double)size);
     if (binary)
         return;
     luaL_buffinit(L, &uri);

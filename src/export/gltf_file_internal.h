@@ -4,9 +4,8 @@
 
 #include "base/error.h"
 #include "base/key_map.h"
+#include "base/lua_fields.h"
 #include "formats/list.h"
-
-#include <lua.h>
 
 #define GLTF_NONE UINT32_MAX /* in place of the number of a view */
 
@@ -41,11 +40,6 @@ int gltf_push_floats(lua_State *L, struct gltf_buffer *buffer, const float *numb
 int gltf_push_indices(lua_State *L, struct gltf_buffer *buffer, const uint32_t *indices, size_t count, size_t vertices);
 /* The element of `buffers`, or nil; with a data URI unless the file is binary. */
 void gltf_push_buffer(lua_State *L, const struct gltf_buffer *buffer, bool binary);
-/* Set a field of the table on top. */
-void gltf_set_numbers(lua_State *L, const char *field, const double *numbers, int count); /* a list */
-void gltf_set_number(lua_State *L, const char *field, double number);
-void gltf_set_flag(lua_State *L, const char *field, bool flag);
-
 /* The bytes of a GLB, or the text. Errors: no memory, 4 GiB and more. */
 bool gltf_file_write(const struct gltf_buffer *buffer, const struct list *text, bool binary, struct list *out,
                      struct error *error);

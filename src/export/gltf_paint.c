@@ -628,15 +628,13 @@ static void set_copy(lua_State *L, const char *field, const struct gltf_painter 
     lua_newtable(L);
     gltf_push_view(L, p->buffer, view);
     lua_setfield(L, -2, "picture");
-    gltf_set_flag(L, "nearest", image->filter == IMAGE_NEAREST);
-    lua_pushstring(L, wraps[image->wrap]);
-    lua_setfield(L, -2, "wrap_u");
-    lua_pushstring(L, wraps[image->apart ? image->wrap_v : image->wrap]);
-    lua_setfield(L, -2, "wrap_v");
+    field_flag(L, "nearest", image->filter == IMAGE_NEAREST);
+    field_text(L, "wrap_u", wraps[image->wrap]);
+    field_text(L, "wrap_v", wraps[image->apart ? image->wrap_v : image->wrap]);
     const double map[6] = {image->scale[0], image->scale[1],  image->cross[0],
                            image->cross[1], image->offset[0], image->offset[1]};
     if (image->apart)
-        gltf_set_numbers(L, "map", map, 6);
+        field_numbers(L, "map", map, 6);
     lua_setfield(L, -2, field);
 }
 
@@ -659,26 +657,24 @@ void gltf_paint_push(lua_State *L, const struct gltf_painter *painter, uint32_t 
     if (copied && copies.base)
         v.base = gltf_light_of(painter, colour_min(copies.factor, colour_all(1)));
     lua_newtable(L);
-    lua_pushstring(L, name ? name : "");
-    lua_setfield(L, -2, "name");
+    field_text(L, "name", name ? name : "");
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
         const double *numbers = (const double *)(const void *)((const char *)&v + fields[i].offset);
         if (fields[i].count == 1)
-            gltf_set_number(L, fields[i].name, *numbers);
+            field_number(L, fields[i].name, *numbers);
         else
-            gltf_set_numbers(L, fields[i].name, numbers, fields[i].count);
+            field_numbers(L, fields[i].name, numbers, fields[i].count);
     }
-    gltf_set_number(L, "height", copied && copies.normal ? copies.height : 1);
-    gltf_set_flag(L, "unlit", v.unlit);
-    gltf_set_flag(L, "is_solid", v.is_solid);
-    gltf_set_flag(L, "two_sided", m->phong.two_sided);
-    gltf_set_flag(L, "is_baked", varies && paint->baked);
-    gltf_set_flag(L, "has_vertex_colours", (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
-    gltf_set_flag(L, "scatters",
-                  m->has_layers &&
-                      (layers->subsurface_weight > 0 || colour_max_abs(layers->transmission_scattering) > 0));
-    gltf_set_flag(L, "is_brushed", m->has_layers && (layers->specular_anisotropy > 0 || layers->coat_anisotropy > 0));
-    gltf_set_flag(L, "is_filled", m->holds_medium || m->filled);
+    field_number(L, "height", copied && copies.normal ? copies.height : 1);
+    field_flag(L, "unlit", v.unlit);
+    field_flag(L, "is_solid", v.is_solid);
+    field_flag(L, "two_sided", m->phong.two_sided);
+    field_flag(L, "is_baked", varies && paint->baked);
+    field_flag(L, "has_vertex_colours", (KINDS(world, material, of_base) & BY_VERTEX) && surface->has_colours);
+    field_flag(L, "scatters",
+               m->has_layers && (layers->subsurface_weight > 0 || colour_max_abs(layers->transmission_scattering) > 0));
+    field_flag(L, "is_brushed", m->has_layers && (layers->specular_anisotropy > 0 || layers->coat_anisotropy > 0));
+    field_flag(L, "is_filled", m->holds_medium || m->filled);
     set_copy(L, "base_copy", painter, copied ? copies.base : NULL);
     set_copy(L, "normal_copy", painter, copied ? copies.normal : NULL);
 }

@@ -43,11 +43,7 @@ static struct gltf_scene *scene_of(lua_State *L) {
 /* --- maps --- */
 
 static void push_map(lua_State *L, const struct affine *map) {
-    lua_createtable(L, 12, 0);
-    for (int i = 0; i < 12; i++) {
-        lua_pushnumber(L, map->m[i / 4][i % 4]);
-        lua_rawseti(L, -2, i + 1);
-    }
+    push_numbers(L, map->m[0], 12);
 }
 
 /* The motion of a node within a still scene, from time 0 to time 1; returns in how many steps its pose is linear. */
@@ -126,29 +122,25 @@ static int visit(lua_State *L) {
     lua_pushstring(L, event == SCENE_ENTER ? "enter" : "children");
     lua_pushinteger(L, t->depth);
     lua_createtable(L, 0, 8);
-    lua_pushstring(L, node->name);
-    lua_setfield(L, -2, "name");
+    field_text(L, "name", node->name);
     if (event == SCENE_CHILDREN) {
         const struct scene_step *step = &t->steps[t->depth - 1];
         const struct transform identity = transform_identity(), map = scene_step_map(step, &identity);
-        lua_pushinteger(L, step->placement);
-        lua_setfield(L, -2, "placement");
+        field_number(L, "placement", step->placement);
         push_map(L, &map.forward);
         lua_setfield(L, -2, "map");
         return 3;
     }
     struct motion unused;
     uint32_t count = world_primitives_of(scene->moment->world, node, scene->next_primitive);
-    lua_pushinteger(L, scene->next_primitive);
-    lua_setfield(L, -2, "first");
-    lua_pushinteger(L, count);
-    lua_setfield(L, -2, "count");
+    field_number(L, "first", scene->next_primitive);
+    field_number(L, "count", count);
     scene->next_primitive += count;
-    gltf_set_flag(L, "is_operand", t->depth > 1 && scene_traversal_operand(t) != SCENE_CHILD);
-    gltf_set_flag(L, "is_childless", node->child_count == 0);
-    gltf_set_flag(L, "moves", node_moves(node));
-    gltf_set_number(L, "degrees", node->spin ? node->spin->degrees : 0);
-    gltf_set_number(L, "steps", node_moves(node) ? motion_of(node, &unused) : 1);
+    field_flag(L, "is_operand", t->depth > 1 && scene_traversal_operand(t) != SCENE_CHILD);
+    field_flag(L, "is_childless", node->child_count == 0);
+    field_flag(L, "moves", node_moves(node));
+    field_number(L, "degrees", node->spin ? node->spin->degrees : 0);
+    field_number(L, "steps", node_moves(node) ? motion_of(node, &unused) : 1);
     return 3;
 }
 
@@ -217,17 +209,15 @@ static int surface_of(lua_State *L) {
     if (!make_surface(scene, primitive))
         return lua_error(L);
     lua_newtable(L);
-    lua_pushstring(L, primitive_node(scene->moment->world, primitive)->name);
-    lua_setfield(L, -2, "name");
-    lua_pushstring(L, scene->surface.why);
-    lua_setfield(L, -2, "why");
+    field_text(L, "name", primitive_node(scene->moment->world, primitive)->name);
+    field_text(L, "why", scene->surface.why);
     set_materials(L, &scene->surface);
-    gltf_set_flag(L, "has_normals", scene->surface.has_normals);
-    gltf_set_flag(L, "is_open", scene->surface.is_open);
-    gltf_set_flag(L, "by_vertex", paint->by_vertex);
-    gltf_set_flag(L, "has_holes", paint->has_holes);
-    gltf_set_flag(L, "has_veils", paint->has_veils);
-    gltf_set_number(L, "strongest", paint->strongest);
+    field_flag(L, "has_normals", scene->surface.has_normals);
+    field_flag(L, "is_open", scene->surface.is_open);
+    field_flag(L, "by_vertex", paint->by_vertex);
+    field_flag(L, "has_holes", paint->has_holes);
+    field_flag(L, "has_veils", paint->has_veils);
+    field_number(L, "strongest", paint->strongest);
     for (int i = 0; paint->baked && i < GLTF_MAP_COUNT; i++) {
         if (paint->maps[i] == GLTF_NONE)
             continue;
@@ -323,25 +313,20 @@ static int floats(lua_State *L) {
 
 /* --- the camera and the lights --- */
 
-static void set_vector(lua_State *L, const char *field, struct vec3 v) {
-    gltf_set_numbers(L, field, (const double[3]){v.x, v.y, v.z}, 3);
-}
-
 static void set_camera(lua_State *L, const struct gltf_moment *moment) {
     static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
     const struct lens *lens = moment->lens;
     lua_newtable(L);
-    set_vector(L, "eye", moment->camera->eye);
-    set_vector(L, "view", moment->camera->view);
-    set_vector(L, "up", moment->camera->up);
-    gltf_set_number(L, "fov", moment->camera->fov);
-    gltf_set_number(L, "view_height", lens->view_height);
-    gltf_set_number(L, "aspect", moment->aspect);
-    lua_pushstring(L, projections[lens->projection]);
-    lua_setfield(L, -2, "projection");
-    gltf_set_flag(L, "is_special",
-                  lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
-                      lens->shift_y != 0);
+    field_numbers(L, "eye", &moment->camera->eye.x, 3);
+    field_numbers(L, "view", &moment->camera->view.x, 3);
+    field_numbers(L, "up", &moment->camera->up.x, 3);
+    field_number(L, "fov", moment->camera->fov);
+    field_number(L, "view_height", lens->view_height);
+    field_number(L, "aspect", moment->aspect);
+    field_text(L, "projection", projections[lens->projection]);
+    field_flag(L, "is_special",
+               lens->aperture > 0 || lens->stereo != STEREO_NONE || lens->columns > 0 || lens->shift_x != 0 ||
+                   lens->shift_y != 0);
     lua_setfield(L, -2, "camera");
 }
 
@@ -366,26 +351,24 @@ static int next_light(lua_State *L) {
     const double largest = colour_max_abs(light->colour);
     struct colour shown = gltf_light_of(&scene->painter, colour_scale(light->colour, 1 / largest));
     lua_newtable(L);
-    lua_pushstring(L, kinds[light->kind]);
-    lua_setfield(L, -2, "kind");
-    lua_pushstring(L, attenuations[light->attenuation]);
-    lua_setfield(L, -2, "attenuation");
-    set_vector(L, "middle", light_middle(light, &middle) ? middle.at : vec3_all(0));
-    set_vector(L, "direction", light->direction);
-    set_vector(L, "edge1", light->edge1);
-    set_vector(L, "edge2", light->edge2);
-    gltf_set_numbers(L, "colour", &light->colour.r, 3);
-    gltf_set_numbers(L, "shown", &shown.r, 3); /* the colour in the file */
-    gltf_set_numbers(L, "falloff", light->falloff, 3);
-    gltf_set_number(L, "range", light->range);
-    gltf_set_number(L, "intensity", light->intensity);
-    gltf_set_number(L, "inner", el_acos(light->cos_inner));
-    gltf_set_number(L, "outer", el_acos(light->cos_outer));
-    gltf_set_number(L, "radius", light->radius);
-    gltf_set_flag(L, "emissive", light->emissive);
-    gltf_set_flag(L, "one_sided", light->one_sided);
-    gltf_set_flag(L, "has_profile", light->profile);
-    gltf_set_flag(L, "leaves_out", light->lit);
+    field_text(L, "kind", kinds[light->kind]);
+    field_text(L, "attenuation", attenuations[light->attenuation]);
+    field_numbers(L, "middle", light_middle(light, &middle) ? &middle.at.x : (const double[3]){0, 0, 0}, 3);
+    field_numbers(L, "direction", &light->direction.x, 3);
+    field_numbers(L, "edge1", &light->edge1.x, 3);
+    field_numbers(L, "edge2", &light->edge2.x, 3);
+    field_numbers(L, "colour", &light->colour.r, 3);
+    field_numbers(L, "shown", &shown.r, 3); /* the colour in the file */
+    field_numbers(L, "falloff", light->falloff, 3);
+    field_number(L, "range", light->range);
+    field_number(L, "intensity", light->intensity);
+    field_number(L, "inner", el_acos(light->cos_inner));
+    field_number(L, "outer", el_acos(light->cos_outer));
+    field_number(L, "radius", light->radius);
+    field_flag(L, "emissive", light->emissive);
+    field_flag(L, "one_sided", light->one_sided);
+    field_flag(L, "has_profile", light->profile);
+    field_flag(L, "leaves_out", light->lit);
     return 1;
 }
 
@@ -502,11 +485,10 @@ static int add_moment(lua_State *L) {
     const struct box box = world_finite_bounds(moment->world);
     lua_getfield(L, 1, "add");
     lua_newtable(L);
-    gltf_set_flag(L, "is_frame", moment->is_frame);
-    gltf_set_number(L, "time", moment->time);
-    gltf_set_flag(L, "is_empty", box_is_empty(&box));
-    gltf_set_numbers(L, "bounds", (const double[]){box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z},
-                     6);
+    field_flag(L, "is_frame", moment->is_frame);
+    field_number(L, "time", moment->time);
+    field_flag(L, "is_empty", box_is_empty(&box));
+    field_numbers(L, "bounds", (const double[]){box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}, 6);
     if (moment->camera)
         set_camera(L, moment);
     lua_call(L, 1, 0);

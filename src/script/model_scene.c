@@ -1,6 +1,7 @@
 /* A model on the command line is the argument of a scene that gray holds (model_scene.lua); what it needs of gray. */
 #include "script/model_scene_internal.h"
 
+#include "base/lua_fields.h"
 #include "sandbox/embedded.h"
 #include "script/gr_model_internal.h"
 #include "script/script_internal.h"
@@ -120,17 +121,12 @@ void model_scene_run(lua_State *L) {
     lua_pushstring(L, path);
     lua_pushstring(L, slash ? slash + 1 : path);
     lua_createtable(L, 0, 5);
-    lua_pushstring(L, options->camera);
-    lua_setfield(L, -2, "camera");
-    lua_pushboolean(L, options->sky != NULL);
-    lua_setfield(L, -2, "sky");
-    lua_pushboolean(L, script->host->checks);
-    lua_setfield(L, -2, "checks");
-    lua_pushboolean(L, script->host->frame.number > 0);
-    lua_setfield(L, -2, "moves");
+    field_text(L, "camera", options->camera);
+    field_flag(L, "sky", options->sky != NULL);
+    field_flag(L, "checks", script->host->checks);
+    field_flag(L, "moves", script->host->frame.number > 0);
     struct frame last = script->host->frame;
     last.number = last.count;
-    lua_pushnumber(L, frame_time(&last));
-    lua_setfield(L, -2, "seconds");
+    field_number(L, "seconds", frame_time(&last));
     lua_call(L, 4, 0);
 }

@@ -3,6 +3,7 @@
 
 #include "base/document.h"
 #include "base/json_write.h"
+#include "base/lua_fields.h"
 #include "base/terminal_text.h"
 #include "expr/expr_text.h"
 #include "sandbox/embedded.h"
@@ -203,50 +204,33 @@ void scene_write_object(lua_State *L, const void *object, const char *kind) {
 
 /* --- pictures --- */
 
-static void set_vector(lua_State *L, const char *field, struct vec3 v) {
-    lua_createtable(L, 3, 0);
-    for (int k = 0; k < 3; k++) {
-        lua_pushnumber(L, vec3_get(v, k));
-        lua_rawseti(L, -2, k + 1);
-    }
-    lua_setfield(L, -2, field);
-}
-
-static struct vec3 vector_of(struct colour c) {
-    return vec3_make(c.r, c.g, c.b);
-}
-
 /* The light of the studio around a model, which scripts do not have: its boxes as lights, and its sky. */
 static void set_model_light(lua_State *L, const struct render_request *request) {
     const struct scene_light *lights = request->lights;
     for (uint32_t i = 0; i < request->light_count; i++) {
         lua_newtable(L);
-        set_vector(L, "corner", lights[i].light.corner);
-        set_vector(L, "v1", lights[i].light.edge1);
-        set_vector(L, "v2", lights[i].light.edge2);
-        set_vector(L, "emission", vector_of(lights[i].light.colour));
-        lua_pushboolean(L, 1);
-        lua_setfield(L, -2, "visible");
+        field_numbers(L, "corner", &lights[i].light.corner.x, 3);
+        field_numbers(L, "v1", &lights[i].light.edge1.x, 3);
+        field_numbers(L, "v2", &lights[i].light.edge2.x, 3);
+        field_numbers(L, "emission", &lights[i].light.colour.r, 3);
+        field_flag(L, "visible", true);
         scene_write_object(L, &lights[i], "area_light");
         push_writer(L, "add_light");
         lua_pushlightuserdata(L, (void *)(uintptr_t)&lights[i]);
         lua_call(L, 1, 0);
     }
-    set_vector(L, "background", vector_of(request->sky.colour));
-    set_vector(L, "ambient", vector_of(request->ambient));
+    field_numbers(L, "background", &request->sky.colour.r, 3);
+    field_numbers(L, "ambient", &request->ambient.r, 3);
 }
 
 /* The camera of a model is fitted to a part of the scene. */
 static void set_model_camera(lua_State *L, const struct render_request *request) {
     const struct lens *lens = &request->settings.lens;
-    set_vector(L, "eye", request->camera.eye);
-    set_vector(L, request->settings.view_is_target ? "target" : "view", request->camera.view);
-    lua_pushnumber(L, request->camera.fov);
-    lua_setfield(L, -2, "fov");
-    if (lens->projection == PROJECTION_ORTHOGRAPHIC) {
-        lua_pushnumber(L, lens->view_height);
-        lua_setfield(L, -2, "view_height");
-    }
+    field_numbers(L, "eye", &request->camera.eye.x, 3);
+    field_numbers(L, request->settings.view_is_target ? "target" : "view", &request->camera.view.x, 3);
+    field_number(L, "fov", request->camera.fov);
+    if (lens->projection == PROJECTION_ORTHOGRAPHIC)
+        field_number(L, "view_height", lens->view_height);
 }
 
 /* Arguments: the request. Returns the text. */
@@ -257,23 +241,14 @@ static int write_picture(lua_State *L) {
     lua_pushstring(L, context->function->name);
     lua_pushlightuserdata(L, request->root);
     lua_createtable(L, 0, 5);
-    lua_pushinteger(L, SCENE_JSON_VERSION);
-    lua_setfield(L, -2, "version");
-    lua_pushboolean(L, !script_of(context)->only_named_pictures);
-    lua_setfield(L, -2, "classic");
-    lua_pushboolean(L, script_of(context)->host->text_is_lua);
-    lua_setfield(L, -2, "lua");
-    lua_pushboolean(L, context->scene.spins);
-    lua_setfield(L, -2, "spins");
-    lua_pushnumber(L, request->time);
-    lua_setfield(L, -2, "time");
+    field_number(L, "version", SCENE_JSON_VERSION);
+    field_flag(L, "classic", !script_of(context)->only_named_pictures);
+    field_flag(L, "lua", script_of(context)->host->text_is_lua);
+    field_flag(L, "spins", context->scene.spins);
+    field_number(L, "time", request->time);
     if (request->frame.number > 0) { /* in seconds already */
-        lua_createtable(L, 2, 0);
-        lua_pushnumber(L, request->settings.shutter.open);
-        lua_rawseti(L, -2, 1);
-        lua_pushnumber(L, request->settings.shutter.close);
-        lua_rawseti(L, -2, 2);
-        lua_setfield(L, -2, "shutter");
+        const struct shutter *shutter = &request->settings.shutter;
+        field_numbers(L, "shutter", (const double[]){shutter->open, shutter->close}, 2);
     }
     lua_newtable(L);
     if (context->scene.is_model)

@@ -286,7 +286,7 @@ local function write_json(root, picture, state)
     local order, out = one_order(orders), {}
     if state.classic then out[#out + 1] = '"defaults": "classic"' end
     if #define > 0 then out[#out + 1] = '"define": {\n' .. concat(define, ',\n') .. '\n }' end
-    out[#out + 1] = '"gray": ' .. state.version
+    out[#out + 1] = '"gray": ' .. number_text(state.version)
     out[#out + 1] = '"nodes": [\n  ' .. text_of(root, '  ') .. '\n ]'
     out[#out + 1] = '"picture": ' .. object(picture, ' ')
     if state.time > 0 then out[#out + 1] = '"time": ' .. number_text(state.time) end

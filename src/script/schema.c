@@ -2,6 +2,7 @@
 #include "script/schema.h"
 
 #include "base/document.h"
+#include "base/lua_fields.h"
 #include "sandbox/embedded.h"
 #include "script/scene_json_internal.h"
 #include "script/table_internal.h"
@@ -10,16 +11,6 @@
 #include <lualib.h>
 
 extern const char *const schema_lua[];
-
-static void set_text(lua_State *L, const char *field, const char *text) {
-    lua_pushstring(L, text ? text : "");
-    lua_setfield(L, -2, field);
-}
-
-static void set_flag(lua_State *L, const char *field, bool flag) {
-    lua_pushboolean(L, flag);
-    lua_setfield(L, -2, field);
-}
 
 static void push_parameter(lua_State *L, const struct script_parameter *p) {
     static const struct {
@@ -33,17 +24,15 @@ static void push_parameter(lua_State *L, const struct script_parameter *p) {
                   {OR_PAIR, "kind.interval"},
                   {OR_SKY, "sky"}};
     lua_newtable(L);
-    set_text(L, "name", p->name);
-    set_text(L, "kind", kind_name(p->kind));
-    set_text(L, "help", p->help);
-    set_text(L, "choices", p->choices);
-    lua_pushnumber(L, p->low);
-    lua_setfield(L, -2, "low");
-    lua_pushnumber(L, p->high);
-    lua_setfield(L, -2, "high");
-    set_flag(L, "low_open", p->flags & LOW_OPEN);
-    set_flag(L, "high_open", p->flags & HIGH_OPEN);
-    set_flag(L, "optional", p->flags & OPTIONAL);
+    field_text(L, "name", p->name);
+    field_text(L, "kind", kind_name(p->kind));
+    field_text(L, "help", p->help);
+    field_text(L, "choices", p->choices ? p->choices : "");
+    field_number(L, "low", p->low);
+    field_number(L, "high", p->high);
+    field_flag(L, "low_open", p->flags & LOW_OPEN);
+    field_flag(L, "high_open", p->flags & HIGH_OPEN);
+    field_flag(L, "optional", p->flags & OPTIONAL);
     lua_newtable(L);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         if (!(p->flags & others[i].flag))
@@ -59,11 +48,11 @@ static void push_function(lua_State *L, const struct script_function *function) 
     const int first = function->owner == OWNER_NODE; /* behind the node itself */
     int unused;
     lua_newtable(L);
-    set_text(L, "name", function->name);
-    set_text(L, "owner", first ? "node" : "gr");
-    set_text(L, "result", results[function->result]);
-    set_flag(L, "renders", function_renders(function));
-    set_flag(L, "has_rest", function_rest(function, &unused));
+    field_text(L, "name", function->name);
+    field_text(L, "owner", first ? "node" : "gr");
+    field_text(L, "result", results[function->result]);
+    field_flag(L, "renders", function_renders(function));
+    field_flag(L, "has_rest", function_rest(function, &unused));
     lua_newtable(L);
     for (int k = first; k < function->parameter_count; k++) {
         push_parameter(L, &function->parameters[k]);
