@@ -189,6 +189,14 @@ static const char small_scene[] =
     "gr.render{node = root, file = 'a.png', width = 40, height = 34, eye = {0, 0, 6}, fov = 40, ambient = {0.2, 0.2, "
     "0.2}, lights = {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})}}\n";
 
+TEST(faults_some_allocations_fail_while_a_scene_is_written_as_gltf) {
+#ifndef GRAY_FAULTS
+    test_skip("failures on demand are only in builds with GRAY_FAULTS");
+#endif
+    put("scene.lua", small_scene);
+    survive_line("GRAY_FAIL_ALLOC", 29, "-q -j 1 --force -o a.glb scene.lua", "a.glb");
+}
+
 TEST(faults_any_call_may_fail_while_parts_are_made_and_merged) {
     static const char call[] = "GRAY_FAIL_CALL", allocation[] = "GRAY_FAIL_ALLOC";
 #ifndef GRAY_FAULTS
