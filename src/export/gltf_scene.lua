@@ -238,8 +238,8 @@ end
 
 -- --- materials ---
 
-local function light_of(colour)
-    return max(colour[1], colour[2], colour[3])
+local function largest(colour)
+    return max(abs(colour[1]), abs(colour[2]), abs(colour[3]))
 end
 
 -- A texture with a picture that gray has put into the buffer; `how`: as a picture is used that was copied.
@@ -275,7 +275,8 @@ end
 -- The extensions of a material. Members with their default value are left out.
 local function extend_material(out, m, strength)
     local lit = not m.unlit
-    local clear, coat, sheen, film = lit and m.transmission > 0, lit and m.coat > 0, lit and light_of(m.sheen) > 0, lit and m.film > 0
+    local coat, sheen, film = lit and m.coat > 0, lit and largest(m.sheen) > 0, lit and m.film > 0
+    local clear = lit and m.transmission > 0
     local solid = clear and m.is_solid
     local rows = { -- extension, whether it is there, member, value, default
         {'emissive_strength', true, 'emissiveStrength', strength, 1},
@@ -323,7 +324,7 @@ local function add_material(index, surface, baked)
     local blends = m.alpha < 1
     if m.is_baked and base then blends = surface.has_veils end
     local masks = m.is_baked and base and surface.has_holes and not blends
-    local strength = max(light_of(m.emission), 1)
+    local strength = max(largest(m.emission), 1)
     local out = {
         name = m.name ~= '' and m.name or nil,
         pbrMetallicRoughness = {
@@ -332,7 +333,7 @@ local function add_material(index, surface, baked)
             baseColorTexture = texture_of(base, m.base_copy, 1), metallicRoughnessTexture = texture_of(rough, nil, 1)
         },
         normalTexture = texture_of(normal, m.normal_copy, m.height),
-        emissiveFactor = light_of(m.emission) > 0 and scaled(m.emission, 1 / strength) or nil,
+        emissiveFactor = largest(m.emission) > 0 and scaled(m.emission, 1 / strength) or nil,
         emissiveTexture = texture_of(emission, nil, 1),
         alphaMode = blends and 'BLEND' or masks and 'MASK' or nil,
         doubleSided = not m.is_solid and (surface.is_open or m.two_sided) or nil
@@ -413,7 +414,8 @@ local function visit_tree(root)
         else
             of_children[depth] = of_node[depth]
             if about.placement > 0 then
-                _, of_children[depth] = node_for(of_node[depth], format('%s [%d]', sub(about.name, 1, 120), about.placement), about.map)
+                local name = format('%s [%d]', sub(about.name, 1, 120), about.placement)
+                _, of_children[depth] = node_for(of_node[depth], name, about.map)
             end
         end
     end
@@ -432,7 +434,8 @@ local function add_camera(camera)
     if camera.is_special then lack 'the camera is a pinhole, without depth of field, shift, stereo and light field' end
     if camera.projection == 'orthographic' then
         local half = camera.view_height / 2
-        return add('cameras', {type = 'orthographic', orthographic = {xmag = half * camera.aspect, ymag = half, zfar = 2 * far, znear = 0}})
+        local view = {xmag = half * camera.aspect, ymag = half, zfar = 2 * far, znear = 0}
+        return add('cameras', {type = 'orthographic', orthographic = view})
     end
     return add('cameras', {type = 'perspective',
         perspective = {aspectRatio = camera.aspect, yfov = camera.fov * (pi / 180), znear = far / 10000}})
@@ -478,13 +481,13 @@ end
 
 local function add_light(light, kind, strength)
     local spot = kind == 'spot' and {innerConeAngle = light.inner, outerConeAngle = light.outer} or nil
-    return add('lights', {color = light.shown, intensity = LUMENS * light_of(light.colour) * strength, type = kind, spot = spot})
+    return add('lights', {color = light.shown, intensity = LUMENS * largest(light.colour) * strength, type = kind, spot = spot})
 end
 
 local function add_lights(root)
     for light in next_light do
         local kind, strength, along = punctual_of(light)
-        if kind and light_of(light.colour) > 0 then
+        if kind and largest(light.colour) > 0 then
             if light.has_profile then lack 'the profile of a light is left out' end
             if light.leaves_out then lack 'a light that leaves out nodes lights them, too' end
             local from = kind == 'directional' and {0, 0, 0} or light.middle
@@ -570,7 +573,8 @@ return {
         sort(names)
         local bytes = buffer()
         local members = {
-            animations = #channels > 0 and format('[{"channels":%s,"samplers":%s}]', list_text(channels), list_text(lists.animation)),
+            animations = #channels > 0 and
+                format('[{"channels":%s,"samplers":%s}]', list_text(channels), list_text(lists.animation)),
             buffers = bytes and json {bytes},
             extensions = lists.lights and format('{"KHR_lights_punctual":{"lights":%s}}', list_text(lists.lights)),
             extensionsUsed = #names > 0 and json(names),

@@ -134,12 +134,14 @@ local function add_result(out, result, functions)
     for _, f in ipairs(functions) do
         if f.owner == 'gr' and f.result == result then
             names[#names + 1] = quote(f.name)
-            cases[#cases + 1] = format('\n  {"if": {"properties": {"type": {"const": "%s"}}}, "then": %s}', f.name, reference('gr.' .. f.name))
+            cases[#cases + 1] = format('\n  {"if": {"properties": {"type": {"const": "%s"}}}, "then": %s}', f.name,
+                reference('gr.' .. f.name))
             definitions[#definitions + 1] = definition(f)
         end
     end
     out[#out + 1] = format(' "%s": {"if": {"required": ["ref"]}, "then": %s, "else": {"type": "object", "required": ["type"], ' ..
-        '"properties": {"type": {"enum": [%s]}}, "allOf": [%s]}}', result, reference 'ref', concat(names, ',\n   '), concat(cases, ','))
+        '"properties": {"type": {"enum": [%s]}}, "allOf": [%s]}}',
+        result, reference 'ref', concat(names, ',\n   '), concat(cases, ','))
     out[#out + 1] = concat(definitions, ',\n')
 end
 
