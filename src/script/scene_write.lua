@@ -195,8 +195,7 @@ end
 local function number_text(x)
     if number_type(x) == 'integer' then return format('%d', x) end
     if x == 0 then return 1 / x < 0 and '-0.0' or '0' end
-    if x % 1 == 0 and -1e15 < x and x < 1e15 then return format('%.0f', x) end
-    local text = format('%.15g', x)
+    local text = format('%.15g', x) -- of whole numbers below 1e15 all digits
     if tonumber(text) ~= x then text = format('%.16g', x) end
     return tonumber(text) == x and text or format('%.17g', x)
 end
