@@ -179,6 +179,20 @@ TEST(instances_share_a_mesh_and_the_tree_keeps_its_poses) {
     model_destroy(&model);
 }
 
+TEST(positions_of_instances_are_nodes_with_their_numbers_and_one_mesh) {
+    struct model model;
+    expect("gr.instances{name = 'row', of = gr.sphere{name = 'ball'}, at = {{1, 0, 0}, {3, 0, -2}}}:export('x.glb')\n",
+           "scene.lua", 0, NULL);
+    read_file(&model, "x.glb", -1);
+    CHECK_EQ_INT(model.meshes.count, 1);
+    struct affine first = whole_map(&model, find_node(&model, "row [1]")),
+                  second = whole_map(&model, find_node(&model, "row [2]"));
+    check_near("x of the first", first.m[0][3], 1);
+    check_near("x of the second", second.m[0][3], 3);
+    check_near("z of the second", second.m[2][3], -2);
+    model_destroy(&model);
+}
+
 TEST(the_camera_and_the_lights_come_back_from_a_glb) {
     struct model model;
     const double lumens = 683 * PI;
