@@ -48,12 +48,13 @@ struct wave {
     uint64_t first; /* path */
     uint32_t count, living_count;
     char *states;
+    size_t state_size;
     uint32_t *living; /* in the wave, ascending */
     struct path_lane *lane;
 };
 
 static struct path_wave_state *state_of(const struct wave *wave, uint32_t i) {
-    return (struct path_wave_state *)(void *)(wave->states + i * path_wave_state_size());
+    return (struct path_wave_state *)(void *)(wave->states + i * wave->state_size);
 }
 
 static void begin_wave(struct wave *wave) {
@@ -90,8 +91,9 @@ static void add_wave(const struct wave *wave, struct path_pixel *pixels) {
 static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
     const struct emulation *emulation = context;
     const uint64_t paths = path_order_paths(order);
-    struct wave wave = {.scene = emulation->scene, .order = order};
-    wave.states = mem_alloc(emulation->wave * path_wave_state_size());
+    struct wave wave = {
+        .scene = emulation->scene, .order = order, .state_size = path_wave_state_size(emulation->scene)};
+    wave.states = mem_alloc(emulation->wave * wave.state_size);
     wave.living = mem_alloc(emulation->wave * sizeof *wave.living);
     wave.lane = path_lane_create(emulation->scene);
     bool goes_on = wave.states && wave.living && wave.lane;

@@ -16,13 +16,14 @@
 struct path_wave_state {
     struct path path;
     struct path_shadow shadow;
-    struct path_parts parts;
     double seen_through, weight; /* weight: of the filter */
     bool below;                  /* the next piece is come_out, not extend and shade */
     bool ended;                  /* but for the light that is on its way */
     bool seen;                   /* there is a camera ray */
     bool failed;
+    struct path_parts parts; /* with scene->has_parts */
 };
+_Static_assert(offsetof(struct path_wave_state, parts) <= 1088, "millions of paths fit into memory");
 
 struct path_lane {
     struct world_scratch scratch;
@@ -31,8 +32,8 @@ struct path_lane {
     uint64_t camera_rays;
 };
 
-size_t path_wave_state_size(void) {
-    return sizeof(struct path_wave_state);
+size_t path_wave_state_size(const struct path_scene *scene) {
+    return scene->has_parts ? sizeof(struct path_wave_state) : offsetof(struct path_wave_state, parts);
 }
 
 struct path_lane *path_lane_create(const struct path_scene *scene) {
@@ -91,7 +92,8 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, str
                              order->y0 + (int64_t)(pixel / width), order->begin + (uint32_t)(number % each));
     struct integrator_state *state = &lane->state;
     struct ray ray;
-    wave->parts = (struct path_parts){0};
+    if (scene->has_parts)
+        wave->parts = (struct path_parts){0};
     wave->seen_through = 0;
     wave->weight = at.weight;
     wave->failed = wave->below = wave->ended = false;

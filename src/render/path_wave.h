@@ -29,9 +29,9 @@ struct path_counts {
 };
 void path_counts_add(struct path_counts *to, const struct path_counts *counts);
 
-/* The state of a path between two pieces, path_wave_state_size() bytes; and what a thread needs for a piece. */
+/* The state of a path between two pieces, path_wave_state_size(scene) bytes; and what a thread needs for a piece. */
 struct path_wave_state;
-size_t path_wave_state_size(void);
+size_t path_wave_state_size(const struct path_scene *scene);
 struct path_lane;
 /* NULL: no memory. */
 struct path_lane *path_lane_create(const struct path_scene *scene);

@@ -49,6 +49,27 @@ TEST(a_device_process_gives_the_bytes_of_threads_in_every_kind_of_render) {
     compare("data/06demo.lua", "--size 40x30 --integrator whitted");
 }
 
+TEST(parts_frames_and_resumed_pictures_are_the_same_with_and_without_a_device) {
+    char *root = realpath(".", NULL), line[4096];
+    (void)snprintf(
+        line, sizeof line,
+        "scene='%s/data/path/table.lua'; set -- -q --integrator path --size 70x50 --spp 6 --allow-read '%s'; "
+        "$gray \"$@\" -o whole.png $scene && $gray \"$@\" --shard 1/2 --device emulate -o x.png $scene && "
+        "$gray \"$@\" --shard 2/2 -o x.png $scene && $gray merge -q x.png.*.part -o x.png && "
+        "cmp whole.png x.png && "
+        "printf \"gr.frames(2, function(f) return { node = gr.sphere {}, file = 'f.png', width = 40, "
+        "height = 30, eye = { f, 0, 5 }, target = { 0, 0, 0 }, fov = 40, integrator = 'path', "
+        "spp = 4, background = { .5, .6, .7 } } end)\" >f.lua && "
+        "$gray -q -o 'a%%d.png' f.lua && $gray -q --device emulate -o 'b%%d.png' f.lua && "
+        "cmp a1.png b1.png && cmp a2.png b2.png && "
+        "{ timeout -s KILL .3 $gray \"$@\" --spp 150 --device emulate --checkpoint 0.05 -o y.png $scene; "
+        "$gray \"$@\" --spp 150 --resume -o y.png $scene && $gray \"$@\" --spp 150 -o z.png $scene && "
+        "cmp y.png z.png; }",
+        root, root);
+    free(root);
+    test_shell(line, 0, "");
+}
+
 static const char room[] =
     "local r = gr.node('r')\n"
     "r:add_child(gr.sphere { radius = 1, material = gr.material { kd = { .7, .3, .2 } } })\n"
