@@ -77,6 +77,14 @@ static void advance(struct wave *wave) {
     wave->living_count = kept;
 }
 
+/* From a fault of the scene on, threads make all pixels, and note where it is. */
+static void leave_pixels(const struct wave *wave, struct path_pixel *pixels) {
+    const uint64_t count = path_order_pixels(wave->order);
+    if (path_scene_met_fault(wave->scene))
+        for (uint64_t i = 0; i < count; i++)
+            pixels[i].samples = wave->order->begin;
+}
+
 /* A pixel that has lost a sample gets no more, so that the thread that asked finds it. */
 static void add_wave(const struct wave *wave, struct path_pixel *pixels) {
     const uint32_t each = wave->order->end - wave->order->begin;
@@ -105,6 +113,8 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         if (goes_on)
             add_wave(&wave, pixels);
     }
+    if (goes_on)
+        leave_pixels(&wave, pixels);
     if (wave.lane) {
         const struct path_counts made = path_lane_counts(wave.lane);
         path_counts_add(counts, &made);

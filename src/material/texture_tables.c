@@ -409,6 +409,21 @@ struct colour texture_program_estimate(const struct texture_tables *tables, uint
     return values[0];
 }
 
+bool texture_tables_met_nan(const struct texture_tables *tables) {
+    bool met = false;
+    for (uint32_t i = 0; i < tables->count && !met; i++) {
+        const struct texture_operation *operation = &tables->operations[i];
+        struct texture_nan *nan = operation->kind == TEXTURE_FUNCTION ? operation->recorded.nan : NULL;
+        if (!nan)
+            continue;
+        while (atomic_flag_test_and_set_explicit(&nan->lock, memory_order_acquire))
+            continue;
+        met = nan->found;
+        atomic_flag_clear_explicit(&nan->lock, memory_order_release);
+    }
+    return met;
+}
+
 static void bundle_operation(struct bundle *bundle, void *texture_operation) {
     struct texture_operation *operation = texture_operation;
     if (operation->kind == TEXTURE_IMAGE)

@@ -98,6 +98,8 @@ uint32_t texture_builder_index(const struct texture_builder *builder, const stru
 /* False: no memory. */
 bool texture_builder_finish(const struct texture_builder *builder, struct arena *arena, struct texture_tables *out);
 void texture_builder_destroy(struct texture_builder *builder);
+/* Whether a function has been NaN somewhere, as its `nan` says. */
+bool texture_tables_met_nan(const struct texture_tables *tables);
 /* What it points to (base/bundle.h). */
 bundle_fields texture_tables_bundle;
 

@@ -9,6 +9,7 @@
 #include "render/path_pieces_internal.h"
 
 #include "base/mem.h"
+#include "material/density.h"
 #include "render/media_light_internal.h"
 #include "render/path_wave_internal.h"
 #include "render/sample_internal.h"
@@ -150,6 +151,18 @@ bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struc
 }
 
 /* --- the scene --- */
+
+bool path_scene_met_fault(const struct path_scene *scene) {
+    const struct world *world = scene->job.world;
+    const uint32_t count = world->media.outside + 1 + world->local_media_count;
+    struct box cell;
+    double bound;
+    bool met = texture_tables_met_nan(&world->surfaces.textures);
+    for (uint32_t i = 0; i < count && !met; i++)
+        for (const struct medium *medium = &world->media.all[i]; medium && !met; medium = medium->inner)
+            met = medium->density && density_excess(medium->density, &cell, &bound);
+    return met;
+}
 
 size_t path_scene_size(void) {
     return sizeof(struct path_scene);

@@ -49,6 +49,9 @@ bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, st
 bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
                    struct path_pixel *pixel);
 
+/* Whether a function of a texture was NaN or a density above its bound: a thread has to note where. */
+bool path_scene_met_fault(const struct path_scene *scene);
+
 /* Who makes the samples of rectangles in place of the threads of the render. */
 struct path_device {
     /* Or NULL; in place of `begin`: the scene has something that devices do not have, in words. */

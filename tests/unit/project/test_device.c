@@ -70,6 +70,18 @@ TEST(parts_frames_and_resumed_pictures_are_the_same_with_and_without_a_device) {
     test_shell(line, 0, "");
 }
 
+TEST(a_fault_of_a_function_has_its_warning_with_a_device) {
+    static const char scene[] =
+        "local f = gr.material { kd = function(p) return math.sqrt(p.x - 0.3) end }\n"
+        "gr.render { node = gr.sphere { radius = 1, material = f }, file = 'n.pfm', width = 70, height = 40,\n"
+        "    eye = { 0, 0, 5 }, target = { 0, 0, 0 }, fov = 40, integrator = 'path', spp = 4, background = { .5, .6, "
+        ".7 } }\n";
+    test_write_file(test_path("scene.lua"), scene, sizeof scene - 1);
+    test_shell("for device in cpu emulate; do $gray --device $device -o $device.pfm scene.lua 2>$device.txt; done; "
+               "cmp cpu.pfm emulate.pfm && cmp cpu.txt emulate.txt && cat cpu.txt",
+               0, "NaN");
+}
+
 static const char room[] =
     "local r = gr.node('r')\n"
     "r:add_child(gr.sphere { radius = 1, material = gr.material { kd = { .7, .3, .2 } } })\n"
