@@ -88,7 +88,7 @@ static void serve(void *context, uint32_t item, int worker) {
 bool device_link_serve(struct device_link *link, void *scene, size_t size, int threads, struct error *error) {
     char ignored[256];
     struct pool *pool = pool_create(threads, ignored);
-    struct emulation *emulation = pool ? emulation_create(pool, 0) : NULL;
+    struct emulation *emulation = pool ? emulation_create(pool, 0, 0) : NULL;
     bool ok = emulation && emulation_open(emulation, scene, size, error);
     if (!emulation)
         (void)error_no_memory(error, "the scene for a device");

@@ -6,15 +6,15 @@ enum { USUAL_WAVE = 4096 };
 
 struct emulation {
     const struct pool *pool;
-    uint32_t wave;
+    uint32_t wave, crossings;
     void *bytes; /* the opened bundle */
     const struct path_scene *scene;
 };
 
-struct emulation *emulation_create(const struct pool *pool, uint32_t wave) {
+struct emulation *emulation_create(const struct pool *pool, uint32_t wave, uint32_t crossings) {
     struct emulation *emulation = mem_alloc_zero(1, sizeof *emulation);
     if (emulation)
-        *emulation = (struct emulation){.pool = pool, .wave = wave > 0 ? wave : USUAL_WAVE};
+        *emulation = (struct emulation){.pool = pool, .wave = wave > 0 ? wave : USUAL_WAVE, .crossings = crossings};
     return emulation;
 }
 
@@ -103,8 +103,11 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         .scene = emulation->scene, .order = order, .state_size = path_wave_state_size(emulation->scene)};
     wave.states = mem_alloc(emulation->wave * wave.state_size);
     wave.living = mem_alloc(emulation->wave * sizeof *wave.living);
-    wave.lane = path_lane_create(emulation->scene);
-    bool goes_on = wave.states && wave.living && wave.lane;
+    uint32_t crossings = emulation->crossings > 0 ? emulation->crossings : path_scene_crossings(emulation->scene);
+    void *lane = mem_alloc_aligned(16, path_lane_size(crossings));
+    bool goes_on = wave.states && wave.living && lane;
+    if (goes_on)
+        wave.lane = path_lane_init(lane, emulation->scene, crossings);
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
         wave.count = left < emulation->wave ? (uint32_t)left : emulation->wave;
@@ -119,7 +122,7 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         const struct path_counts made = path_lane_counts(wave.lane);
         path_counts_add(counts, &made);
     }
-    path_lane_destroy(wave.lane);
+    mem_free(lane);
     mem_free(wave.living);
     mem_free(wave.states);
     return goes_on;

@@ -6,8 +6,8 @@
 #include "render/path_wave.h"
 
 struct emulation;
-/* wave: paths at a time; 0: as many as are usual. NULL: no memory. */
-struct emulation *emulation_create(const struct pool *pool, uint32_t wave);
+/* wave: paths at a time; crossings: of a line, in the memory of a query; 0: as many as are usual. NULL: no memory. */
+struct emulation *emulation_create(const struct pool *pool, uint32_t wave, uint32_t crossings);
 void emulation_destroy(struct emulation *emulation);
 /* Opens the bundle of a scene, which must outlive the emulation, in place of `begin` of the device. Errors: as
  * bundle_open. */

@@ -23,7 +23,7 @@ void geom_scratch_destroy(struct geom_scratch *scratch) {
 }
 
 bool geom_scratch_grow(struct geom_scratch *scratch) {
-    if (scratch->capacity > UINT32_MAX / 2)
+    if (scratch->fixed || scratch->capacity > UINT32_MAX / 2)
         return false;
     uint32_t capacity = scratch->capacity ? scratch->capacity * 2 : 16;
     struct crossing *items = mem_resize_array(scratch->items, capacity, sizeof *items);

@@ -37,6 +37,7 @@ struct geom_scratch {
     struct crossing *items;
     uint32_t capacity, used;
     bool overflow;
+    bool fixed;      /* it never grows */
     float tolerance; /* 0; of previews a share of t: crossings may be off by twice as much */
     /* the cost of searches; sums, which searches never read */
     uint64_t shape_tests;

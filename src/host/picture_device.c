@@ -10,7 +10,7 @@ static bool begin(void *context, struct bundle *scene, struct error *error) {
     struct pool *pool = device->pool;
     const uint32_t slots = (uint32_t)pool_workers(pool);
     if (!services->device) {
-        device->emulation = emulation_create(pool, 0);
+        device->emulation = emulation_create(pool, 0, 0);
         if (!device->emulation)
             return error_no_memory(error, "the scene for a device");
         const struct path_device here = emulation_device(device->emulation);

@@ -8,7 +8,6 @@
 #define PIECES_ONLY 1
 #include "render/path_pieces_internal.h"
 
-#include "base/mem.h"
 #include "material/density.h"
 #include "render/media_light_internal.h"
 #include "render/path_wave_internal.h"
@@ -37,21 +36,28 @@ size_t path_wave_state_size(const struct path_scene *scene) {
     return scene->has_parts ? sizeof(struct path_wave_state) : offsetof(struct path_wave_state, parts);
 }
 
-struct path_lane *path_lane_create(const struct path_scene *scene) {
-    struct path_lane *lane = mem_alloc_zero(1, sizeof *lane);
-    if (!lane || !world_scratch_init(&lane->scratch, scene->job.world)) {
-        mem_free(lane);
-        return NULL;
-    }
-    lane->state =
-        (struct integrator_state){.job = &scene->job, .scratch = &lane->scratch, .media_dim = scene->media_dim};
-    return lane;
+uint32_t path_scene_crossings(const struct path_scene *scene) {
+    enum { USUAL = 64 };
+    return scene->job.world->scratch_need > USUAL ? scene->job.world->scratch_need : USUAL;
 }
 
-void path_lane_destroy(struct path_lane *lane) {
-    if (lane)
-        world_scratch_destroy(&lane->scratch);
-    mem_free(lane);
+static size_t lane_head(void) {
+    return (sizeof(struct path_lane) + 15) / 16 * 16;
+}
+
+size_t path_lane_size(uint32_t crossings) {
+    return lane_head() + ((size_t)crossings * sizeof(struct crossing) + 15) / 16 * 16;
+}
+
+struct path_lane *path_lane_init(void *memory, const struct path_scene *scene, uint32_t crossings) {
+    struct path_lane *lane = memory;
+    *lane = (struct path_lane){.state = {.job = &scene->job, .media_dim = scene->media_dim}};
+    lane->state.scratch = &lane->scratch;
+    lane->scratch.geom = (struct geom_scratch){
+        .items = (struct crossing *)(void *)((char *)memory + lane_head()), .capacity = crossings, .fixed = true};
+    for (int i = 0; i < WORLD_SHADOW_CACHE; i++)
+        lane->scratch.shadow_cache[i] = WORLD_NOTHING;
+    return lane;
 }
 
 void path_counts_add(struct path_counts *to, const struct path_counts *counts) {
@@ -75,7 +81,8 @@ struct path_counts path_lane_counts(const struct path_lane *lane) {
 static void enter(struct path_lane *lane, const struct path_scene *scene, struct path_wave_state *wave) {
     lane->state.parts = scene->has_parts ? &wave->parts : NULL;
     lane->state.seen_through = wave->seen_through;
-    lane->scratch.failed = false;
+    lane->scratch.failed = lane->scratch.geom.overflow = false;
+    lane->scratch.geom.used = 0;
 }
 
 static void leave(const struct path_lane *lane, struct path_wave_state *wave) {

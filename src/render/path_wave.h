@@ -33,9 +33,11 @@ void path_counts_add(struct path_counts *to, const struct path_counts *counts);
 struct path_wave_state;
 size_t path_wave_state_size(const struct path_scene *scene);
 struct path_lane;
-/* NULL: no memory. */
-struct path_lane *path_lane_create(const struct path_scene *scene);
-void path_lane_destroy(struct path_lane *lane);
+/* A lane in memory of that size, a multiple of 16, at a multiple of 16, for queries with at most so many crossings of a
+ * line; path_scene_crossings is usually enough. */
+uint32_t path_scene_crossings(const struct path_scene *scene);
+size_t path_lane_size(uint32_t crossings);
+struct path_lane *path_lane_init(void *memory, const struct path_scene *scene, uint32_t crossings);
 struct path_counts path_lane_counts(const struct path_lane *lane); /* of all its pieces */
 
 /* The pieces of path `number` of the order. Paths are numbered pixel by pixel. False: the path is not alive; it still

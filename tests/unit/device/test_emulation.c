@@ -89,7 +89,7 @@ static void check_scene(struct stage *s) {
     keep(&s->film, &threads);
     static const uint32_t waves[] = {1, 7, 1000, 0};
     for (int i = 0; i < 4; i++) {
-        struct emulation *emulation = emulation_create(s->pool, waves[i]);
+        struct emulation *emulation = emulation_create(s->pool, waves[i], 0);
         struct loser loser = {emulation_device(emulation), 0};
         const struct path_device losing = {NULL, begin_losing, make_losing, &loser};
         render_with(s, i < 3 ? &loser.inner : &losing, &device);
@@ -123,6 +123,52 @@ TEST(waves_through_a_lens_give_the_bytes_of_threads) {
     s.settings.lens.aperture = 0.4;
     s.settings.filter = FILTER_MITCHELL;
     check_scene(&s);
+    stage_end(&s);
+}
+
+/* A solid of many operands, in the memory of a single crossing. */
+struct counter {
+    struct path_device inner;
+    _Atomic uint32_t whole, left;
+};
+static bool begin_counting(void *context, struct bundle *scene, struct error *error) {
+    const struct counter *counter = context;
+    return counter->inner.begin(counter->inner.context, scene, error);
+}
+static bool make_counting(void *context, const struct path_order *order, struct path_pixel *pixels,
+                          struct path_counts *counts) {
+    struct counter *counter = context;
+    bool goes_on = counter->inner.make(counter->inner.context, order, pixels, counts);
+    for (uint64_t i = 0; i < path_order_pixels(order); i++)
+        *(pixels[i].samples == order->end ? &counter->whole : &counter->left) += 1;
+    return goes_on;
+}
+
+TEST(pixels_whose_queries_outgrow_the_memory_of_a_device_are_made_by_threads) {
+    struct stage s;
+    struct picture threads = {0}, device = {0};
+    begin_scene(&s);
+    const struct material *red = stage_phong(&s, colour_make(0.8, 0.2, 0.1), colour_all(0), 1);
+    struct node *group = scene_node(&s.scene, NODE_GROUP, "operands", &s.error), *operands[13];
+    for (int i = 0; i < 13; i++) {
+        const double size = i == 0 ? 1.6 : 0.1, away = i == 0 ? 4.5 : 3 + 0.25 * i;
+        operands[i] = stage_sphere(&s, group, red);
+        stage_scale(&s, operands[i], size, size, size);
+        stage_move(&s, operands[i], 0, 1 - 0.1 * away, 6 - away);
+    }
+    struct node *cheese = scene_combine(&s.scene, "cheese", NODE_DIFFERENCE, operands, 13, &s.error);
+    CHECK(cheese && node_add_child(&s.scene, s.root, cheese, &s.error));
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    keep(&s.film, &threads);
+    struct emulation *emulation = emulation_create(s.pool, 0, 1);
+    struct counter counter = {.inner = emulation_device(emulation)};
+    const struct path_device counting = {NULL, begin_counting, make_counting, &counter};
+    render_with(&s, &counting, &device);
+    CHECK(same(&threads, &device));
+    CHECK(counter.whole > 0 && counter.left > 0);
+    emulation_destroy(emulation);
+    free(threads.floats);
+    free(device.floats);
     stage_end(&s);
 }
 
