@@ -56,7 +56,7 @@ static bool same(const struct picture *a, const struct picture *b) {
 /* A device that loses some samples, as one whose memory is too small for a query. */
 struct loser {
     struct path_device inner;
-    uint32_t lost;
+    _Atomic uint32_t lost;
 };
 static bool begin_losing(void *context, struct bundle *scene, struct error *error) {
     const struct loser *loser = context;
