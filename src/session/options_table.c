@@ -340,6 +340,7 @@ void options_describe(struct document *document) {
     document_section(document, "Environment");
     document_entry(document, DOCUMENT_OPTION, "GRAY_LUA",
                    "The folder of the Lua library, which require searches last.");
+    document_entry(document, DOCUMENT_OPTION, "GRAY_DEVICE", "The device without the option --device.");
     document_entry(document, DOCUMENT_OPTION, "PAGER", "The program that shows --man on a terminal; else less.");
     document_entry(document, DOCUMENT_OPTION, "NO_COLOR, CLICOLOR, CLICOLOR_FORCE",
                    "Messages on a terminal are in colour unless NO_COLOR is set or CLICOLOR is 0; CLICOLOR_FORCE=1: "
