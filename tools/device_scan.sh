@@ -1,6 +1,6 @@
 #!/bin/sh
 # Compiles the files of src/device/sources.list for a card, without one, and checks what the promise of equal bytes needs:
-#   tools/device_scan.sh calls    every file compiles for NVIDIA's cards; the functions named there reach nothing but the
+#   tools/device_scan.sh calls    every file compiles for NVIDIA's cards; the kernels named there reach nothing but the
 #                                 listed files, and each of these
 #   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to
 #                                 nearest, none is fused, approximate or flushes denormals, minima and maxima keep the
@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.." || exit 1
 out=${BUILD:-build}/device list=src/device/sources.list
 suffix=$(clang --version 2>/dev/null | sed -n 's/.*clang version \([0-9]*\).*/-\1/p')
 command -v "llvm-link$suffix" >/dev/null || suffix=
-for tool in clang llvm-link$suffix llvm-nm$suffix opt$suffix llc$suffix; do
+for tool in clang llvm-link$suffix llvm-nm$suffix llvm-dis$suffix opt$suffix llc$suffix; do
     command -v "$tool" >/dev/null || { echo "device_scan.sh: nothing was checked: there is no $tool"; exit 0; }
 done
 mkdir -p "$out" || exit 1
@@ -54,8 +54,33 @@ done
 echo "$(echo "$objects" | wc -l) files, $(grep -c -i ' t ' reached.txt) functions"
 [ "$wanted" = calls ] && exit 0
 
-opt"$suffix" -O3 -inline-threshold=225 -vectorize-loops=false -vectorize-slp=false reached.bc -o fast.bc 2>opt.txt &&
+# clang's C of that age has no word for a kernel: it is a note beside the function.
+llvm-dis"$suffix" reached.bc -o - | awk '
+/^target/ { print }
+/^define .*@kernel_/ {
+    name = $0
+    sub(/.*@/, "", name)
+    sub(/\(.*/, "", name)
+    types = $0
+    sub(/[^(]*\(/, "", types)
+    sub(/\).*/, "", types)
+    gsub(/ (noundef )?%[0-9A-Za-z._]+/, "", types)
+    print "declare void @" name "(" types ")"
+    notes[count++] = "!{void (" types ")* @" name ", !\"kernel\", i32 1}"
+}
+END {
+    for (i = 0; i < count; i++) {
+        print "!" i " = " notes[i]
+        list = list (i ? ", " : "") "!" i
+    }
+    print "!nvvm.annotations = !{" list "}"
+}' >notes.ll
+llvm-link"$suffix" reached.bc notes.ll -o noted.bc &&
+    opt"$suffix" -O3 -inline-threshold=225 -vectorize-loops=false -vectorize-slp=false noted.bc -o fast.bc 2>opt.txt &&
     llc"$suffix" -O3 -mcpu=sm_70 fast.bc -o kernels.ptx || exit 1
+for name in $(echo "$roots" | tr ',' ' '); do
+    grep -q "[.]entry $name(" kernels.ptx || { echo "device_scan.sh: $name is no kernel of kernels.ptx" >&2; exit 1; }
+done
 # Frames of the functions that every ray passes; those of expressions are larger until they have another memory there.
 awk -v frame=8192 '
 function complain(what) {

@@ -26,6 +26,9 @@ int memcmp(const void *a, const void *b, size_t size) {
 uint64_t __atomic_load_8(const volatile void *from, int order) {
     return (void)order, *(const volatile uint64_t *)from;
 }
+uint32_t __atomic_fetch_add_4(volatile void *at, uint32_t more, int order) {
+    return (void)order, (uint32_t)__nvvm_atom_add_gen_i((int *)at, (int)more);
+}
 bool __atomic_compare_exchange_8(volatile void *at, void *expected, uint64_t wanted, int order, int order_else) {
     uint64_t *own = expected, before = *own;
     (void)order, (void)order_else;

@@ -1,0 +1,78 @@
+/* The kernels of a card: each thread takes every so many-th path of a wave, with a lane of its own. Arguments are
+ * addresses on the card. Compiled for cards alone (tools/device_scan.sh). */
+#include "device/wave_internal.h"
+
+#ifdef GRAY_DEVICE
+
+#if defined __NVPTX__
+static uint32_t thread_index(void) {
+    return (uint32_t)(__nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() + __nvvm_read_ptx_sreg_tid_x());
+}
+static uint32_t thread_count(void) {
+    return (uint32_t)(__nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x());
+}
+#else /* AMD: 256 threads of a group */
+static uint32_t thread_index(void) {
+    return __builtin_amdgcn_workgroup_id_x() * 256 + __builtin_amdgcn_workitem_id_x();
+}
+static uint32_t thread_count(void) {
+    return __builtin_amdgcn_grid_size_x();
+}
+#endif
+
+/* crossings: of the memory of each lane. */
+void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings);
+void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings);
+void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
+void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings);
+
+static void *lane_of(uint64_t lanes, uint32_t crossings) {
+    return (char *)(uintptr_t)lanes + thread_index() * path_lane_size(crossings);
+}
+
+void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings) {
+    (void)path_lane_init(lane_of(lanes, crossings), (const struct path_scene *)(uintptr_t)scene, crossings);
+}
+
+#define EACH(i, end) for (uint32_t i = thread_index(); i < (end); i += thread_count())
+
+void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    EACH(i, w->count)
+    wave_begin(w, lane, i);
+}
+
+void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    EACH(k, w->living_count[turn % 2])
+    wave_extend(w, lane, turn, k);
+}
+
+void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    if (thread_index() == 0)
+        wave_clear_next(w, turn);
+    EACH(k, w->living_count[turn % 2])
+    wave_shade(w, lane, turn, k);
+}
+
+void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    EACH(k, w->living_count[turn % 2])
+    wave_shadow(w, lane, turn, k);
+}
+
+void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    struct path_lane *lane = lane_of(lanes, crossings);
+    EACH(i, wave_pixels(w))
+    wave_add(w, lane, i);
+}
+
+#endif

@@ -1,0 +1,33 @@
+/* Paths of an order that are in flight together. A kernel does one thing with one of them; the thread indices of a card
+ * or a loop of the emulation choose which. All memory is that of who launches kernels. */
+#ifndef GRAY_DEVICE_WAVE_INTERNAL_H
+#define GRAY_DEVICE_WAVE_INTERNAL_H
+
+#include "render/path_wave.h"
+
+struct wave {
+    const struct path_scene *scene;
+    struct path_order order;
+    struct path_pixel *pixels; /* of the order, row by row */
+    uint64_t first;            /* path of the order */
+    uint32_t count;            /* of paths */
+    char *states;
+    uint64_t state_size; /* path_wave_state_size */
+    uint32_t *living[2]; /* paths, in any order: those of an even turn and those of an odd one; room for `count` */
+    uint32_t living_count[2];
+};
+
+/* Path i of the wave; counts it among the living of turn 0. */
+void wave_begin(struct wave *wave, struct path_lane *lane, uint32_t i);
+/* Living path k of the turn; the last one counts it among those of the next turn. */
+void wave_extend(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
+void wave_shade(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
+void wave_shadow(struct wave *wave, struct path_lane *lane, uint32_t turn, uint32_t k);
+/* Before the last one: nothing lives in the next turn. */
+void wave_clear_next(struct wave *wave, uint32_t turn);
+/* Pixel i of those that have paths in the wave. A pixel that has lost a sample gets no more, so that it lacks them in
+ * the end. */
+void wave_add(struct wave *wave, struct path_lane *lane, uint32_t i);
+uint32_t wave_pixels(const struct wave *wave);
+
+#endif
