@@ -1,0 +1,131 @@
+/* The memory between the render process and a device process, of which neither relies on the other. */
+#define device_link_size device_link_size_here
+#define device_link_init device_link_init_here
+#define device_link_close device_link_close_here
+#define device_link_serve device_link_serve_here
+#define device_client_wait device_client_wait_here
+#define device_client_make device_client_make_here
+#include "device/device_link.c"
+
+#include "base/mem.h"
+#include "base/random.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <pthread.h>
+
+enum { WIDTH = 16, HEIGHT = 12 };
+
+struct server {
+    struct device_link *link;
+    void *scene;
+    size_t size;
+    bool served;
+    pthread_t thread;
+};
+
+static void *run_server(void *context) {
+    struct server *server = context;
+    struct error error;
+    server->served = device_link_serve(server->link, server->scene, server->size, 2, &error);
+    return NULL;
+}
+
+/* Keeps the bundle, and renders nothing. */
+static bool keep_scene(void *context, struct bundle *scene, struct error *error) {
+    struct server *server = context;
+    server->size = bundle_size(scene);
+    server->scene = mem_alloc_aligned(64, server->size);
+    bundle_write(scene, server->scene);
+    return error_set(error, ERROR_CANCELLED, "kept");
+}
+
+static void begin_server(struct stage *s, struct server *server) {
+    const struct path_device receiver = {NULL, keep_scene, NULL, server};
+    stage_begin(s, 1);
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.path_samples = 4;
+    s->sky.colour = colour_make(0.2, 0.3, 0.4);
+    stage_point_light(s, vec3_make(3, 5, 4), colour_make(0.9, 0.8, 0.7));
+    (void)stage_sphere(s, s->root, stage_phong(s, colour_all(0.7), colour_all(0), 1));
+    CHECK(stage_render(s, WIDTH, HEIGHT));
+    struct render_job job = stage_job(s, WIDTH, HEIGHT);
+    job.device = &receiver;
+    CHECK(!render_run(&job, s->pool, &s->statistics, &s->error));
+    server->link = mem_alloc_zero(1, device_link_size(2));
+    device_link_init(server->link, 2);
+    CHECK(pthread_create(&server->thread, NULL, run_server, server) == 0);
+}
+
+static void end_server(struct stage *s, struct server *server) {
+    device_link_close(server->link);
+    (void)pthread_join(server->thread, NULL);
+    CHECK(server->served);
+    mem_free(server->link);
+    mem_free(server->scene);
+    stage_end(s);
+}
+
+static uint32_t bits(uint64_t *random, uint32_t limit) {
+    *random = random_combine(*random, 1);
+    return (uint32_t)(*random >> 32) % limit;
+}
+
+/* As a render process that somebody has taken over may write them; samples are few, so that they end. */
+static struct path_order odd_order(uint64_t *random) {
+    uint32_t x0 = bits(random, 4) ? bits(random, 64) : UINT32_MAX - bits(random, 64);
+    uint32_t y0 = bits(random, 4) ? bits(random, 64) : UINT32_MAX - bits(random, 64);
+    uint32_t begin = bits(random, 4) ? bits(random, 8) : UINT32_MAX - bits(random, 8);
+    return (struct path_order){
+        x0, y0, x0 + bits(random, 48) - 8, y0 + bits(random, 48) - 8, begin, begin + bits(random, 4)};
+}
+
+TEST(a_device_process_survives_every_order_and_goes_on) {
+    struct stage s;
+    struct server server = {.served = false};
+    begin_server(&s, &server);
+    const struct device_client client = {server.link, s.pool, 2};
+    CHECK(device_client_wait(&client));
+    uint64_t random = 9, made = 0;
+    for (int i = 0; i < 500; i++) {
+        struct slot *slot = take_slot(&client);
+        CHECK(slot != NULL);
+        memset(slot->pixels, i % 3 ? 0 : 0xa5, sizeof slot->pixels);
+        slot->order = odd_order(&random);
+        const bool fits = order_fits(&slot->order);
+        for (int k = 0; fits && k < FILM_TILE * FILM_TILE; k++)
+            slot->pixels[k] = (struct path_pixel){.samples = i % 2 ? slot->order.begin : 77};
+        atomic_store(&slot->state, SLOT_ASKED);
+        pool_signal(&server.link->asked);
+        while (atomic_load(&slot->state) != SLOT_MADE)
+            pool_wait(&server.link->answered, atomic_load(&server.link->answered.signals), patience);
+        made += fits && slot->pixels[0].samples == slot->order.end;
+        atomic_store(&slot->state, SLOT_FREE);
+    }
+    CHECK(made > 10);
+    /* The next order is made as ever. */
+    struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
+    struct path_counts counts = {0};
+    struct device_client user = client;
+    CHECK(device_client_make(&user, &(struct path_order){0, 0, WIDTH, HEIGHT, 0, 4}, pixels, &counts));
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        struct colour mean = path_pixel_mean(&pixels[i]), seen = stage_pixel(&s, i % WIDTH, (uint32_t)(i / WIDTH));
+        CHECK((float)mean.r == (float)seen.r && (float)mean.b == (float)seen.b);
+    }
+    CHECK_EQ_INT((int64_t)counts.camera_rays, WIDTH * HEIGHT * 4);
+    end_server(&s, &server);
+}
+
+TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
+    struct stage s;
+    struct server server = {.served = false};
+    begin_server(&s, &server);
+    struct device_client client = {server.link, s.pool, 2};
+    CHECK(device_client_wait(&client));
+    device_link_close(server.link);
+    struct path_pixel pixels[WIDTH * HEIGHT] = {{.samples = 0}};
+    struct path_counts counts = {0};
+    CHECK(device_client_make(&client, &(struct path_order){0, 0, WIDTH, HEIGHT, 0, 4}, pixels, &counts));
+    CHECK(pixels[0].samples == 0 && counts.camera_rays == 0);
+    end_server(&s, &server);
+}
