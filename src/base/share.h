@@ -23,7 +23,7 @@ bool share_create(struct share *share, size_t size, struct error *error);
 bool share_attach(struct share *share, int descriptor, size_t size, struct error *error);
 void share_destroy(struct share *share);
 
-/* Memory that another process fills and then nobody changes: not mapped here. The result is its descriptor, or -1. */
+/* Memory for another process to fill. It is not mapped in this one. Returns its descriptor, or -1. */
 int share_create_open(size_t size, struct error *error);
 /* From here on it can only be read. False: a process still has it mapped for writing. */
 bool share_freeze(int descriptor);

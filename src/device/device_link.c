@@ -6,8 +6,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* FREE, TAKEN, ASKED, MADE and again: TAKEN by the render process, while it writes or reads. WORKED on by a thread of
- * the device. LEFT: the render was stopped, and nobody reads what is made. */
+/* The render process writes the order (TAKEN) and asks for it (ASKED); a thread of the device makes it (WORKED, MADE);
+ * the render process reads it (TAKEN) and frees the slot. LEFT: the render has stopped, and nobody reads the result. */
 enum slot_state { SLOT_FREE, SLOT_TAKEN, SLOT_ASKED, SLOT_WORKED, SLOT_MADE, SLOT_LEFT };
 
 struct slot {
@@ -20,7 +20,6 @@ struct slot {
 enum link_state { LINK_STARTS, LINK_READY, LINK_CLOSED };
 struct device_link {
     _Atomic uint32_t state;
-    uint32_t slot_count;
     struct pool_event asked, answered;
     struct slot slots[];
 };
@@ -30,10 +29,6 @@ static const double patience = 0.01;
 
 size_t device_link_size(uint32_t slots) {
     return sizeof(struct device_link) + slots * sizeof(struct slot);
-}
-
-void device_link_init(struct device_link *link, uint32_t slots) {
-    link->slot_count = slots;
 }
 
 void device_link_close(struct device_link *link) {
@@ -85,19 +80,19 @@ static void serve(void *context, uint32_t item, int worker) {
     }
 }
 
-bool device_link_serve(struct device_link *link, void *scene, size_t size, int threads, struct error *error) {
+bool device_link_serve(struct device_link *link, void *scene, size_t size, uint32_t slots, struct error *error) {
     char ignored[256];
-    struct pool *pool = pool_create(threads, ignored);
+    struct pool *pool = pool_create((int)slots, ignored);
     struct emulation *emulation = pool ? emulation_create(pool, 0, 0) : NULL;
     bool ok = emulation && emulation_open(emulation, scene, size, error);
     if (!emulation)
         (void)error_no_memory(error, "the scene for a device");
     if (ok) {
-        struct service service = {link, link->slot_count, emulation_device(emulation)};
+        struct service service = {link, slots, emulation_device(emulation)};
         uint32_t starts = LINK_STARTS;
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);
-        (void)pool_run(pool, (uint32_t)threads, serve, &service);
+        (void)pool_run(pool, slots, serve, &service);
     }
     emulation_destroy(emulation);
     if (pool)

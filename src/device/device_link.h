@@ -8,16 +8,14 @@
 #include "render/path_wave.h"
 
 struct device_link;
-/* Bytes for so many orders at a time. */
+/* Bytes for so many orders at a time; they are zero at the start. */
 size_t device_link_size(uint32_t slots);
-/* The memory is zero. */
-void device_link_init(struct device_link *link, uint32_t slots);
-/* The device process is gone, or has to go: nobody waits for it any more. From any process. */
+/* From here on nobody waits for the device process. From any process. */
 void device_link_close(struct device_link *link);
 
-/* The device process: opens the bundle of a scene and makes orders on so many threads until the link is closed. False:
- * the bundle is damaged, or no memory. */
-bool device_link_serve(struct device_link *link, void *scene, size_t size, int threads, struct error *error);
+/* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each
+ * slot. False: the bundle is damaged, or no memory. */
+bool device_link_serve(struct device_link *link, void *scene, size_t size, uint32_t slots, struct error *error);
 
 /* The render process. Owner: the caller. */
 struct device_client {

@@ -79,15 +79,16 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
     const uint64_t paths = path_order_paths(order);
     const uint32_t crossings = emulation->crossings > 0 ? emulation->crossings : path_scene_crossings(scene);
     struct wave wave = {.scene = scene, .order = *order, .pixels = pixels, .state_size = path_wave_state_size(scene)};
-    wave.states = mem_alloc(emulation->wave * wave.state_size);
-    wave.living[0] = mem_alloc(emulation->wave * sizeof *wave.living[0]);
-    wave.living[1] = mem_alloc(emulation->wave * sizeof *wave.living[1]);
+    const uint32_t room = paths < emulation->wave ? (uint32_t)paths : emulation->wave;
+    wave.states = mem_alloc(room * wave.state_size);
+    wave.living[0] = mem_alloc(room * sizeof *wave.living[0]);
+    wave.living[1] = mem_alloc(room * sizeof *wave.living[1]);
     void *memory = mem_alloc_aligned(16, path_lane_size(crossings));
     bool goes_on = wave.states && wave.living[0] && wave.living[1] && memory;
     struct path_lane *lane = goes_on ? path_lane_init(memory, scene, crossings) : NULL;
     for (; goes_on && wave.first < paths; wave.first += wave.count) {
         const uint64_t left = paths - wave.first;
-        wave.count = left < emulation->wave ? (uint32_t)left : emulation->wave;
+        wave.count = left < room ? (uint32_t)left : room;
         goes_on = run_wave(emulation, &wave, lane);
     }
     if (goes_on)

@@ -36,20 +36,18 @@ void kernel_lanes(uint64_t lanes, uint64_t scene, uint32_t crossings) {
     (void)path_lane_init(lane_of(lanes, crossings), (const struct path_scene *)(uintptr_t)scene, crossings);
 }
 
-#define EACH(i, end) for (uint32_t i = thread_index(); i < (end); i += thread_count())
-
 void kernel_begin(uint64_t wave, uint64_t lanes, uint32_t crossings) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
     struct path_lane *lane = lane_of(lanes, crossings);
-    EACH(i, w->count)
-    wave_begin(w, lane, i);
+    for (uint32_t i = thread_index(); i < w->count; i += thread_count())
+        wave_begin(w, lane, i);
 }
 
 void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
     struct path_lane *lane = lane_of(lanes, crossings);
-    EACH(k, w->living_count[turn % 2])
-    wave_extend(w, lane, turn, k);
+    for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
+        wave_extend(w, lane, turn, k);
 }
 
 void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
@@ -57,22 +55,22 @@ void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t tu
     struct path_lane *lane = lane_of(lanes, crossings);
     if (thread_index() == 0)
         wave_clear_next(w, turn);
-    EACH(k, w->living_count[turn % 2])
-    wave_shade(w, lane, turn, k);
+    for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
+        wave_shade(w, lane, turn, k);
 }
 
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
     struct path_lane *lane = lane_of(lanes, crossings);
-    EACH(k, w->living_count[turn % 2])
-    wave_shadow(w, lane, turn, k);
+    for (uint32_t k = thread_index(); k < w->living_count[turn % 2]; k += thread_count())
+        wave_shadow(w, lane, turn, k);
 }
 
 void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings) {
     struct wave *w = (struct wave *)(uintptr_t)wave;
     struct path_lane *lane = lane_of(lanes, crossings);
-    EACH(i, wave_pixels(w))
-    wave_add(w, lane, i);
+    for (uint32_t i = thread_index(); i < wave_pixels(w); i += thread_count())
+        wave_add(w, lane, i);
 }
 
 #endif

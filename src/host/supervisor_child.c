@@ -120,9 +120,7 @@ void supervisor_leave(struct supervisor *supervisor) {
     (void)sigprocmask(SIG_SETMASK, &supervisor->signals_before, NULL);
 }
 
-/* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
- * gets, and the files that scenes may read: confine_process takes the rest away. */
-static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+void supervisor_begin_child(struct supervisor *supervisor, pid_t parent) {
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
@@ -132,6 +130,12 @@ static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel
     /* Without its supervisor the child is of no use. */
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
         _exit(ERROR_MACHINE);
+}
+
+/* In the child, after the fork: never returns. From render_process_run on this process needs the channel, the memory it
+ * gets, and the files that scenes may read: confine_process takes the rest away. */
+static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel channel, pid_t parent) {
+    supervisor_begin_child(supervisor, parent);
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     struct channel_services link = {.channel = channel};
     struct host_services services = channel_services_make(&link, supervisor->control);

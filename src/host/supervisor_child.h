@@ -6,6 +6,8 @@
 
 /* In a process that was forked: forgets what only the supervisor uses. */
 void supervisor_leave(struct supervisor *supervisor);
+/* The same in one that ends with this process and leaves its signals to it. */
+void supervisor_begin_child(struct supervisor *supervisor, pid_t parent);
 bool supervisor_start_child(struct supervisor *supervisor, struct error *error);
 /* Its status as of waitpid, when it is gone. */
 int supervisor_reap_child(struct supervisor *supervisor);

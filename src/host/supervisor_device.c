@@ -12,7 +12,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,18 +25,12 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     size_t size = 0;
     const bool is_confined = !supervisor->options->script.no_sandbox;
     int orders = supervisor->device.link.descriptor, scene = supervisor->device.scene;
-    (void)signal(SIGINT, SIG_IGN);
-    (void)signal(SIGTERM, SIG_IGN);
-    (void)signal(SIGHUP, SIG_IGN);
-    (void)signal(SIGUSR1, SIG_IGN);
-    supervisor_leave(supervisor);
-    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
-        _exit(ERROR_MACHINE);
+    supervisor_begin_child(supervisor, parent);
     (void)file_null_input();
     void *bytes = share_map_copy(scene, &size, &error);
     bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error) &&
               (!is_confined || confine_process(&nothing, STDERR_FILENO, report, sizeof report, &error)) &&
-              device_link_serve(link.block, bytes, size, (int)slots, &error);
+              device_link_serve(link.block, bytes, size, slots, &error);
     if (!ok)
         (void)fprintf(stderr, "gray: warning: %s\n", error.text);
     _exit(ok ? 0 : (int)error.kind);
@@ -49,7 +42,6 @@ static bool start(struct supervisor *supervisor, uint32_t slots, struct error *e
         return error_set(error, ERROR_MACHINE, "the memory of a scene cannot be sealed: %s", strerror(errno));
     if (!share_create(&device->link, device_link_size(slots), error))
         return false;
-    device_link_init(device->link.block, slots);
     (void)fflush(NULL);
     pid_t parent = getpid();
     device->process = MAY_FAIL(fork());

@@ -1,6 +1,5 @@
 /* The memory between the render process and a device process, of which neither relies on the other. */
 #define device_link_size device_link_size_here
-#define device_link_init device_link_init_here
 #define device_link_close device_link_close_here
 #define device_link_serve device_link_serve_here
 #define device_client_wait device_client_wait_here
@@ -53,7 +52,6 @@ static void begin_server(struct stage *s, struct server *server) {
     job.device = &receiver;
     CHECK(!render_run(&job, s->pool, &s->statistics, &s->error));
     server->link = mem_alloc_zero(1, device_link_size(2));
-    device_link_init(server->link, 2);
     CHECK(pthread_create(&server->thread, NULL, run_server, server) == 0);
 }
 
@@ -71,7 +69,7 @@ static uint32_t bits(uint64_t *random, uint32_t limit) {
     return (uint32_t)(*random >> 32) % limit;
 }
 
-/* As a render process that somebody has taken over may write them; samples are few, so that they end. */
+/* Orders of a render process that an attacker controls. They have few samples, so that the test is short. */
 static struct path_order odd_order(uint64_t *random) {
     uint32_t x0 = bits(random, 4) ? bits(random, 64) : UINT32_MAX - bits(random, 64);
     uint32_t y0 = bits(random, 4) ? bits(random, 64) : UINT32_MAX - bits(random, 64);
