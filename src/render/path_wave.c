@@ -112,12 +112,7 @@ bool path_wave_begin(const struct path_scene *scene, struct path_lane *lane, str
     if (!wave->seen)
         return false;
     lane->camera_rays++;
-    state->eye_medium_stack = &renderer->eye_medium_stack;
-    if (renderer->medium_stack_by_ray) {
-        const struct inside_query eye = {ray.origin, ray.time, renderer->closed, renderer->closed_count};
-        world_medium_stack(scene->job.world, &eye, &lane->scratch, &lane->media);
-        state->eye_medium_stack = &lane->media;
-    }
+    state->eye_medium_stack = renderer_eye_media(renderer, &ray, &lane->scratch, &lane->media);
     begin(&wave->path, state, &ray, state->sampler.key);
     leave(lane, wave);
     return true;

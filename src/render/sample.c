@@ -61,15 +61,19 @@ bool renderer_camera_ray(const struct renderer *renderer, const struct camera_fr
     return ray_through(renderer, camera, at, sampler, &view, out);
 }
 
+const struct medium_stack *renderer_eye_media(const struct renderer *renderer, const struct ray *ray,
+                                              struct world_scratch *scratch, struct medium_stack *own) {
+    if (!renderer->medium_stack_by_ray)
+        return &renderer->eye_medium_stack;
+    const struct inside_query eye = {ray->origin, ray->time, renderer->closed, renderer->closed_count};
+    world_medium_stack(renderer->job->world, &eye, scratch, own);
+    return own;
+}
+
 static struct colour trace_from_eye(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                     uint64_t key) {
     worker->camera_rays++;
-    if (renderer->medium_stack_by_ray) {
-        world_medium_stack(renderer->job->world,
-                           &(struct inside_query){ray->origin, ray->time, renderer->closed, renderer->closed_count},
-                           &worker->scratch, &worker->ray_medium_stack);
-        worker->state.eye_medium_stack = &worker->ray_medium_stack;
-    }
+    worker->state.eye_medium_stack = renderer_eye_media(renderer, ray, &worker->scratch, &worker->ray_medium_stack);
     return integrator_radiance(renderer, worker, ray, key);
 }
 

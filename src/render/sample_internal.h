@@ -12,6 +12,9 @@ bool renderer_middle_ray(const struct renderer *renderer, double x, double y, st
 /* The ray of a sample, with its time and footprint, but not of both eyes. False: nothing is visible there. */
 bool renderer_camera_ray(const struct renderer *renderer, const struct camera_frame *camera,
                          const struct pixel_sample *at, const struct sampler *sampler, struct ray *out);
+/* The media that contain the origin of a camera ray; `own` has room for them. */
+const struct medium_stack *renderer_eye_media(const struct renderer *renderer, const struct ray *ray,
+                                              struct world_scratch *scratch, struct medium_stack *own);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
 struct colour renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
