@@ -10,6 +10,7 @@
 #   fuzz-afl       the same with AFL++
 #   arm, test-arm  build/arm/gray for 64-bit ARM, from another machine; its pictures under qemu against the recorded ones
 #   musl, test-musl  build/musl/gray with the C library musl, linked statically; its pictures
+#   gpu            the kernels for graphics cards (clang, LLVM 14 or newer), beside the program
 #   scan-device    compiles what a ray touches for graphics cards, without one, and checks its operations
 #   bench          the benchmarks                  install     into PREFIX, below DESTDIR
 #   clean          removes all that make has built  uninstall   removes what install has written there
@@ -161,6 +162,10 @@ $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 # A program that was copied to another place finds its Lua library here.
 $(MAIN_OBJECT): private override CPPFLAGS += -DGRAY_SOURCES='"$(CURDIR)"'
 
+# It takes only the kernels of these sources.
+$(BUILD)/src/device/kernels_file.o: private override CPPFLAGS += -DGRAY_KERNELS_DIGEST='"$(shell tools/device_scan.sh digest)"'
+$(BUILD)/src/device/kernels_file.o: $(wildcard src/*/*.h) $(addprefix src/,$(filter %.c,$(shell cat src/device/sources.list)))
+
 $(BUILD)/src/image/webp_read.o $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o $(BUILD)/tests/unit/image/test_bitmaps.o: override CPPFLAGS += $(WEBP_CFLAGS)
 # The harness knows when a test starts a program.
 $(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)
@@ -302,6 +307,8 @@ test-arm test-musl: test-%:
 	@tools/test_target.sh $*
 scan-device:
 	@tools/device_scan.sh
+gpu: all
+	@KERNELS=$(abspath $(BUILD))/gray-kernels tools/device_scan.sh
 
 bench: all
 	@bench/run.sh
@@ -350,5 +357,5 @@ else
 endif
 
 force:
-.PHONY: arm musl test-arm test-musl scan-device all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
+.PHONY: arm musl test-arm test-musl scan-device gpu all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)

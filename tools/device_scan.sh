@@ -5,9 +5,13 @@
 #   tools/device_scan.sh          also for AMD's cards; in the PTX, every operation on floats and doubles rounds to
 #                                 nearest, none is fused, approximate or flushes denormals, minima and maxima keep the
 #                                 sign of zero, and frames of functions that every ray passes are small
+#   tools/device_scan.sh digest   prints the digest of what the kernels are made from
+# With KERNELS=FILE it writes the PTX there, behind a line with that digest.
 # Needs clang and the tools of its LLVM (14 or newer); without them it says so, with status 0. Writes into build/device.
 cd "$(dirname "$0")/.." || exit 1
 out=${BUILD:-build}/device list=src/device/sources.list
+digest=$({ sed -n 's/^\([a-z].*\.c\)$/src\/\1/p' "$list"; ls src/*/*.h; echo "$list" "$0"; } | xargs cat | sha256sum | cut -c 1-32)
+[ "${1:-}" = digest ] && { echo "$digest"; exit 0; }
 suffix=$(clang --version 2>/dev/null | sed -n 's/.*clang version \([0-9]*\).*/-\1/p')
 command -v "llvm-link$suffix" >/dev/null || suffix=
 for tool in clang llvm-link$suffix llvm-nm$suffix llvm-dis$suffix opt$suffix llc$suffix; do
@@ -124,4 +128,6 @@ END {
     if (!bad)
         print rounded " operations are rounded to nearest"
     exit bad
-}' kernels.ptx
+}' kernels.ptx || exit 1
+[ -n "${KERNELS:-}" ] || exit 0
+{ echo "gray kernels $digest" && cat kernels.ptx; } >"$KERNELS.new" && mv "$KERNELS.new" "$KERNELS" && echo "$KERNELS"

@@ -1,9 +1,12 @@
 #include "device/device_link.h"
 
+#include "base/mem.h"
+#include "device/cuda.h"
 #include "device/emulation.h"
 #include "film/film.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The render process writes the order (TAKEN) and asks for it (ASKED); a thread of the device makes it (WORKED, MADE);
@@ -20,7 +23,9 @@ struct slot {
 enum link_state { LINK_STARTS, LINK_READY, LINK_CLOSED };
 struct device_link {
     _Atomic uint32_t state;
+    _Atomic uint32_t was_ready;
     struct pool_event asked, answered;
+    char reason[DEVICE_REASON];
     struct slot slots[];
 };
 
@@ -37,11 +42,28 @@ void device_link_close(struct device_link *link) {
     pool_signal(&link->answered);
 }
 
+bool device_link_was_ready(struct device_link *link) {
+    return atomic_load(&link->was_ready) != 0;
+}
+
+void device_link_refuse(struct device_link *link, const char *why) {
+    (void)snprintf(link->reason, sizeof link->reason, "%s", why);
+    device_link_close(link);
+}
+
+void device_link_reason(struct device_link *link, char out[DEVICE_REASON]) {
+    memcpy(out, link->reason, DEVICE_REASON);
+    out[DEVICE_REASON - 1] = '\0';
+    for (char *c = out; *c; c++)
+        *c = *c >= ' ' && *c != 0x7f ? *c : '.';
+}
+
 /* --- the device process --- */
 
 struct service {
     struct device_link *link;
     uint32_t slots;
+    struct cuda *cuda; /* or NULL */
     struct path_device device;
 };
 
@@ -73,26 +95,44 @@ static void serve(void *context, uint32_t item, int worker) {
     const struct service *service = context;
     struct device_link *link = service->link;
     (void)item, (void)worker;
-    while (atomic_load(&link->state) != LINK_CLOSED) {
+    while (atomic_load(&link->state) != LINK_CLOSED && !(service->cuda && cuda_lost(service->cuda))) {
         const uint32_t seen = atomic_load(&link->asked.signals);
         if (!make_any(service))
             pool_wait(&link->asked, seen, 0.5);
     }
 }
 
-bool device_link_serve(struct device_link *link, void *scene, size_t size, uint32_t slots, struct error *error) {
+/* The card gets a copy of the scene; the emulation shows what its samples have to be. */
+static bool open_scene(struct emulation *emulation, struct cuda *cuda, void *scene, size_t size, struct error *error) {
+    const struct path_device here = emulation_device(emulation);
+    void *copy = cuda ? mem_alloc_aligned(64, size) : NULL;
+    if (cuda && !copy)
+        return error_no_memory(error, "the scene for a card");
+    if (copy)
+        memcpy(copy, scene, size);
+    bool ok = emulation_open(emulation, scene, size, error) &&
+              (!cuda || cuda_open_scene(cuda, copy, size, emulation_scene(emulation), &here, error));
+    mem_free(copy);
+    return ok;
+}
+
+bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
+                       struct error *error) {
     char ignored[256];
     struct pool *pool = pool_create((int)slots, ignored);
     struct emulation *emulation = pool ? emulation_create(pool, 0, 0) : NULL;
-    bool ok = emulation && emulation_open(emulation, scene, size, error);
+    bool ok = emulation && open_scene(emulation, cuda, scene, size, error);
     if (!emulation)
         (void)error_no_memory(error, "the scene for a device");
     if (ok) {
-        struct service service = {link, slots, emulation_device(emulation)};
+        struct service service = {link, slots, cuda, cuda ? cuda_device(cuda) : emulation_device(emulation)};
         uint32_t starts = LINK_STARTS;
+        atomic_store(&link->was_ready, 1);
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);
         (void)pool_run(pool, slots, serve, &service);
+        const char *lost = cuda ? cuda_lost(cuda) : NULL;
+        ok = !lost || error_set(error, ERROR_MACHINE, "%s", lost);
     }
     emulation_destroy(emulation);
     if (pool)

@@ -14,8 +14,18 @@ size_t device_link_size(uint32_t slots);
 void device_link_close(struct device_link *link);
 
 /* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each
- * slot. False: the bundle is damaged, or no memory. */
-bool device_link_serve(struct device_link *link, void *scene, size_t size, uint32_t slots, struct error *error);
+ * slot. cuda: the card, with as many slots; NULL: the emulation. False: the bundle is damaged, no memory, or the card
+ * was lost; what is not made then, threads make. */
+struct cuda;
+bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene, size_t size, uint32_t slots,
+                       struct error *error);
+/* Whether it has begun to make orders. */
+bool device_link_was_ready(struct device_link *link);
+/* Instead: it cannot begin, for this reason, or cannot go on. */
+void device_link_refuse(struct device_link *link, const char *why);
+/* The reason; "": none was given. Control characters are dots. */
+enum { DEVICE_REASON = 512 };
+void device_link_reason(struct device_link *link, char out[DEVICE_REASON]);
 
 /* The render process. Owner: the caller. */
 struct device_client {

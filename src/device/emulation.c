@@ -30,6 +30,10 @@ bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struc
     return emulation->scene != NULL;
 }
 
+const struct path_scene *emulation_scene(const struct emulation *emulation) {
+    return emulation->scene;
+}
+
 static bool begin(void *context, struct bundle *scene, struct error *error) {
     struct emulation *emulation = context;
     const size_t size = bundle_size(scene);
@@ -65,14 +69,6 @@ static bool run_wave(const struct emulation *emulation, struct wave *wave, struc
     return true;
 }
 
-/* From a fault of the scene on, threads make all pixels, and note where it is. */
-static void leave_pixels(const struct wave *wave) {
-    const uint64_t count = path_order_pixels(&wave->order);
-    if (path_scene_met_fault(wave->scene))
-        for (uint64_t i = 0; i < count; i++)
-            wave->pixels[i].samples = wave->order.begin;
-}
-
 static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
     const struct emulation *emulation = context;
     const struct path_scene *scene = emulation->scene;
@@ -91,8 +87,8 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
         wave.count = left < room ? (uint32_t)left : room;
         goes_on = run_wave(emulation, &wave, lane);
     }
-    if (goes_on)
-        leave_pixels(&wave);
+    if (goes_on && path_scene_met_fault(scene))
+        wave_leave_pixels(order, pixels);
     if (lane) {
         const struct path_counts made = path_lane_counts(lane);
         path_counts_add(counts, &made);

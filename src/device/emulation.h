@@ -12,7 +12,8 @@ void emulation_destroy(struct emulation *emulation);
 /* Opens the bundle of a scene, which must outlive the emulation, in place of `begin` of the device. Errors: as
  * bundle_open. */
 bool emulation_open(struct emulation *emulation, void *bytes, size_t size, struct error *error);
-/* It may be used until the emulation is destroyed. */
+/* The opened scene. Both may be used until the emulation is destroyed. */
+const struct path_scene *emulation_scene(const struct emulation *emulation);
 struct path_device emulation_device(struct emulation *emulation);
 
 #endif

@@ -2,9 +2,17 @@
  * addresses on the card. Compiled for cards alone (tools/device_scan.sh). */
 #include "device/wave_internal.h"
 
-#ifdef GRAY_DEVICE
+#if defined GRAY_DEVICE || defined GRAY_PLAYED_CARD
 
-#if defined __NVPTX__
+#if defined GRAY_PLAYED_CARD
+extern uint32_t played_thread, played_threads; /* by the test that plays a card */
+static uint32_t thread_index(void) {
+    return played_thread;
+}
+static uint32_t thread_count(void) {
+    return played_threads;
+}
+#elif defined __NVPTX__
 static uint32_t thread_index(void) {
     return (uint32_t)(__nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() + __nvvm_read_ptx_sreg_tid_x());
 }
@@ -27,6 +35,7 @@ void kernel_extend(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t t
 void kernel_shade(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_shadow(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t turn);
 void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings);
+void kernel_finish(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count);
 
 static void *lane_of(uint64_t lanes, uint32_t crossings) {
     return (char *)(uintptr_t)lanes + thread_index() * path_lane_size(crossings);
@@ -71,6 +80,20 @@ void kernel_add(uint64_t wave, uint64_t lanes, uint32_t crossings) {
     struct path_lane *lane = lane_of(lanes, crossings);
     for (uint32_t i = thread_index(); i < wave_pixels(w); i += thread_count())
         wave_add(w, lane, i);
+}
+
+/* count: of lanes. */
+void kernel_finish(uint64_t wave, uint64_t lanes, uint32_t crossings, uint32_t count) {
+    struct wave *w = (struct wave *)(uintptr_t)wave;
+    if (thread_index() != 0)
+        return;
+    w->counts = (struct path_counts){0};
+    for (uint32_t i = 0; i < count; i++) {
+        const char *lane = (const char *)(uintptr_t)lanes + i * path_lane_size(crossings);
+        const struct path_counts made = path_lane_counts((const struct path_lane *)(const void *)lane);
+        path_counts_add(&w->counts, &made);
+    }
+    w->met_fault = path_scene_met_fault(w->scene);
 }
 
 #endif

@@ -35,6 +35,17 @@ bool __atomic_compare_exchange_8(volatile void *at, void *expected, uint64_t wan
     *own = (uint64_t)__nvvm_atom_cas_gen_ll((long long *)at, (long long)before, (long long)wanted);
     return *own == before;
 }
+/* Of the flags of faults: by one thread, when the others are done. */
+uint8_t __atomic_exchange_1(volatile void *at, uint8_t value, int order) {
+    const uint8_t before = *(volatile uint8_t *)at;
+    (void)order;
+    *(volatile uint8_t *)at = value;
+    return before;
+}
+void __atomic_store_1(volatile void *at, uint8_t value, int order) {
+    (void)order;
+    *(volatile uint8_t *)at = value;
+}
 #endif
 
 #endif

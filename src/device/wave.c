@@ -50,3 +50,9 @@ void wave_add(struct wave *wave, struct path_lane *lane, uint32_t i) {
         if (pixel->samples == wave->order.begin + (uint32_t)(path % each))
             (void)path_wave_add(wave->scene, lane, state_of(wave, (uint32_t)(path - wave->first)), pixel);
 }
+
+void wave_leave_pixels(const struct path_order *order, struct path_pixel *pixels) {
+    const uint64_t count = path_order_pixels(order);
+    for (uint64_t i = 0; i < count; i++)
+        pixels[i].samples = order->begin;
+}

@@ -15,6 +15,8 @@ struct wave {
     uint64_t state_size; /* path_wave_state_size */
     uint32_t *living[2]; /* paths, in any order: those of an even turn and those of an odd one; room for `count` */
     uint32_t living_count[2];
+    struct path_counts counts; /* of all waves of the order, when they are made */
+    bool met_fault;
 };
 
 /* Path i of the wave; counts it among the living of turn 0. */
@@ -29,5 +31,7 @@ void wave_clear_next(struct wave *wave, uint32_t turn);
  * the end. */
 void wave_add(struct wave *wave, struct path_lane *lane, uint32_t i);
 uint32_t wave_pixels(const struct wave *wave);
+/* From a fault of the scene on, threads make all pixels, and note where it is. */
+void wave_leave_pixels(const struct path_order *order, struct path_pixel *pixels);
 
 #endif

@@ -159,6 +159,7 @@ enum rule_kind {
     RULE_KILL,    /* only an attack would call it */
     RULE_OPEN,    /* with these flags, or with any flags if some folder may be written */
     RULE_WRITING, /* as RULE_ALLOW if some folder may be written */
+    RULE_CARD,    /* as RULE_ALLOW; a process that serves a card may call it with any arguments */
     RULE_BENEATH, /* allowed when Landlock is active: its arguments lie in memory */
 };
 
@@ -246,7 +247,7 @@ static const struct rule rules[] = {
     {.call = SYS_openat, .kind = RULE_OPEN, .tests = {WITHOUT(INT, 2, WRITING_FLAGS)}},
     {.call = SYS_openat2, .kind = RULE_BENEATH},
     {.call = SYS_fcntl, .tests = {{INT, 1, ~UINT32_C(1), F_SETFD}}}, /* F_SETFD or F_GETFL, as fdopendir calls them */
-    {.call = SYS_ioctl, .tests = {IS(INT, 1, TCGETS)}},
+    {.call = SYS_ioctl, .kind = RULE_CARD, .tests = {IS(INT, 1, TCGETS)}},
     /* Its own limits: reading only. */
     {.call = SYS_prlimit64, .tests = {IS(INT, 0, 0), IS(LONG, 2, 0)}},
     {.call = SYS_ftruncate, .kind = RULE_WRITING},
@@ -330,7 +331,7 @@ static void put_tests(struct program *program, const struct test tests[TESTS]) {
 }
 
 /* One rule: if the loaded number is not this one, it jumps over its result. */
-static void put_rule(struct program *program, const struct rule *rule, bool writing, bool landlock) {
+static void put_rule(struct program *program, const struct rule *rule, bool writing, bool landlock, bool card) {
     const uint32_t refuse = SECCOMP_RET_ERRNO | EPERM, allow = SECCOMP_RET_ALLOW;
     put(program, BPF_JMP | BPF_JEQ | BPF_K, rule->call, 0, 1);
     size_t jump = program->count - 1u;
@@ -347,6 +348,11 @@ static void put_rule(struct program *program, const struct rule *rule, bool writ
             put_tests(program, rule->tests);
         put_answer(program, allow);
         break;
+    case RULE_CARD:
+        if (!card)
+            put_tests(program, rule->tests);
+        put_answer(program, allow);
+        break;
     case RULE_WRITING:
         if (writing)
             put_tests(program, rule->tests);
@@ -360,25 +366,26 @@ static void put_rule(struct program *program, const struct rule *rule, bool writ
     program->steps[jump].jf = (uint8_t)(program->count - 1u - jump);
 }
 
-static bool confine_calls(bool writing, bool landlock) {
+static bool confine_calls(bool writing, bool landlock, bool card) {
     struct program program = {.count = 0};
     put(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, arch), 0, 0);
     put(&program, BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_HERE, 1, 0);
     put_answer(&program, SECCOMP_RET_KILL_PROCESS);
     put(&program, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
     for (int i = 0; i < RULE_COUNT; i++)
-        put_rule(&program, &rules[i], writing, landlock);
+        put_rule(&program, &rules[i], writing, landlock, card);
     /* abort() and pthread_kill signal the process itself. */
     const struct rule own_signals = {.call = SYS_tgkill, .tests = {IS(INT, 0, (uint32_t)getpid())}};
-    put_rule(&program, &own_signals, writing, landlock);
+    put_rule(&program, &own_signals, writing, landlock, card);
     put_answer(&program, SECCOMP_RET_ERRNO | ENOSYS);
     struct sock_fprog filter = {.len = program.count, .filter = program.steps};
     return MAY_FAIL(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0)) == 0;
 }
 #else
-static bool confine_calls(bool writing, bool landlock) {
+static bool confine_calls(bool writing, bool landlock, bool card) {
     (void)writing;
     (void)landlock;
+    (void)card;
     errno = ENOSYS;
     return false;
 }
@@ -416,7 +423,8 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
         (void)snprintf(missing, sizeof missing, "no Landlock in this kernel (%s)", strerror(errno));
     if (landlock >= 0 && SANITIZED) {
         calls = ", no seccomp filter in a build with sanitizers";
-    } else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0)) {
+    } else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0,
+                                               options->device == DEVICE_GPU || options->device == DEVICE_AUTO)) {
         size_t length = strlen(missing);
         (void)snprintf(missing + length, sizeof missing - length, "%sno seccomp filter (%s)", length > 0 ? ", " : "",
                        strerror(errno));

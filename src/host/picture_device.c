@@ -4,27 +4,47 @@
 
 #include <stdio.h>
 
+/* There is no card. With `auto` the threads go on: nothing makes orders. */
+static bool go_without(const struct picture_device *device, const char *reason, struct error *error) {
+    char line[DEVICE_REASON + 64];
+    if (device->kind == DEVICE_GPU)
+        return error_set(error, ERROR_MACHINE, "--device gpu: %s", reason);
+    (void)snprintf(line, sizeof line, "gray: the processor renders: %s", reason);
+    device->services->line(device->services->context, LINE_DETAIL, line);
+    return true;
+}
+
+/* Without processes of its own, gray emulates a device in this one. */
+static bool begin_here(struct picture_device *device, struct bundle *scene, struct error *error) {
+    if (device->kind != DEVICE_EMULATE)
+        return go_without(device, "a card needs a process of its own, and there is none (--no-fork)", error);
+    device->emulation = emulation_create(device->pool, 0, 0);
+    if (!device->emulation)
+        return error_no_memory(error, "the scene for a device");
+    const struct path_device here = emulation_device(device->emulation);
+    return here.begin(here.context, scene, error);
+}
+
 static bool begin(void *context, struct bundle *scene, struct error *error) {
     struct picture_device *device = context;
     const struct host_services *services = device->services;
-    struct pool *pool = device->pool;
-    const uint32_t slots = (uint32_t)pool_workers(pool);
-    if (!services->device) {
-        device->emulation = emulation_create(pool, 0, 0);
-        if (!device->emulation)
-            return error_no_memory(error, "the scene for a device");
-        const struct path_device here = emulation_device(device->emulation);
-        return here.begin(here.context, scene, error);
-    }
+    const uint32_t slots = (uint32_t)pool_workers(device->pool);
+    if (!services->device)
+        return begin_here(device, scene, error);
     if (!services->device(services->context, scene, slots, &device->memory, error))
         return false;
-    device->client = (struct device_client){device->memory.block, pool, slots};
-    (void)device_client_wait(&device->client);
-    return true;
+    device->client = (struct device_client){device->memory.block, device->pool, slots};
+    if (device_client_wait(&device->client) || device->kind == DEVICE_EMULATE || pool_cancelled(device->pool))
+        return true;
+    char reason[DEVICE_REASON];
+    device_link_reason(device->memory.block, reason);
+    return go_without(device, reason[0] ? reason : "the device process is gone", error);
 }
 
 static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
     struct picture_device *device = context;
+    if (!device->emulation && !device->memory.block)
+        return true;
     if (!device->emulation)
         return device_client_make(&device->client, order, pixels, counts);
     const struct path_device here = emulation_device(device->emulation);

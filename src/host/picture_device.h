@@ -5,13 +5,15 @@
 
 #include "base/share.h"
 #include "device/device_link.h"
+#include "session/options.h"
 #include "session/services.h"
 
 struct emulation;
-/* Zero but for the first two fields. Owner: the caller, picture_device_end. */
+/* Zero but for the first three fields. Owner: the caller, picture_device_end. */
 struct picture_device {
     const struct host_services *services;
     struct pool *pool;
+    enum device kind;
     struct emulation *emulation;
     struct share memory;
     struct device_client client;

@@ -227,7 +227,8 @@ static void notice_of_picture(void *context, const char *text) {
 
 static bool render_picture(struct picture_work *work, struct error *error) {
     struct render_process *process = work->process;
-    struct picture_device device = {.services = process->services, .pool = process->pool};
+    struct picture_device device = {
+        .services = process->services, .pool = process->pool, .kind = (enum device)process->options->device};
     struct path_device maker;
     if (process->options->device != DEVICE_CPU) {
         maker = picture_device_maker(&device, work->job.settings.integrator);

@@ -3,7 +3,10 @@
 
 #include "base/fault.h"
 #include "base/file.h"
+#include "base/mem.h"
+#include "device/cuda.h"
 #include "device/device_link.h"
+#include "device/kernels_file.h"
 #include "host/confine.h"
 #include "host/supervisor_child.h"
 #include "host/supervisor_messages.h"
@@ -15,10 +18,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* After the fork. The process needs two pieces of memory and its threads: everything else is taken away before it looks
- * at the scene, which a render process has written. */
+/* Driver and kernels need files and memory that is executed, so they are loaded before the rights go. */
+static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, struct error *error) {
+    char name[4096 + sizeof "gray-kernels"] = "";
+    char *slash = file_canonical("/proc/self/exe", name, 4096) ? strrchr(name, '/') : NULL;
+    (void)strcpy(slash ? slash + 1 : name, "gray-kernels");
+    char *kernels = cuda_calls_load(calls, error) ? kernels_file_read(name, error) : NULL;
+    struct cuda *cuda = kernels ? cuda_create(calls, kernels, slots, error) : NULL;
+    mem_free(kernels);
+    return cuda;
+}
+
+/* After the fork. The process needs two pieces of memory and its threads, or the files of a driver that are open:
+ * everything else is taken away before it looks at the scene, which a render process has written. */
 static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent, uint32_t slots) {
-    static const struct options nothing;
+    const enum device kind = (enum device)supervisor->options->device;
+    const struct options nothing = {.device = kind};
+    struct cuda_calls calls;
+    struct cuda *cuda = NULL;
     struct share link = {0};
     struct error error;
     char report[4096];
@@ -29,10 +46,11 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     (void)file_null_input();
     void *bytes = share_map_copy(scene, &size, &error);
     bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error) &&
+              (kind == DEVICE_EMULATE || (cuda = open_card(&calls, slots, &error)) != NULL) &&
               (!is_confined || confine_process(&nothing, STDERR_FILENO, report, sizeof report, &error)) &&
-              device_link_serve(link.block, bytes, size, slots, &error);
-    if (!ok)
-        (void)fprintf(stderr, "gray: warning: %s\n", error.text);
+              device_link_serve(link.block, cuda, bytes, size, slots, &error);
+    if (!ok && link.block)
+        device_link_refuse(link.block, error.text);
     _exit(ok ? 0 : (int)error.kind);
 }
 
@@ -75,19 +93,23 @@ void supervisor_answer_device(struct supervisor *supervisor, const struct device
 
 void supervisor_watch_device(struct supervisor *supervisor) {
     struct device_process *device = &supervisor->device;
-    char line[256];
+    char line[DEVICE_REASON + 128], reason[DEVICE_REASON];
     int how;
     if (device->process == 0 || waitpid(device->process, &how, WNOHANG) != device->process)
         return;
     device->process = 0;
     device_link_close(device->link.block);
+    device_link_reason(device->link.block, reason);
     if (WIFSIGNALED(how))
         (void)snprintf(line, sizeof line, "gray: warning: the device process was killed (signal %d, %s)", WTERMSIG(how),
                        strsignal(WTERMSIG(how)));
+    else if (reason[0])
+        (void)snprintf(line, sizeof line, "gray: warning: %s", reason);
     else
         (void)snprintf(line, sizeof line, "gray: warning: the device process ended with status %d", WEXITSTATUS(how));
     (void)strncat(line, "; the processor goes on, and the picture is the same", sizeof line - strlen(line) - 1);
-    supervisor_report(supervisor, LINE_WARNING, line);
+    if (device_link_was_ready(device->link.block) || supervisor->options->device == DEVICE_EMULATE)
+        supervisor_report(supervisor, LINE_WARNING, line);
 }
 
 void supervisor_end_device(struct supervisor *supervisor) {

@@ -202,6 +202,13 @@ static void bundle_scene(struct bundle *bundle, void *path_scene) {
     BUNDLE(bundle, scene->renderer.job, 1, NULL); /* the root */
 }
 
+struct path_order path_scene_trial(const struct path_scene *scene) {
+    enum { SIDE = 8 };
+    const uint32_t width = scene->job.width, height = scene->job.height;
+    const uint32_t x = width > SIDE ? (width - SIDE) / 2 : 0, y = height > SIDE ? (height - SIDE) / 2 : 0;
+    return (struct path_order){x, y, x + (width < SIDE ? width : SIDE), y + (height < SIDE ? height : SIDE), 0, 2};
+}
+
 struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer) {
     struct path_scene scene = {.tracer = *tracer, .has_parts = path_has_parts(&renderer->job->settings)};
     scene.job = (struct render_job){.world = renderer->job->world,

@@ -51,6 +51,9 @@ bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, st
 bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
                    struct path_pixel *pixel);
 
+/* Two samples of a few pixels in the middle of the picture. */
+struct path_order path_scene_trial(const struct path_scene *scene);
+
 /* Whether a function of a texture was NaN or a density above its bound: a thread has to note where. */
 bool path_scene_met_fault(const struct path_scene *scene);
 

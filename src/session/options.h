@@ -145,7 +145,7 @@ bool options_allow_picture(const struct options *options, uint64_t number, struc
 /* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
 uint64_t options_picture_bytes(const struct options *options);
 /* Who makes the samples of paths; pictures do not depend on it. */
-#define DEVICES(X) X(DEVICE_CPU, "cpu") X(DEVICE_EMULATE, "emulate")
+#define DEVICES(X) X(DEVICE_CPU, "cpu") X(DEVICE_GPU, "gpu") X(DEVICE_AUTO, "auto") X(DEVICE_EMULATE, "emulate")
 enum device { DEVICES(LIST_MEMBER) };
 /* What cpu_select_isa understands. */
 const char *options_isa_name(const struct options *options);

@@ -61,8 +61,9 @@ static const struct setting options_table[] = {
      "auto", "Instruction set of the kernels; the picture is the same."},
     {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_EXECUTION, "--device", NULL, LIST_BARS(DEVICES), NULL, FIELD(device), 0,
      0, 0, "cpu",
-     "Who makes the samples of integrator path; emulate: a process of its own, in waves, as a graphics card would; the "
-     "picture is the same."},
+     "Who makes the samples of integrator path; gpu: a graphics card of NVIDIA beside the processor, or an error; "
+     "auto: the "
+     "card, if there is one; emulate: a process of its own, in waves, as a card would; the picture is the same."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-o", "FILE", "", NULL, FIELD(output), 0, 0, 0, "the script's",
      "Name of the picture:" PICTURE_FORMATS_HELP "; '-' is standard output; for several "
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "

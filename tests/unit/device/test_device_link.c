@@ -2,6 +2,9 @@
 #define device_link_size device_link_size_here
 #define device_link_close device_link_close_here
 #define device_link_serve device_link_serve_here
+#define device_link_was_ready device_link_was_ready_here
+#define device_link_refuse device_link_refuse_here
+#define device_link_reason device_link_reason_here
 #define device_client_wait device_client_wait_here
 #define device_client_make device_client_make_here
 #include "device/device_link.c"
@@ -26,7 +29,7 @@ struct server {
 static void *run_server(void *context) {
     struct server *server = context;
     struct error error;
-    server->served = device_link_serve(server->link, server->scene, server->size, 2, &error);
+    server->served = device_link_serve(server->link, NULL, server->scene, server->size, 2, &error);
     return NULL;
 }
 
@@ -126,4 +129,19 @@ TEST(a_render_process_does_not_wait_for_a_device_that_is_gone) {
     CHECK(device_client_make(&client, &(struct path_order){0, 0, WIDTH, HEIGHT, 0, 4}, pixels, &counts));
     CHECK(pixels[0].samples == 0 && counts.camera_rays == 0);
     end_server(&s, &server);
+}
+
+TEST(the_reason_of_a_device_process_is_one_line_whatever_the_memory_holds) {
+    struct device_link *link = mem_alloc_zero(1, device_link_size(1));
+    char reason[DEVICE_REASON];
+    device_link_reason(link, reason);
+    CHECK_TEXT(reason, "");
+    device_link_refuse(link, "no card\n\033[31mat all");
+    device_link_reason(link, reason);
+    CHECK_TEXT(reason, "no card..[31mat all");
+    CHECK(!device_link_was_ready(link));
+    memset(link->reason, 'x', sizeof link->reason);
+    device_link_reason(link, reason);
+    CHECK_EQ_INT(strlen(reason), DEVICE_REASON - 1);
+    mem_free(link);
 }

@@ -125,7 +125,8 @@ TEST(what_device_there_is_is_an_option_or_in_the_environment) {
                "gray: the processor renders: a device has no integrator but path");
     test_shell("GRAY_DEVICE=emulate $gray --spp 1 --verbose --force scene.lua --caustics 100 2>&1", 0,
                "gray: the processor renders: a device has no photons (--caustics)");
-    test_shell("GRAY_DEVICE=card $gray --spp 1 scene.lua 2>&1", 2, "GRAY_DEVICE is 'card', not one of cpu|emulate");
+    test_shell("GRAY_DEVICE=card $gray --spp 1 scene.lua 2>&1", 2,
+               "GRAY_DEVICE is 'card', not one of cpu|gpu|auto|emulate");
     test_shell("$gray --device card scene.lua 2>&1", 2, "--device");
 }
 
@@ -135,4 +136,35 @@ TEST(what_a_ray_touches_compiles_for_cards_and_calls_nothing_else) {
 
 TEST_LONG(every_operation_for_cards_is_rounded_and_none_is_fused) {
     scan("", " operations are rounded to nearest");
+}
+
+/* A library of the driver's name that has the first calls of it. */
+TEST(a_card_that_is_not_there_is_an_error_with_gpu_and_a_line_with_auto) {
+    char *root = realpath(".", NULL), line[4096];
+    (void)snprintf(
+        line, sizeof line,
+        "scene='%s/docs/first.lua'; cp -L $gray own && mkdir lib && "
+        "export GRAY_LUA='%s/lua'; try() { LD_LIBRARY_PATH=$PWD/lib ./own -q --integrator path --size 16x12 --spp 2 "
+        "\"$@\" -o "
+        "$name.png "
+        "$scene 2>&1 | tail -n 1 | sed \"s#.*/own#own#; s#$PWD/##; s#^[^ ]*first.lua: ##\"; }; "
+        "name=cpu; try && "
+        "echo 'int cuInit(unsigned f) { return f ? 1 : 100; }' | cc -shared -o lib/libcuda.so.1 -x c - && name=gpu; "
+        "try --device gpu; "
+        "{ echo 'int cuGetErrorString(int e, const char **t) { *t = e == 100 ? \"no card\" : \"?\"; return 0; }'; "
+        "for call in cuInit $(sed -n 's/.*X([a-z_]*, \"\\(cu[A-Za-z0-9_]*\\)\".*/\\1/p' '%s/src/device/cuda_calls.h' | "
+        "grep -v -e cuInit -e cuGetErrorString) cuLaunchKernel; do echo \"int $call(void) { return 100; }\"; done; } | "
+        "sort -u | cc -shared -o lib/libcuda.so.1 -x c - && try --device gpu; "
+        "echo 'gray kernels of yesterday' >gray-kernels; try --device gpu; "
+        "{ echo gray kernels $(cd '%s' && tools/device_scan.sh digest); echo text; } >gray-kernels; try --device gpu; "
+        "name=auto; GRAY_DEVICE=auto try; ls *.png; cmp cpu.png auto.png",
+        root, root, root, root);
+    free(root);
+    test_shell(line, 0,
+               "--device gpu: the driver of the card is too old: libcuda.so.1 has no cuDriverGetVersion\n"
+               "--device gpu: there are no kernels for a card: gray-kernels: cannot be read: No such file or "
+               "directory; make gpu writes them\n"
+               "--device gpu: gray-kernels was made from other sources than this program; make gpu writes it again\n"
+               "--device gpu: the card cannot be used: init: no card\n"
+               "auto.png\ncpu.png\n");
 }

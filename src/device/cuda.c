@@ -1,0 +1,299 @@
+#include "device/cuda.h"
+
+#include "base/clock.h"
+#include "base/mem.h"
+#include "device/wave_internal.h"
+#include "film/film.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { THREADS = 128, BLOCKS = 4 /* of a processor of the card */, SMALLEST_WAVE = 1 << 12, FIRST_WAVE = 1 << 14 };
+/* Of the free memory of the card, for orders. A launch lasts at most .05 s: waves shrink and grow between these. */
+static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch = 0.005;
+
+#define KERNELS(X)                                                                                                     \
+    X(LANES, "lanes")                                                                                                  \
+    X(BEGIN, "begin") X(EXTEND, "extend") X(SHADE, "shade") X(SHADOW, "shadow") X(ADD, "add") X(FINISH, "finish")
+#define KERNEL_MEMBER(member, name) KERNEL_##member,
+#define KERNEL_NAME(member, name) "kernel_" name,
+enum kernel { KERNELS(KERNEL_MEMBER) KERNEL_COUNT };
+
+/* Memory on the card for an order. */
+struct card_stream {
+    _Atomic bool taken;
+    void *handle;
+    uint64_t wave, states, living[2], pixels, lanes; /* addresses on the card; 0: none yet */
+};
+
+struct cuda {
+    const struct cuda_calls *calls;
+    void *context, *module, *kernels[KERNEL_COUNT];
+    char name[256];
+    int processors;
+    uint32_t slots;
+    struct card_stream *streams; /* slots */
+    /* Of the scene. */
+    const struct path_scene *scene;
+    uint64_t scene_on_card, scene_block;
+    uint32_t crossings, room, lanes; /* paths and lanes of a stream */
+    _Atomic uint32_t limit;          /* paths of a wave, by the measured time of launches */
+    pthread_mutex_t mutex;           /* of the reason */
+    _Atomic bool is_lost;
+    char reason[256];
+};
+
+/* --- calls --- */
+
+static const char *text_of(const struct cuda *cuda, int status) {
+    const char *text = NULL;
+    return cuda->calls->error_text(status, &text) == 0 && text ? text : "unknown error";
+}
+
+static bool failed(const struct cuda *cuda, const char *call, int status, struct error *error) {
+    return error_set(error, ERROR_MACHINE, "the card cannot be used: %s: %s", call, text_of(cuda, status));
+}
+
+/* Makes a call; its name is in the error. */
+#define CALL(cuda, error, member, ...) call_ended(cuda, #member, (cuda)->calls->member(__VA_ARGS__), error)
+static bool call_ended(const struct cuda *cuda, const char *call, int status, struct error *error) {
+    return status == 0 || failed(cuda, call, status, error);
+}
+
+static bool find_card(struct cuda *cuda, struct error *error) {
+    int version = 0, device = 0, major = 0, minor = 0;
+    char name[128] = "";
+    if (!CALL(cuda, error, init, 0) || !CALL(cuda, error, version, &version) ||
+        !CALL(cuda, error, device, &device, 0) || !CALL(cuda, error, device_name, name, (int)sizeof name, device) ||
+        !CALL(cuda, error, attribute, &cuda->processors, CUDA_PROCESSORS, device) ||
+        !CALL(cuda, error, attribute, &major, CUDA_MAJOR, device) ||
+        !CALL(cuda, error, attribute, &minor, CUDA_MINOR, device))
+        return false;
+    (void)snprintf(cuda->name, sizeof cuda->name, "%s (capability %d.%d, driver %d.%d)", name, major, minor,
+                   version / 1000, version % 1000 / 10);
+    if (major < 7)
+        return error_set(error, ERROR_MACHINE, "the card cannot be used: %s; gray needs capability 7.0", cuda->name);
+    if (cuda->processors < 1)
+        cuda->processors = 1;
+    return CALL(cuda, error, context_create, &cuda->context, 0, device);
+}
+
+static bool load_kernels(struct cuda *cuda, const char *image, struct error *error) {
+    static const char *const names[] = {KERNELS(KERNEL_NAME)};
+    bool ok = CALL(cuda, error, module_load, &cuda->module, image);
+    for (int i = 0; ok && i < KERNEL_COUNT; i++)
+        ok = CALL(cuda, error, module_function, &cuda->kernels[i], cuda->module, names[i]);
+    return ok;
+}
+
+struct cuda *cuda_create(const struct cuda_calls *calls, const char *image, uint32_t slots, struct error *error) {
+    struct cuda *cuda = mem_alloc_zero(1, sizeof *cuda);
+    struct card_stream *streams = cuda ? mem_alloc_zero(slots, sizeof *streams) : NULL;
+    if (!streams) {
+        mem_free(cuda);
+        (void)error_no_memory(error, "a card");
+        return NULL;
+    }
+    *cuda = (struct cuda){.calls = calls, .slots = slots, .streams = streams, .limit = FIRST_WAVE};
+    (void)pthread_mutex_init(&cuda->mutex, NULL);
+    if (find_card(cuda, error) && load_kernels(cuda, image, error))
+        return cuda;
+    cuda_destroy(cuda);
+    return NULL;
+}
+
+void cuda_destroy(struct cuda *cuda) {
+    if (!cuda)
+        return;
+    if (cuda->context) /* with all that it has */
+        (void)cuda->calls->context_destroy(cuda->context);
+    (void)pthread_mutex_destroy(&cuda->mutex);
+    mem_free(cuda->streams);
+    mem_free(cuda);
+}
+
+const char *cuda_name(const struct cuda *cuda) {
+    return cuda->name;
+}
+
+const char *cuda_lost(struct cuda *cuda) {
+    return atomic_load(&cuda->is_lost) ? cuda->reason : NULL;
+}
+
+/* --- the scene --- */
+
+/* The most paths and lanes for which all streams fit into the memory of the card. */
+static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
+    enum { MAX_PATHS = 1 << 20 };
+    const uint64_t state = path_wave_state_size(cuda->scene) + 2 * sizeof(uint32_t);
+    const uint64_t lane = path_lane_size(cuda->crossings), fixed = FILM_TILE * FILM_TILE * sizeof(struct path_pixel);
+    const uint64_t budget = (uint64_t)(memory_share * (double)idle) / cuda->slots;
+    const uint64_t wanted = (uint64_t)cuda->processors * THREADS * BLOCKS;
+    const uint64_t needed = SMALLEST_WAVE * state + THREADS * lane + fixed;
+    if (budget < needed)
+        return error_set(
+            error, ERROR_MACHINE, "the card cannot be used: it has %llu MB of memory free, and %llu MB are needed",
+            (unsigned long long)idle >> 20, (unsigned long long)((double)(needed * cuda->slots) / memory_share) >> 20);
+    const uint64_t lanes = (budget - fixed) / 2 / lane / THREADS * THREADS;
+    cuda->lanes = (uint32_t)(lanes < THREADS ? THREADS : lanes < wanted ? lanes : wanted);
+    const uint64_t paths = (budget - fixed - cuda->lanes * lane) / state;
+    cuda->room = (uint32_t)(paths < MAX_PATHS ? paths : MAX_PATHS);
+    return true;
+}
+
+/* Whether the card gives a few samples the bits that this processor gives them. */
+static bool try_samples(struct cuda *cuda, const struct path_device *here, struct error *error) {
+    enum { PIXELS = 64 };
+    struct path_pixel pixels[2][PIXELS];
+    struct path_counts counts = {0};
+    const struct path_order order = path_scene_trial(cuda->scene);
+    const struct path_device card = cuda_device(cuda);
+    memset(pixels, 0, sizeof pixels);
+    if (path_order_pixels(&order) > PIXELS || !here->make(here->context, &order, pixels[0], &counts) ||
+        !card.make(card.context, &order, pixels[1], &counts))
+        return error_set(error, ERROR_MACHINE, "the card could not be tried");
+    const char *reason = cuda_lost(cuda);
+    if (reason)
+        return error_set(error, ERROR_MACHINE, "%s", reason);
+    if (memcmp(pixels[0], pixels[1], sizeof pixels[0]) != 0)
+        return error_set(error, ERROR_MACHINE, "the card cannot be used: samples of %s have other bits", cuda->name);
+    return true;
+}
+
+bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct path_scene *scene,
+                     const struct path_device *here, struct error *error) {
+    size_t idle = 0, all = 0;
+    cuda->scene = scene;
+    cuda->crossings = path_scene_crossings(scene);
+    if (!CALL(cuda, error, context_use, cuda->context) || !CALL(cuda, error, take, &cuda->scene_block, size))
+        return false;
+    const char *root = bundle_open(bytes, size, cuda->scene_block, path_scene_size(), error);
+    if (!root)
+        return false;
+    cuda->scene_on_card = cuda->scene_block + (uint64_t)(root - (const char *)bytes);
+    return CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) && CALL(cuda, error, stream_wait, NULL) &&
+           CALL(cuda, error, memory, &idle, &all) && divide_memory(cuda, idle, error) && try_samples(cuda, here, error);
+}
+
+/* --- orders --- */
+
+/* A stream of its own for each order: there are as many as threads. */
+static struct card_stream *take_stream(struct cuda *cuda) {
+    for (uint32_t i = 0; i < cuda->slots; i++)
+        if (!atomic_exchange(&cuda->streams[i].taken, true))
+            return &cuda->streams[i];
+    return NULL;
+}
+
+static bool fill_stream(struct cuda *cuda, struct card_stream *stream, struct error *error) {
+    if (stream->lanes)
+        return true;
+    const size_t states = (size_t)cuda->room * path_wave_state_size(cuda->scene), list = cuda->room * sizeof(uint32_t);
+    return CALL(cuda, error, stream_create, &stream->handle, 1 /* no order with stream 0 */) &&
+           CALL(cuda, error, take, &stream->wave, sizeof(struct wave)) &&
+           CALL(cuda, error, take, &stream->states, states) && CALL(cuda, error, take, &stream->living[0], list) &&
+           CALL(cuda, error, take, &stream->living[1], list) &&
+           CALL(cuda, error, take, &stream->pixels, FILM_TILE * FILM_TILE * sizeof(struct path_pixel)) &&
+           CALL(cuda, error, take, &stream->lanes, cuda->lanes * path_lane_size(cuda->crossings));
+}
+
+/* Launches a kernel with a thread for each item, but not more than there are lanes. last: turn, or count of lanes. */
+static bool launch(struct cuda *cuda, const struct card_stream *stream, enum kernel kernel, uint64_t items,
+                   uint32_t last, struct error *error) {
+    uint64_t first = kernel == KERNEL_LANES ? stream->lanes : stream->wave;
+    uint64_t second = kernel == KERNEL_LANES ? cuda->scene_on_card : stream->lanes;
+    void *arguments[] = {&first, &second, &cuda->crossings, &last};
+    const uint64_t threads = items < cuda->lanes ? items : cuda->lanes;
+    const unsigned blocks = (unsigned)((threads + THREADS - 1) / THREADS);
+    return CALL(cuda, error, launch, cuda->kernels[kernel], blocks, 1, 1, THREADS, 1, 1, 0, stream->handle, arguments,
+                NULL);
+}
+
+/* All turns of a wave; the wave in memory is that on the card afterwards. */
+static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct wave *wave, struct error *error) {
+    const struct cuda_calls *calls = cuda->calls;
+    double longest = 0;
+    wave->living_count[0] = 0;
+    bool ok = call_ended(cuda, "upload", calls->upload(stream->wave, wave, sizeof *wave, stream->handle), error) &&
+              launch(cuda, stream, KERNEL_BEGIN, wave->count, 0, error) &&
+              call_ended(cuda, "download", calls->download(wave, stream->wave, sizeof *wave, stream->handle), error) &&
+              CALL(cuda, error, stream_wait, stream->handle);
+    for (uint32_t turn = 0; ok && wave->living_count[turn % 2] > 0; turn++) {
+        const uint32_t count = wave->living_count[turn % 2];
+        const double start = clock_now();
+        ok = launch(cuda, stream, KERNEL_EXTEND, count, turn, error) &&
+             launch(cuda, stream, KERNEL_SHADE, count, turn, error) &&
+             launch(cuda, stream, KERNEL_SHADOW, count, turn, error) &&
+             call_ended(cuda, "download", calls->download(wave, stream->wave, sizeof *wave, stream->handle), error) &&
+             CALL(cuda, error, stream_wait, stream->handle);
+        const double seconds = clock_now() - start;
+        longest = seconds > longest ? seconds : longest;
+    }
+    ok = ok && launch(cuda, stream, KERNEL_ADD, wave_pixels(wave), 0, error) &&
+         CALL(cuda, error, stream_wait, stream->handle);
+    const uint32_t limit = atomic_load(&cuda->limit);
+    if (longest > longest_launch && limit > SMALLEST_WAVE)
+        atomic_store(&cuda->limit, limit / 2);
+    else if (longest < shortest_launch && limit < cuda->room)
+        atomic_store(&cuda->limit, limit < cuda->room / 2 ? 2 * limit : cuda->room);
+    return ok;
+}
+
+static bool run_order(struct cuda *cuda, struct card_stream *stream, const struct path_order *order,
+                      struct path_pixel *pixels, struct path_counts *counts, struct error *error) {
+    const uint64_t paths = path_order_paths(order);
+    const size_t size = (size_t)path_order_pixels(order) * sizeof *pixels;
+    const struct cuda_calls *calls = cuda->calls;
+    if (!CALL(cuda, error, context_use, cuda->context) || !fill_stream(cuda, stream, error))
+        return false;
+    /* Addresses on the card have the size of those here. */
+    struct wave wave = {.scene = (const struct path_scene *)(uintptr_t)cuda->scene_on_card,
+                        .order = *order,
+                        .pixels = (struct path_pixel *)(uintptr_t)stream->pixels,
+                        .states = (char *)(uintptr_t)stream->states,
+                        .state_size = path_wave_state_size(cuda->scene),
+                        .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
+    bool ok = call_ended(cuda, "upload", calls->upload(stream->pixels, pixels, size, stream->handle), error) &&
+              launch(cuda, stream, KERNEL_LANES, cuda->lanes, 0, error);
+    for (; ok && wave.first < paths; wave.first += wave.count) {
+        uint32_t limit = atomic_load(&cuda->limit);
+        limit = limit < cuda->room ? limit : cuda->room;
+        wave.count = paths - wave.first < limit ? (uint32_t)(paths - wave.first) : limit;
+        ok = run_wave(cuda, stream, &wave, error);
+    }
+    ok = ok && launch(cuda, stream, KERNEL_FINISH, 1, cuda->lanes, error) &&
+         call_ended(cuda, "download", calls->download(&wave, stream->wave, sizeof wave, stream->handle), error) &&
+         CALL(cuda, error, stream_wait, stream->handle) &&
+         call_ended(cuda, "download", calls->download(pixels, stream->pixels, size, stream->handle), error) &&
+         CALL(cuda, error, stream_wait, stream->handle);
+    if (ok && wave.met_fault)
+        wave_leave_pixels(order, pixels);
+    if (ok)
+        path_counts_add(counts, &wave.counts);
+    return ok;
+}
+
+/* What a lost card leaves, the threads of the render make. */
+static bool make(void *context, const struct path_order *order, struct path_pixel *pixels, struct path_counts *counts) {
+    struct cuda *cuda = context;
+    struct error error;
+    struct card_stream *stream = atomic_load(&cuda->is_lost) ? NULL : take_stream(cuda);
+    if (!stream)
+        return true;
+    if (!run_order(cuda, stream, order, pixels, counts, &error)) {
+        wave_leave_pixels(order, pixels);
+        (void)pthread_mutex_lock(&cuda->mutex);
+        if (!atomic_load(&cuda->is_lost))
+            (void)snprintf(cuda->reason, sizeof cuda->reason, "%.*s", (int)sizeof cuda->reason - 1, error.text);
+        atomic_store(&cuda->is_lost, true);
+        (void)pthread_mutex_unlock(&cuda->mutex);
+    }
+    atomic_store(&stream->taken, false);
+    return true;
+}
+
+struct path_device cuda_device(struct cuda *cuda) {
+    return (struct path_device){NULL, NULL, make, cuda};
+}
