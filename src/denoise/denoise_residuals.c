@@ -14,8 +14,8 @@ static const float residual_distance = 10, residual_colour = 0.2F;
 /* How much of the mean residual is added: more than 1, since the mean of 7 x 7 pixels itself is blurred. */
 static const float residual_gain = 2.6F;
 /* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
- * evidence, which is negative if the residuals are noise, since estimates contain the noise of both halves. */
-static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = -0.3F;
+ * evidence, which is near zero or negative if the residuals are noise: of a bright path that one half found. */
+static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = 0.2F;
 
 static float surface_distance(const struct level *level, size_t p, size_t q) {
     float z = level->feature[DENOISE_DEPTH][p], difference = level->feature[DENOISE_DEPTH][q] - z;
@@ -51,7 +51,8 @@ static float residual_weight(const struct level *level, size_t p, size_t q) {
     return 1 / (1 + distance * distance);
 }
 
-/* The mean residual around a pixel, how far it exceeds the noise, and whether both halves have it. */
+/* The mean residual around a pixel, how far it exceeds the noise, and whether both halves have it. The noise of a pixel
+ * is at least its own residual: a single bright path is no evidence. */
 struct residual {
     float mean[3], evidence, agreement;
 };
@@ -68,9 +69,13 @@ static struct residual find_residual(const struct level *level, int x, int y) {
             float weight = kernel[i < 0 ? -i : i] * kernel[j < 0 ? -j : j] * residual_weight(level, at, q);
             weights += weight;
             for (int c = 0; c < 3; c++) {
-                for (int half = 0; half < 2; half++)
-                    sums[half][c] += weight * (level->colour[half][c][q] - mean_of_halves(level, c, q));
-                noise += 0.5F * weight * weight * level->variance[c][q];
+                float residuals[2], expected = 0.5F * level->variance[c][q];
+                for (int half = 0; half < 2; half++) {
+                    residuals[half] = level->colour[half][c][q] - mean_of_halves(level, c, q);
+                    sums[half][c] += weight * residuals[half];
+                }
+                float mean = 0.5F * (residuals[0] + residuals[1]), found = mean * mean;
+                noise += weight * weight * (found > expected ? found : expected);
             }
         }
     }
