@@ -2,21 +2,25 @@
 # Renders the large pictures of data/gallery, each with the options in the line LARGE of its script, into
 # data/gallery/NAME.png, and prints its processor time, its peak memory and the size of the file. A run
 # that was interrupted goes on where it was.
-# Usage: tools/gallery.sh [NAME...]      (all, if no name is given)
+#   tools/gallery.sh [NAME...]           (all, if no name is given)
+#   tools/gallery.sh --loop [NAME...]    the loops, with the options in the line LOOP, into data/gallery/NAME.mp4 (ffmpeg)
 cd "$(dirname "$0")/.." || exit 1
-[ $# -gt 0 ] || set -- $(ls data/gallery/*.lua | sed 's:.*/::; s:\.lua$::')
+word=LARGE ending=png
+[ "$1" = --loop ] && { word=LOOP ending=mp4; shift; }
+[ $# -gt 0 ] || set -- $(grep -l "^-- $word: " data/gallery/*.lua | sed 's:.*/::; s:\.lua$::')
 for name in "$@"; do
     script=data/gallery/$name.lua
-    [ -r "$script" ] || { echo "tools/gallery.sh: there is no $script" >&2; exit 1; }
-    options=$(sed -n 's/^-- LARGE: //p' "$script")
+    options=$(sed -n "s/^-- $word: //p" "$script") && [ -n "$options" ] ||
+        { echo "tools/gallery.sh: there is no line $word in $script" >&2; exit 1; }
+    [ $word = LARGE ] && options="$options --checkpoint auto"
     # shellcheck disable=SC2086
-    ./gray $options "$script" -q --stats --checkpoint auto --resume -o "data/gallery/$name.png" 2>"data/gallery/$name.stats" >/dev/null || {
+    ./gray $options "$script" -q --stats --resume -o "data/gallery/$name.$ending" 2>"data/gallery/$name.stats" >/dev/null || {
         cat "data/gallery/$name.stats" >&2
         exit 1
     }
     echo "$name"
     awk '/processors: build/ { inside = 1 } inside && /build|render|write/ { seconds += $(NF - 1) } /threads/ { inside = 0 }
         /peak memory/ { memory = $(NF - 1) } END { printf("  %.0f s of processor time, %s MB\n", seconds, memory) }' "data/gallery/$name.stats"
-    echo "  $(wc -c <"data/gallery/$name.png") bytes"
+    echo "  $(wc -c <"data/gallery/$name.$ending") bytes"
     rm -f "data/gallery/$name.stats"
 done

@@ -2,8 +2,9 @@
 -- OPTIONS: --size 400x300 --spp 2
 -- LARGE: --spp 40
 -- The skin scatters light below its surface: arms glow where the lamp is behind them. The animal is one union of sweeps and a
--- smooth head, so light walks from arm to arm; suckers, eyes, sand and corals are around it. -D seed=3 makes another one;
--- --frames 72 --loop moves the arms.
+-- smooth head, so light walks from arm to arm; suckers, eyes, sand and corals are around it. -D seed=3 makes another one.
+-- With --frames 96 --loop it moves its arms.
+-- LOOP: --frames 96 --fps 24 --loop --size 640x480 --spp 12
 local sdf, random = require 'sdf', require 'random'
 seed = seed or 1
 local dice = random.new(seed)

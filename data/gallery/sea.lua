@@ -2,10 +2,12 @@
 -- OPTIONS: --size 400x250 --spp 12
 -- LARGE: --spp 64
 -- A low sun draws its road over the swell. The water is a height field of Gerstner-like waves and ripples; foam lies on the
--- crests; the buoy has rust, a cage, a lamp, and a gull.
+-- crests; the buoy has rust, a cage, a lamp, and a gull. With --frames 96 --loop the waves pass.
+-- LOOP: --frames 96 --fps 24 --loop --size 800x500 --spp 16
 local random = require 'random'
 local scene = gr.node 'sea'
 local dice = random.new(3)
+local clock = gr.clock or 0                       -- a loop of four seconds
 local cells = quick and 200 or 1500               -- -D quick=true makes a draft
 local sun = gr.vec(.16, .075, -1):normalize()
 
@@ -14,7 +16,8 @@ local waves = {}
 for k = 1, 26 do
     local length = 9 * .80 ^ k + .16
     local angle = math.rad(68 + dice:range(-38, 38))
-    waves[k] = {math.cos(angle) / length, math.sin(angle) / length, .0078 * length ^ 1.02, dice:range(0, 1)}
+    local passing = math.floor(5 / length ^ .5 + .5)   -- crests in a loop: the speed of deep water
+    waves[k] = {math.cos(angle) / length, math.sin(angle) / length, .0078 * length ^ 1.02, dice:range(0, 1) - passing * clock}
 end
 local function height(x, z)
     local h = 0
@@ -26,7 +29,7 @@ local function height(x, z)
 end
 local function water(size)                         -- ripples that are finer than the cells of the field are a bump map
     return gr.openpbr_material{base_color = {.008, .034, .036}, specular_roughness = .05, specular_ior = 1.333,
-        geometry_normal = gr.bump(function(p) local q = p * size return (gr.noise(q * 5) + .5 * gr.noise(q * 12)) / size end, .017)}
+        geometry_normal = gr.bump(function(p) local q = p * size + gr.vec(0, .1 * math.sin(2 * math.pi * clock), .1 - .1 * math.cos(2 * math.pi * clock)) return (gr.noise(q * 5) + .5 * gr.noise(q * 12)) / size end, .017)}
 end
 local function field(size, middle, columns, sink)
     scene:add_child(gr.height_field{material = water(size), columns = columns, smooth = true, open = true,
@@ -60,11 +63,12 @@ end
 buoy:add_child(gr.torus(iron, .40, .016):translate(0, 1.66, 0))
 buoy:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {3.4, 1.25, .32}}, centre = {0, 1.60, 0}, radius = .11})
 buoy:add_child(gr.cone{material = iron, from = {0, 1.95, 0}, to = {0, 1.78, 0}, radius = .23})
-scene:add_child(buoy:rotate('z', 11):rotate('x', -7):translate(-1.75, height(-1.75, -4) - .10, -4))
+scene:add_child(buoy:rotate('z', 11 + 3 * math.sin(2 * math.pi * clock)):rotate('x', -7 + 2 * math.sin(4 * math.pi * clock)):translate(-1.75, height(-1.75, -4) - .10, -4))
 
 -- gulls
 local feathers = gr.openpbr_material{base_color = {.35, .33, .33}, specular_weight = .1}
 local function gull(x, y, z, size, flap, turn)
+    flap = flap + (.25 - flap + .55) * math.sin(math.pi * clock * (7 + turn % 3)) ^ 2   -- wing beats of a loop
     local bird = gr.node 'gull'
     bird:add_child(gr.sweep(feathers, {{0, .02, -.62}, {0, .02, -.40}, {0, .01, -.12}, {0, .01, .16}, {0, .06, .40}, {0, .075, .52}, {0, .05, .62}, {0, .035, .72}}, {.05, .035, .105, .125, .075, .072, .03, .008}))
     for side = -1, 1, 2 do
