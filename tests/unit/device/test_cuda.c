@@ -31,7 +31,7 @@ static struct {
     size_t idle;     /* memory */
     int capability;  /* the first number */
     int until_error; /* calls; below 0: none */
-    int calls;
+    _Atomic int calls;
     bool is_wrong; /* in a bit of what it adds */
 } card = {.mutex = PTHREAD_MUTEX_INITIALIZER};
 
