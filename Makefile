@@ -164,7 +164,7 @@ $(MAIN_OBJECT): private override CPPFLAGS += -DGRAY_SOURCES='"$(CURDIR)"'
 
 # It takes only the kernels of these sources.
 $(BUILD)/src/device/kernels_file.o: private override CPPFLAGS += -DGRAY_KERNELS_DIGEST='"$(shell tools/device_scan.sh digest)"'
-$(BUILD)/src/device/kernels_file.o: $(wildcard src/*/*.h) $(addprefix src/,$(filter %.c,$(shell cat src/device/sources.list)))
+$(BUILD)/src/device/kernels_file.o: $(wildcard src/*/*.[ch] src/device/sources.list tools/device_scan.sh)
 
 $(BUILD)/src/image/webp_read.o $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/image/test_animation.o $(BUILD)/tests/unit/image/test_bitmaps.o: override CPPFLAGS += $(WEBP_CFLAGS)
 # The harness knows when a test starts a program.
