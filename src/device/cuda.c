@@ -10,7 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { THREADS = 128, BLOCKS = 4 /* of a processor of the card */, SMALLEST_WAVE = 1 << 12, FIRST_WAVE = 1 << 14 };
+enum {
+    THREADS = 128,
+    BLOCKS = 4 /* of a processor of the card */,
+    STACK_BYTES = 1 << 16 /* frames of functions that call themselves are not known before */,
+    SMALLEST_WAVE = 1 << 12,
+    FIRST_WAVE = 1 << 14
+};
 /* Of the free memory of the card, for orders. A launch lasts at most .05 s: waves shrink and grow between these. */
 static const double memory_share = 0.8, longest_launch = 0.025, shortest_launch = 0.005;
 
@@ -52,14 +58,11 @@ static const char *text_of(const struct cuda *cuda, int status) {
     return cuda->calls->error_text(status, &text) == 0 && text ? text : "unknown error";
 }
 
-static bool failed(const struct cuda *cuda, const char *call, int status, struct error *error) {
-    return error_set(error, ERROR_MACHINE, "the card cannot be used: %s: %s", call, text_of(cuda, status));
-}
-
 /* Makes a call; its name is in the error. */
 #define CALL(cuda, error, member, ...) call_ended(cuda, #member, (cuda)->calls->member(__VA_ARGS__), error)
 static bool call_ended(const struct cuda *cuda, const char *call, int status, struct error *error) {
-    return status == 0 || failed(cuda, call, status, error);
+    return status == 0 ||
+           error_set(error, ERROR_MACHINE, "the card cannot be used: %s: %s", call, text_of(cuda, status));
 }
 
 static bool find_card(struct cuda *cuda, struct error *error) {
@@ -77,7 +80,8 @@ static bool find_card(struct cuda *cuda, struct error *error) {
         return error_set(error, ERROR_MACHINE, "the card cannot be used: %s; gray needs capability 7.0", cuda->name);
     if (cuda->processors < 1)
         cuda->processors = 1;
-    return CALL(cuda, error, context_create, &cuda->context, 0, device);
+    return CALL(cuda, error, context_create, &cuda->context, 0, device) &&
+           CALL(cuda, error, context_limit, CUDA_STACK, STACK_BYTES);
 }
 
 static bool load_kernels(struct cuda *cuda, const char *image, struct error *error) {
@@ -112,10 +116,6 @@ void cuda_destroy(struct cuda *cuda) {
     (void)pthread_mutex_destroy(&cuda->mutex);
     mem_free(cuda->streams);
     mem_free(cuda);
-}
-
-const char *cuda_name(const struct cuda *cuda) {
-    return cuda->name;
 }
 
 const char *cuda_lost(struct cuda *cuda) {
@@ -213,12 +213,11 @@ static bool launch(struct cuda *cuda, const struct card_stream *stream, enum ker
 
 /* All turns of a wave; the wave in memory is that on the card afterwards. */
 static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct wave *wave, struct error *error) {
-    const struct cuda_calls *calls = cuda->calls;
     double longest = 0;
     wave->living_count[0] = 0;
-    bool ok = call_ended(cuda, "upload", calls->upload(stream->wave, wave, sizeof *wave, stream->handle), error) &&
+    bool ok = CALL(cuda, error, upload, stream->wave, wave, sizeof *wave, stream->handle) &&
               launch(cuda, stream, KERNEL_BEGIN, wave->count, 0, error) &&
-              call_ended(cuda, "download", calls->download(wave, stream->wave, sizeof *wave, stream->handle), error) &&
+              CALL(cuda, error, download, wave, stream->wave, sizeof *wave, stream->handle) &&
               CALL(cuda, error, stream_wait, stream->handle);
     for (uint32_t turn = 0; ok && wave->living_count[turn % 2] > 0; turn++) {
         const uint32_t count = wave->living_count[turn % 2];
@@ -226,7 +225,7 @@ static bool run_wave(struct cuda *cuda, const struct card_stream *stream, struct
         ok = launch(cuda, stream, KERNEL_EXTEND, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADE, count, turn, error) &&
              launch(cuda, stream, KERNEL_SHADOW, count, turn, error) &&
-             call_ended(cuda, "download", calls->download(wave, stream->wave, sizeof *wave, stream->handle), error) &&
+             CALL(cuda, error, download, wave, stream->wave, sizeof *wave, stream->handle) &&
              CALL(cuda, error, stream_wait, stream->handle);
         const double seconds = clock_now() - start;
         longest = seconds > longest ? seconds : longest;
@@ -245,7 +244,6 @@ static bool run_order(struct cuda *cuda, struct card_stream *stream, const struc
                       struct path_pixel *pixels, struct path_counts *counts, struct error *error) {
     const uint64_t paths = path_order_paths(order);
     const size_t size = (size_t)path_order_pixels(order) * sizeof *pixels;
-    const struct cuda_calls *calls = cuda->calls;
     if (!CALL(cuda, error, context_use, cuda->context) || !fill_stream(cuda, stream, error))
         return false;
     /* Addresses on the card have the size of those here. */
@@ -255,7 +253,7 @@ static bool run_order(struct cuda *cuda, struct card_stream *stream, const struc
                         .states = (char *)(uintptr_t)stream->states,
                         .state_size = path_wave_state_size(cuda->scene),
                         .living = {(uint32_t *)(uintptr_t)stream->living[0], (uint32_t *)(uintptr_t)stream->living[1]}};
-    bool ok = call_ended(cuda, "upload", calls->upload(stream->pixels, pixels, size, stream->handle), error) &&
+    bool ok = CALL(cuda, error, upload, stream->pixels, pixels, size, stream->handle) &&
               launch(cuda, stream, KERNEL_LANES, cuda->lanes, 0, error);
     for (; ok && wave.first < paths; wave.first += wave.count) {
         uint32_t limit = atomic_load(&cuda->limit);
@@ -264,9 +262,9 @@ static bool run_order(struct cuda *cuda, struct card_stream *stream, const struc
         ok = run_wave(cuda, stream, &wave, error);
     }
     ok = ok && launch(cuda, stream, KERNEL_FINISH, 1, cuda->lanes, error) &&
-         call_ended(cuda, "download", calls->download(&wave, stream->wave, sizeof wave, stream->handle), error) &&
+         CALL(cuda, error, download, &wave, stream->wave, sizeof wave, stream->handle) &&
          CALL(cuda, error, stream_wait, stream->handle) &&
-         call_ended(cuda, "download", calls->download(pixels, stream->pixels, size, stream->handle), error) &&
+         CALL(cuda, error, download, pixels, stream->pixels, size, stream->handle) &&
          CALL(cuda, error, stream_wait, stream->handle);
     if (ok && wave.met_fault)
         wave_leave_pixels(order, pixels);

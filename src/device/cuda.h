@@ -21,7 +21,5 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
 struct path_device cuda_device(struct cuda *cuda);
 /* Why the card makes no more orders; NULL: it does. */
 const char *cuda_lost(struct cuda *cuda);
-/* In words: the card, its driver. */
-const char *cuda_name(const struct cuda *cuda);
 
 #endif

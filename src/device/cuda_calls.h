@@ -18,9 +18,9 @@
     X(context_create, "cuCtxCreate_v2", (void **context, unsigned flags, int device))                                  \
     X(context_destroy, "cuCtxDestroy_v2", (void *context))                                                             \
     X(context_use, "cuCtxSetCurrent", (void *context))                                                                 \
+    X(context_limit, "cuCtxSetLimit", (int limit, size_t value))                                                       \
     X(memory, "cuMemGetInfo_v2", (size_t * idle, size_t * all))                                                        \
     X(take, "cuMemAlloc_v2", (uint64_t * address, size_t size))                                                        \
-    X(release, "cuMemFree_v2", (uint64_t address))                                                                     \
     X(upload, "cuMemcpyHtoDAsync_v2", (uint64_t to, const void *from, size_t size, void *stream))                      \
     X(download, "cuMemcpyDtoHAsync_v2", (void *to, uint64_t from, size_t size, void *stream))                          \
     X(module_load, "cuModuleLoadData", (void **module, const void *image))                                             \
@@ -39,6 +39,7 @@ struct cuda_calls {
 };
 
 enum { CUDA_PROCESSORS = 16, CUDA_MAJOR = 75, CUDA_MINOR = 76 }; /* attributes of a card */
+enum { CUDA_STACK = 0 };                                         /* limit: bytes of a thread */
 
 /* Loads libcuda.so.1; it stays loaded. Errors: no library, or an older one. */
 bool cuda_calls_load(struct cuda_calls *calls, struct error *error);

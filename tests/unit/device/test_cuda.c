@@ -92,6 +92,10 @@ static int play_destroy(void *context) {
     CHECK(context == &card);
     return 0;
 }
+static int play_limit(int limit, size_t value) {
+    CHECK(limit == CUDA_STACK && value >= 65536);
+    return answer();
+}
 static int play_memory(size_t *idle, size_t *all) {
     *idle = card.idle;
     *all = 2 * card.idle;
@@ -108,9 +112,6 @@ static int play_take(uint64_t *address, size_t size) {
     (void)pthread_mutex_unlock(&card.mutex);
     *address = (uint64_t)(uintptr_t)memory;
     return status;
-}
-static int play_release(uint64_t address) {
-    return (void)address, answer();
 }
 static int play_upload(uint64_t to, const void *from, size_t size, void *stream) {
     int status = answer();
@@ -204,9 +205,9 @@ static int play_text(int error, const char **text) {
     return 0;
 }
 
-static const struct cuda_calls played = {play_init,    play_version, play_device,   play_name,   play_attribute,
-                                         play_context, play_destroy, play_use,      play_memory, play_take,
-                                         play_release, play_upload,  play_download, play_load,   play_function,
+static const struct cuda_calls played = {play_init,    play_version, play_device,   play_name,  play_attribute,
+                                         play_context, play_destroy, play_use,      play_limit, play_memory,
+                                         play_take,    play_upload,  play_download, play_load,  play_function,
                                          play_stream,  play_wait,    play_launch,   play_text};
 
 /* --- pictures --- */
@@ -325,8 +326,7 @@ TEST(a_card_with_other_bits_or_too_little_memory_or_too_old_is_refused_with_the_
     reset_card();
     card.is_wrong = true;
     check_picture(&s, floats, size, reason, sizeof reason);
-    CHECK_TEXT(reason,
-                 "the card cannot be used: samples of played card (capability 9.0, driver 12.4) have other bits");
+    CHECK_TEXT(reason, "the card cannot be used: samples of played card (capability 9.0, driver 12.4) have other bits");
     reset_card();
     card.idle = 3 << 20;
     check_picture(&s, floats, size, reason, sizeof reason);
