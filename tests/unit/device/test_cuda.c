@@ -38,7 +38,8 @@ static struct {
 static void reset_card(void) {
     for (int i = 0; i < card.block_count; i++)
         (void)munmap(card.blocks[i].memory, card.blocks[i].size);
-    card.block_count = card.calls = 0;
+    card.block_count = 0;
+    card.calls = 0;
     card.idle = 40 << 20;
     card.capability = 9;
     card.until_error = -1;
