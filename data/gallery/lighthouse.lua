@@ -1,6 +1,6 @@
 -- TITLE: The lighthouse
 -- OPTIONS: --size 300x375 --spp 4
--- LARGE: --spp 48
+-- LARGE: --spp 96
 -- Fog over a rock in the sea, at dusk: the lens of the lamp sends two beams into it, and the windows of the keeper glow. The fog
 -- is a medium that ends above the lamp, and all light in it is scattered light.
 local random = require 'random'
