@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* The render process writes the order (TAKEN) and asks for it (ASKED); a thread of the device makes it (WORKED, MADE);
- * the render process reads it (TAKEN) and frees the slot. LEFT: the render has stopped, and nobody reads the result. */
+ * the render process reads the records (TAKEN) and frees the slot. LEFT: the render has stopped before that. */
 enum slot_state { SLOT_FREE, SLOT_TAKEN, SLOT_ASKED, SLOT_WORKED, SLOT_MADE, SLOT_LEFT };
 
 struct slot {

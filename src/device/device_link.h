@@ -10,7 +10,7 @@
 struct device_link;
 /* Bytes for so many orders at a time; they are zero at the start. */
 size_t device_link_size(uint32_t slots);
-/* From here on nobody waits for the device process. From any process. */
+/* After this call, nobody waits for the device process. Each of the processes may call it. */
 void device_link_close(struct device_link *link);
 
 /* The device process: opens the bundle of a scene and makes orders until the link is closed, with a thread for each

@@ -392,7 +392,7 @@ static bool confine_calls(bool writing, bool landlock, bool card) {
 #endif
 
 /* Closes all descriptors inherited from the parent process, except the standard streams and the channel. */
-static void close_others(int keep) {
+void confine_descriptors(int keep) {
 #ifdef SYS_close_range
     if (keep > 3)
         (void)syscall(SYS_close_range, 3u, (unsigned)keep - 1u, 0);
@@ -402,18 +402,23 @@ static void close_others(int keep) {
 #endif
 }
 
-bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
-                        struct error *error) {
+struct confinement {
+    const struct options *options;
+    long landlock_max;
+    bool card; /* the process serves one */
+};
+
+static bool confine(const struct confinement *confinement, char *report, size_t size, struct error *error) {
+    const struct options *options = confinement->options;
     struct path_policy path_policy = {0};
     bool ok = true;
-    close_others(keep);
     /* Data that the C library reads only once must be read before: the time zone. */
     tzset();
     for (int i = 0; ok && i < options->script_count; i++)
         ok = script_path_policy(options->scripts[i], &options->script, &path_policy, error);
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be dropped: %s", strerror(errno)));
-    long landlock = ok ? confine_files(options, &path_policy, landlock_max, error) : -1;
+    long landlock = ok ? confine_files(options, &path_policy, confinement->landlock_max, error) : -1;
     /* The report lists first what is missing, then what is active. */
     char missing[256] = "", files[64] = "checks of file names";
     const char *calls = ", seccomp";
@@ -423,8 +428,8 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
         (void)snprintf(missing, sizeof missing, "no Landlock in this kernel (%s)", strerror(errno));
     if (landlock >= 0 && SANITIZED) {
         calls = ", no seccomp filter in a build with sanitizers";
-    } else if (landlock >= 0 && !confine_calls(options->script.allow_write_count > 0, landlock > 0,
-                                               options->device == DEVICE_GPU || options->device == DEVICE_AUTO)) {
+    } else if (landlock >= 0 &&
+               !confine_calls(options->script.allow_write_count > 0, landlock > 0, confinement->card)) {
         size_t length = strlen(missing);
         (void)snprintf(missing + length, sizeof missing - length, "%sno seccomp filter (%s)", length > 0 ? ", " : "",
                        strerror(errno));
@@ -442,6 +447,17 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
     return landlock >= 0;
 }
 
+bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
+                        struct error *error) {
+    confine_descriptors(keep);
+    return confine(&(struct confinement){options, landlock_max, false}, report, size, error);
+}
+
 bool confine_process(const struct options *options, int keep, char *report, size_t size, struct error *error) {
     return confine_process_as(options, keep, LONG_MAX, report, size, error);
+}
+
+bool confine_device(bool card, char *report, size_t size, struct error *error) {
+    static const struct options nothing;
+    return confine(&(struct confinement){&nothing, LONG_MAX, card}, report, size, error);
 }

@@ -18,5 +18,9 @@ bool confine_process(const struct options *options, int keep, char *report, size
 /* The same as on a kernel whose Landlock has at most that version; 0: none. */
 bool confine_process_as(const struct options *options, int keep, long landlock_max, char *report, size_t size,
                         struct error *error);
+/* Closes all descriptors but the standard streams and `keep`, as both of these do. */
+void confine_descriptors(int keep);
+/* A process that reads no file at all; card: it serves one, and keeps what its driver has opened. */
+bool confine_device(bool card, char *report, size_t size, struct error *error);
 
 #endif

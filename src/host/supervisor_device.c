@@ -32,7 +32,7 @@ static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, struct e
 /* After the fork. The process needs two pieces of memory and its threads, or the files of a driver that are open:
  * everything else is taken away before it looks at the scene, which a render process has written. */
 static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent, uint32_t slots) {
-    const struct options nothing = {.device = supervisor->options->device};
+    const bool is_card = supervisor->options->device != DEVICE_EMULATE;
     struct cuda_calls calls;
     struct cuda *cuda = NULL;
     struct share link = {0};
@@ -44,10 +44,12 @@ static _Noreturn void run_as_device(struct supervisor *supervisor, pid_t parent,
     supervisor_begin_child(supervisor, parent);
     (void)file_null_input();
     void *bytes = share_map_copy(scene, &size, &error);
-    bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error) &&
-              (nothing.device == DEVICE_EMULATE || (cuda = open_card(&calls, slots, &error)) != NULL) &&
-              (!is_confined || confine_process(&nothing, STDERR_FILENO, report, sizeof report, &error)) &&
-              device_link_serve(link.block, cuda, bytes, size, slots, &error);
+    bool ok = bytes && share_attach(&link, orders, device_link_size(slots), &error);
+    if (is_confined)
+        confine_descriptors(STDERR_FILENO);
+    ok = ok && (!is_card || (cuda = open_card(&calls, slots, &error)) != NULL) &&
+         (!is_confined || confine_device(is_card, report, sizeof report, &error)) &&
+         device_link_serve(link.block, cuda, bytes, size, slots, &error);
     if (!ok && link.block)
         device_link_refuse(link.block, error.text);
     _exit(ok ? 0 : (int)error.kind);

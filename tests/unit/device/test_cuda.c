@@ -275,12 +275,13 @@ static void check_picture(struct stage *s, const float *floats, size_t size, cha
     emulation_destroy(service.emulation);
 }
 
-/* The bytes that threads give. */
+/* The bytes that threads give. A new card is there afterwards. */
 static float *film_of_threads(struct stage *s, size_t *size) {
     CHECK(stage_render(s, WIDTH, HEIGHT));
     *size = (size_t)WIDTH * HEIGHT * s->film.record.floats * sizeof(float);
     float *floats = mem_alloc(*size);
     memcpy(floats, s->film.floats, *size);
+    reset_card();
     return floats;
 }
 
@@ -290,7 +291,6 @@ TEST(a_card_gives_the_bytes_of_threads) {
     char reason[256];
     begin_scene(&s);
     float *floats = film_of_threads(&s, &size);
-    reset_card();
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK(reason[0] == '\0');
     mem_free(floats);
@@ -304,7 +304,6 @@ TEST(a_card_that_fails_at_any_call_changes_no_byte) {
     begin_scene(&s);
     s.settings.path_samples = 1;
     float *floats = film_of_threads(&s, &size);
-    reset_card();
     check_picture(&s, floats, size, reason, sizeof reason);
     const int calls = card.calls;
     for (int i = 0; i < calls; i += i < 60 ? 1 : 23) {
@@ -324,7 +323,6 @@ TEST(a_card_with_other_bits_or_too_little_memory_or_too_old_is_refused_with_the_
     begin_scene(&s);
     s.settings.path_samples = 1;
     float *floats = film_of_threads(&s, &size);
-    reset_card();
     card.is_wrong = true;
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK_TEXT(reason, "the card cannot be used: samples of played card (capability 9.0, driver 12.4) have other bits");
