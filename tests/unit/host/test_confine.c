@@ -48,7 +48,8 @@ enum { GARBAGE = sizeof garbage / sizeof *garbage };
 static void check_confined(int (*deed)(void), bool writing) {
     static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
     const char *folders[] = {test_folder()};
-    struct options options = {.scripts = scripts, .script_count = 1};
+    /* A card gives rights to the device process alone. */
+    struct options options = {.scripts = scripts, .script_count = 1, .device = DEVICE_GPU};
     options.script.allow_write = folders;
     options.script.allow_write_count = writing ? 1 : 0;
     (void)fflush(stdout);
@@ -315,4 +316,32 @@ TEST(hostile_without_a_process_of_its_own_a_scene_is_one_warning) {
     check_said("--no-fork scene.lua",
                "gray: warning: --no-fork: no Landlock, no seccomp filter: confined by checks of file names\n");
     check_said("--no-fork -q scene.lua", "");
+}
+
+static int serve_device(bool card) {
+    char report[4096];
+    struct error error;
+    int ends[2], waiting, failed = 0;
+    TRY(pipe(ends) == 0);
+    TRY(confine_device(card, report, sizeof report, &error));
+    if (!strstr(report, "seccomp;"))
+        return NO_FILTER;
+    TRY(card ? ioctl(ends[0], FIONREAD, &waiting) == 0 : refused(ioctl(ends[0], FIONREAD, &waiting)));
+    TRY(open("/dev/null", O_RDONLY) < 0);
+    TRY(open("tests/hostile/time_loop.lua", O_RDONLY) < 0);
+    return failed;
+}
+
+TEST(hostile_only_a_device_process_with_a_card_calls_ioctl_and_none_opens_a_file) {
+    for (int card = 0; card < 2; card++) {
+        (void)fflush(stdout);
+        pid_t child = fork();
+        if (child == 0)
+            _exit(serve_device(card != 0));
+        int how = 0;
+        CHECK(waitpid(child, &how, 0) == child);
+        if (WIFEXITED(how) && WEXITSTATUS(how) == NO_FILTER)
+            test_skip("no seccomp filter in this build or kernel");
+        CHECK(WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    }
 }
