@@ -11,6 +11,7 @@
 #   arm, test-arm  build/arm/gray for 64-bit ARM, from another machine; its pictures under qemu against the recorded ones
 #   musl, test-musl  build/musl/gray with the C library musl, linked statically; its pictures
 #   gpu            the kernels for graphics cards (clang, LLVM 14 or newer), beside the program
+#   test-gpu       pictures by a graphics card against those of the processor
 #   scan-device    compiles what a ray touches for graphics cards, without one, and checks its operations
 #   bench          the benchmarks                  install     into PREFIX, below DESTDIR
 #   clean          removes all that make has built  uninstall   removes what install has written there
@@ -256,6 +257,13 @@ test check:
 test-fast: check-libraries
 	@$(MAKE) -s $(JOBS) $(BUILD)/tests/run
 	@$(BUILD)/tests/run --fast -j $(shell nproc 2>/dev/null || echo 2)
+# What needs a card; without one, a line says why nothing was tested.
+test-gpu: gpu build-tests
+	@if problem=$$($(BUILD)/gray --device gpu -q --integrator path --size 16x12 --spp 1 -o /dev/null docs/first.lua 2>&1); then \
+		GRAY_TEST_DEVICE=gpu $(BUILD)/tests/run --long device_process threads_in_every parts_frames_and_resumed a_fault_of_a_function; \
+	else \
+		echo "test-gpu: nothing was tested: $$(echo "$$problem" | head -n 1)"; \
+	fi
 test-long:
 	@tools/test.sh --long $(ONLY)
 coverage:
@@ -357,5 +365,5 @@ else
 endif
 
 force:
-.PHONY: arm musl test-arm test-musl scan-device gpu all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
+.PHONY: arm musl test-arm test-musl scan-device gpu all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long test-gpu coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)
