@@ -6,7 +6,9 @@
 #                                 nearest, none is fused, approximate or flushes denormals, minima and maxima keep the
 #                                 sign of zero, and frames of functions that every ray passes are small
 #   tools/device_scan.sh digest   prints the digest of what the kernels are made from
-# With KERNELS=FILE it writes the PTX there, behind a line with that digest.
+# With KERNELS=FILE it writes the kernels there: a line with that digest, then of each kernel a line with its name and its
+# bytes, and a module of its own: PTX, or with ptxas and fatbinary of CUDA also the code of the cards in CARDS (numbers of
+# capabilities, default "75 80 90 100 120"; those that ptxas does not know are left out).
 # Needs clang and the tools of its LLVM (14 or newer); without them it says so, with status 0. Writes into build/device.
 cd "$(dirname "$0")/.." || exit 1
 out=${BUILD:-build}/device list=src/device/sources.list
@@ -79,16 +81,21 @@ END {
     }
     print "!nvvm.annotations = !{" list "}"
 }' >notes.ll
-llvm-link"$suffix" reached.bc notes.ll -o noted.bc &&
-    opt"$suffix" -O3 -inline-threshold=225 -vectorize-loops=false -vectorize-slp=false noted.bc -o fast.bc 2>opt.txt &&
-    llc"$suffix" -O3 -mcpu=sm_70 fast.bc -o kernels.ptx || exit 1
+llvm-link"$suffix" reached.bc notes.ll -o noted.bc || exit 1
+# One module for each kernel, with what it needs: small modules are compiled quickly, and fit the caches of a card.
+rm -f kernel_*.ptx kernel_*.cubin
+echo "$roots" | tr ',' '\n' | suffix=$suffix xargs -P "$(nproc)" -n 1 sh -c '
+    opt"$suffix" -internalize -internalize-public-api-list="$1" -globaldce noted.bc -o "$1.bc" &&
+        opt"$suffix" -O3 -inline-threshold=45 -vectorize-loops=false -vectorize-slp=false "$1.bc" -o "$1.fast.bc" 2>"$1.txt" &&
+        llc"$suffix" -O3 -mcpu=sm_70 "$1.fast.bc" -o "$1.ptx" || exit 255
+' sh || exit 1
 for name in $(echo "$roots" | tr ',' ' '); do
-    grep -q "[.]entry $name(" kernels.ptx || { echo "device_scan.sh: $name is no kernel of kernels.ptx" >&2; exit 1; }
+    grep -q "[.]entry $name(" "$name.ptx" || { echo "device_scan.sh: $name is no kernel of $name.ptx" >&2; exit 1; }
 done
 # Frames of the functions that every ray passes; those of expressions are larger until they have another memory there.
 awk -v frame=8192 '
 function complain(what) {
-    print "device_scan.sh: kernels.ptx:" NR ": " what ": " $0 >"/dev/stderr"
+    print "device_scan.sh: " FILENAME ":" FNR ": " what ": " $0 >"/dev/stderr"
     bad = 1
 }
 /^[ \t]*\/\// { next }
@@ -128,6 +135,32 @@ END {
     if (!bad)
         print rounded " operations are rounded to nearest"
     exit bad
-}' kernels.ptx || exit 1
+}' $(echo "$roots" | sed 's/,/.ptx /g; s/$/.ptx/') || exit 1
 [ -n "${KERNELS:-}" ] || exit 0
-{ echo "gray kernels $digest" && cat kernels.ptx; } >"$KERNELS.new" && mv "$KERNELS.new" "$KERNELS" && echo "$KERNELS"
+
+# Code for cards; -Ofc min: seconds in place of minutes, and kernels that are hardly slower.
+cards=
+if command -v ptxas >/dev/null && command -v fatbinary >/dev/null; then
+    for card in ${CARDS:-75 80 90 100 120}; do
+        ptxas -arch="sm_$card" -Ofc min kernel_finish.ptx -o kernel_finish.cubin 2>/dev/null && cards="$cards $card"
+    done
+fi
+for card in $cards; do
+    echo "$roots" | tr ',' '\n' | sed "s/\$/ $card/"
+done | xargs -P "$(nproc)" -n 2 sh -c 'ptxas -arch="sm_$2" -Ofc min "$1.ptx" -o "$1.$2.cubin" 2>"$1.txt" || { cat "$1.txt" >&2; exit 255; }' sh || exit 1
+for name in $(echo "$roots" | tr ',' ' '); do
+    images=$(for card in $cards; do echo "--image3=kind=elf,sm=$card,file=$name.$card.cubin"; done)
+    # shellcheck disable=SC2086
+    if [ -n "$cards" ]; then
+        fatbinary --64 --compress-all --create="$name.module" --image3="kind=ptx,sm=70,file=$name.ptx" $images || exit 1
+    else
+        cp "$name.ptx" "$name.module" && printf '\0' >>"$name.module" || exit 1
+    fi
+done
+{
+    echo "gray kernels $digest"
+    for name in $(echo "$roots" | tr ',' ' '); do
+        echo "$name $(wc -c <"$name.module")"
+        cat "$name.module"
+    done
+} >"$KERNELS.new" && mv "$KERNELS.new" "$KERNELS" && echo "$KERNELS: $(($(wc -c <"$KERNELS") / 1000000)) MB, code of cards:${cards:- none}"

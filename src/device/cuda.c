@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "device/kernels_file.h"
 #include "device/wave_internal.h"
 #include "film/film.h"
 
@@ -36,8 +37,9 @@ struct card_stream {
 
 struct cuda {
     const struct cuda_calls *calls;
-    void *context, *module, *kernels[KERNEL_COUNT];
+    void *context, *kernels[KERNEL_COUNT];
     char name[256];
+    double begun;
     int processors;
     uint32_t slots;
     struct card_stream *streams; /* slots */
@@ -46,7 +48,9 @@ struct cuda {
     uint64_t scene_on_card, scene_block;
     uint32_t crossings, room, lanes; /* paths and lanes of a stream */
     _Atomic uint32_t limit;          /* paths of a wave, by the measured time of launches */
-    pthread_mutex_t mutex;           /* of the reason */
+    _Atomic uint64_t launches;
+    struct device_statistics statistics; /* but for these */
+    pthread_mutex_t mutex;               /* of the reason */
     _Atomic bool is_lost;
     char reason[256];
 };
@@ -84,15 +88,26 @@ static bool find_card(struct cuda *cuda, struct error *error) {
            CALL(cuda, error, context_limit, CUDA_STACK, STACK_BYTES);
 }
 
-static bool load_kernels(struct cuda *cuda, const char *image, struct error *error) {
+static bool load_kernels(struct cuda *cuda, const struct file_bytes *kernels, struct error *error) {
     static const char *const names[] = {KERNELS(KERNEL_NAME)};
-    bool ok = CALL(cuda, error, module_load, &cuda->module, image);
-    for (int i = 0; ok && i < KERNEL_COUNT; i++)
-        ok = CALL(cuda, error, module_function, &cuda->kernels[i], cuda->module, names[i]);
+    const double begun = clock_now();
+    bool ok = true;
+    for (int i = 0; ok && i < KERNEL_COUNT; i++) {
+        void *module = NULL;
+        const void *image = kernels_file_find(kernels, names[i]);
+        if (!image)
+            return error_set(error, ERROR_MACHINE,
+                             "the kernels for a card are not complete: there is no %s; make gpu writes them again",
+                             names[i]);
+        ok = CALL(cuda, error, module_load, &module, image) &&
+             CALL(cuda, error, module_function, &cuda->kernels[i], module, names[i]);
+    }
+    cuda->statistics.kernels_seconds = clock_now() - begun;
     return ok;
 }
 
-struct cuda *cuda_create(const struct cuda_calls *calls, const char *image, uint32_t slots, struct error *error) {
+struct cuda *cuda_create(const struct cuda_calls *calls, const struct file_bytes *kernels, uint32_t slots,
+                         struct error *error) {
     struct cuda *cuda = mem_alloc_zero(1, sizeof *cuda);
     struct card_stream *streams = cuda ? mem_alloc_zero(slots, sizeof *streams) : NULL;
     if (!streams) {
@@ -102,7 +117,8 @@ struct cuda *cuda_create(const struct cuda_calls *calls, const char *image, uint
     }
     *cuda = (struct cuda){.calls = calls, .slots = slots, .streams = streams, .limit = FIRST_WAVE};
     (void)pthread_mutex_init(&cuda->mutex, NULL);
-    if (find_card(cuda, error) && load_kernels(cuda, image, error))
+    cuda->begun = clock_now();
+    if (find_card(cuda, error) && load_kernels(cuda, kernels, error))
         return cuda;
     cuda_destroy(cuda);
     return NULL;
@@ -143,12 +159,19 @@ static bool divide_memory(struct cuda *cuda, size_t idle, struct error *error) {
     return true;
 }
 
+/* Of a stream that has made an order. */
+static uint64_t stream_bytes(const struct cuda *cuda) {
+    return cuda->room * (path_wave_state_size(cuda->scene) + 2 * sizeof(uint32_t)) +
+           cuda->lanes * path_lane_size(cuda->crossings) + FILM_TILE * FILM_TILE * sizeof(struct path_pixel) +
+           sizeof(struct wave);
+}
+
 /* Whether the card gives a few samples the bits that this processor gives them. */
 static bool try_samples(struct cuda *cuda, const struct path_device *here, struct error *error) {
     enum { PIXELS = 64 };
     struct path_pixel pixels[2][PIXELS];
     struct path_counts counts = {0};
-    const struct path_order order = path_scene_trial(cuda->scene);
+    const struct path_order order = path_scene_trial(cuda->scene, 8, 2);
     const struct path_device card = cuda_device(cuda);
     memset(pixels, 0, sizeof pixels);
     if (path_order_pixels(&order) > PIXELS || !here->make(here->context, &order, pixels[0], &counts) ||
@@ -162,6 +185,27 @@ static bool try_samples(struct cuda *cuda, const struct path_device *here, struc
     return true;
 }
 
+/* Samples a second: orders of a tile, each with four times as many, until .1 s are over. */
+static bool measure(struct cuda *cuda, struct error *error) {
+    static const double seconds = 0.1;
+    struct path_pixel *pixels = mem_alloc_zero(FILM_TILE * FILM_TILE, sizeof *pixels);
+    const struct path_device card = cuda_device(cuda);
+    const double end = clock_now() + seconds;
+    if (!pixels)
+        return error_no_memory(error, "a card");
+    for (uint32_t samples = 1; clock_now() < end && samples <= 256 && !cuda_lost(cuda); samples *= 4) {
+        const struct path_order order = path_scene_trial(cuda->scene, FILM_TILE, samples);
+        struct path_counts counts = {0};
+        memset(pixels, 0, FILM_TILE * FILM_TILE * sizeof *pixels);
+        const double begun = clock_now();
+        (void)card.make(card.context, &order, pixels, &counts);
+        cuda->statistics.rate = (double)path_order_paths(&order) / (clock_now() - begun + 1e-9);
+    }
+    mem_free(pixels);
+    const char *reason = cuda_lost(cuda);
+    return !reason || error_set(error, ERROR_MACHINE, "%s", reason);
+}
+
 bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct path_scene *scene,
                      const struct path_device *here, struct error *error) {
     size_t idle = 0, all = 0;
@@ -173,8 +217,22 @@ bool cuda_open_scene(struct cuda *cuda, void *bytes, size_t size, const struct p
     if (!root)
         return false;
     cuda->scene_on_card = cuda->scene_block + (uint64_t)(root - (const char *)bytes);
-    return CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) && CALL(cuda, error, stream_wait, NULL) &&
-           CALL(cuda, error, memory, &idle, &all) && divide_memory(cuda, idle, error) && try_samples(cuda, here, error);
+    if (!CALL(cuda, error, upload, cuda->scene_block, bytes, size, NULL) || !CALL(cuda, error, stream_wait, NULL) ||
+        !CALL(cuda, error, memory, &idle, &all) || !divide_memory(cuda, idle, error) ||
+        !try_samples(cuda, here, error) || !measure(cuda, error))
+        return false;
+    struct device_statistics *statistics = &cuda->statistics;
+    (void)snprintf(statistics->name, sizeof statistics->name, "%.*s", (int)sizeof statistics->name - 1, cuda->name);
+    statistics->start_seconds = clock_now() - cuda->begun;
+    statistics->lanes = cuda->lanes;
+    statistics->bytes = size + cuda->slots * stream_bytes(cuda);
+    return true;
+}
+
+struct device_statistics cuda_statistics(struct cuda *cuda) {
+    struct device_statistics statistics = cuda->statistics;
+    statistics.launches = atomic_load(&cuda->launches);
+    return statistics;
 }
 
 /* --- orders --- */
@@ -207,6 +265,7 @@ static bool launch(struct cuda *cuda, const struct card_stream *stream, enum ker
     void *arguments[] = {&first, &second, &cuda->crossings, &last};
     const uint64_t threads = items < cuda->lanes ? items : cuda->lanes;
     const unsigned blocks = (unsigned)((threads + THREADS - 1) / THREADS);
+    atomic_fetch_add(&cuda->launches, 1);
     return CALL(cuda, error, launch, cuda->kernels[kernel], blocks, 1, 1, THREADS, 1, 1, 0, stream->handle, arguments,
                 NULL);
 }
@@ -293,5 +352,5 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
 }
 
 struct path_device cuda_device(struct cuda *cuda) {
-    return (struct path_device){NULL, NULL, make, cuda};
+    return (struct path_device){.make = make, .context = cuda};
 }

@@ -26,6 +26,8 @@ struct device_link {
     _Atomic uint32_t was_ready;
     struct pool_event asked, answered;
     char reason[DEVICE_REASON];
+    struct device_statistics statistics; /* but for these: */
+    _Atomic uint64_t launches;
     struct slot slots[];
 };
 
@@ -51,11 +53,22 @@ void device_link_refuse(struct device_link *link, const char *why) {
     device_link_close(link);
 }
 
+static void make_printable(char *text, size_t size) {
+    text[size - 1] = '\0';
+    for (char *c = text; *c; c++)
+        *c = *c >= ' ' && *c != 0x7f ? *c : '.';
+}
+
 void device_link_reason(struct device_link *link, char out[DEVICE_REASON]) {
     memcpy(out, link->reason, DEVICE_REASON);
-    out[DEVICE_REASON - 1] = '\0';
-    for (char *c = out; *c; c++)
-        *c = *c >= ' ' && *c != 0x7f ? *c : '.';
+    make_printable(out, DEVICE_REASON);
+}
+
+struct device_statistics device_link_statistics(struct device_link *link) {
+    struct device_statistics statistics = link->statistics;
+    make_printable(statistics.name, sizeof statistics.name);
+    statistics.launches = atomic_load(&link->launches);
+    return statistics;
 }
 
 /* --- the device process --- */
@@ -83,6 +96,8 @@ static bool make_any(const struct service *service) {
         slot->counts = (struct path_counts){0};
         if (order_fits(&order))
             (void)service->device.make(service->device.context, &order, slot->pixels, &slot->counts);
+        if (service->cuda)
+            atomic_store(&service->link->launches, cuda_statistics(service->cuda).launches);
         if (!atomic_compare_exchange_strong(&slot->state, &worked, SLOT_MADE))
             atomic_store(&slot->state, SLOT_FREE);
         pool_signal(&service->link->answered);
@@ -127,6 +142,7 @@ bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene,
     if (ok) {
         struct service service = {link, slots, cuda, cuda ? cuda_device(cuda) : emulation_device(emulation)};
         uint32_t starts = LINK_STARTS;
+        link->statistics = cuda ? cuda_statistics(cuda) : (struct device_statistics){.name = "emulation"};
         atomic_store(&link->was_ready, 1);
         (void)atomic_compare_exchange_strong(&link->state, &starts, LINK_READY);
         pool_signal(&link->answered);

@@ -23,9 +23,10 @@ bool device_link_serve(struct device_link *link, struct cuda *cuda, void *scene,
 bool device_link_was_ready(struct device_link *link);
 /* Instead: it cannot begin, for this reason, or cannot go on. */
 void device_link_refuse(struct device_link *link, const char *why);
-/* The reason; "": none was given. Control characters are dots. */
+/* The reason; "": none was given. Control characters are dots, here and in names. */
 enum { DEVICE_REASON = 512 };
 void device_link_reason(struct device_link *link, char out[DEVICE_REASON]);
+struct device_statistics device_link_statistics(struct device_link *link);
 
 /* The render process. Owner: the caller. */
 struct device_client {

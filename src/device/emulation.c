@@ -101,5 +101,5 @@ static bool make(void *context, const struct path_order *order, struct path_pixe
 }
 
 struct path_device emulation_device(struct emulation *emulation) {
-    return (struct path_device){NULL, begin, make, emulation};
+    return (struct path_device){.begin = begin, .make = make, .context = emulation};
 }

@@ -5,6 +5,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Of a device process that makes samples. */
+struct device_statistics {
+    char name[128];         /* of the card; "": none made samples */
+    double kernels_seconds; /* to load or compile them */
+    double start_seconds;   /* from the driver to the last of the samples that try the card */
+    double rate;            /* samples a second in a trial */
+    uint64_t launches, lanes, bytes;
+};
+
 struct render_statistics {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
     uint64_t pixels, marked_pixels, samples;
@@ -20,6 +29,7 @@ struct render_statistics {
     double build_seconds, render_seconds, photon_seconds, photon_map_seconds;
     double idle_seconds; /* of all threads: no tile was left, and others still made theirs */
     double build_processor_seconds, render_processor_seconds; /* of all threads of the process */
+    struct device_statistics device; /* filled by the supervisor */
 };
 
 #endif

@@ -25,6 +25,31 @@ static bool begin_here(struct picture_device *device, struct bundle *scene, stru
     return here.begin(here.context, scene, error);
 }
 
+/* Of `auto`. */
+static const double shortest_work = 3; /* seconds of the threads */
+static bool is_worth(void *context, const struct path_estimate *threads) {
+    struct picture_device *device = context;
+    char reason[80];
+    device->threads = *threads;
+    if (threads->samples >= shortest_work * threads->rate)
+        return true;
+    (void)snprintf(reason, sizeof reason, "it needs about %.1f s", threads->samples / threads->rate);
+    (void)go_without(device, reason, NULL);
+    return false;
+}
+
+/* The card goes if its trial says that it is not quicker. */
+static void compare(struct picture_device *device) {
+    const double card = device_link_statistics(device->memory.block).rate, threads = device->threads.rate;
+    char reason[128];
+    if (card > threads)
+        return;
+    (void)snprintf(reason, sizeof reason, "it makes %.3f million samples a second, the card %.3f million (trials)",
+                   1e-6 * threads, 1e-6 * card);
+    (void)go_without(device, reason, NULL);
+    device_link_close(device->memory.block);
+}
+
 static bool begin(void *context, struct bundle *scene, struct error *error) {
     struct picture_device *device = context;
     const struct host_services *services = device->services;
@@ -34,7 +59,10 @@ static bool begin(void *context, struct bundle *scene, struct error *error) {
     if (!services->device(services->context, scene, slots, &device->memory, error))
         return false;
     device->client = (struct device_client){device->memory.block, device->pool, slots};
-    if (device_client_wait(&device->client) || device->kind == DEVICE_EMULATE || pool_cancelled(device->pool))
+    const bool is_ready = device_client_wait(&device->client);
+    if (is_ready && device->kind == DEVICE_AUTO)
+        compare(device);
+    if (is_ready || device->kind == DEVICE_EMULATE || pool_cancelled(device->pool))
         return true;
     char reason[DEVICE_REASON];
     device_link_reason(device->memory.block, reason);
@@ -61,7 +89,7 @@ static void leave(void *context, const char *what) {
 struct path_device picture_device_maker(struct picture_device *device, enum integrator_kind integrator) {
     if (integrator != INTEGRATOR_PATH)
         leave(device, "integrator but path");
-    return (struct path_device){leave, begin, make, device};
+    return (struct path_device){leave, device->kind == DEVICE_AUTO ? is_worth : NULL, begin, make, device};
 }
 
 void picture_device_end(struct picture_device *device) {

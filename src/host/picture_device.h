@@ -17,6 +17,7 @@ struct picture_device {
     struct emulation *emulation;
     struct share memory;
     struct device_client client;
+    struct path_estimate threads; /* with DEVICE_AUTO */
 };
 /* It may be used until picture_device_end. */
 struct path_device picture_device_maker(struct picture_device *device, enum integrator_kind integrator);

@@ -23,9 +23,11 @@ static struct cuda *open_card(struct cuda_calls *calls, uint32_t slots, struct e
     char name[4096 + sizeof "gray-kernels"] = "";
     char *slash = file_canonical("/proc/self/exe", name, 4096) ? strrchr(name, '/') : NULL;
     (void)strcpy(slash ? slash + 1 : name, "gray-kernels");
-    char *kernels = cuda_calls_load(calls, error) ? kernels_file_read(name, error) : NULL;
-    struct cuda *cuda = kernels ? cuda_create(calls, kernels, slots, error) : NULL;
-    mem_free(kernels);
+    struct file_bytes kernels;
+    if (!cuda_calls_load(calls, error) || !kernels_file_open(name, &kernels, error))
+        return NULL;
+    struct cuda *cuda = cuda_create(calls, &kernels, slots, error);
+    file_unmap(&kernels);
     return cuda;
 }
 
@@ -111,6 +113,11 @@ void supervisor_watch_device(struct supervisor *supervisor) {
     (void)strncat(line, "; the processor goes on, and the picture is the same", sizeof line - strlen(line) - 1);
     if (device_link_was_ready(device->link.block) || supervisor->options->device == DEVICE_EMULATE)
         supervisor_report(supervisor, LINE_WARNING, line);
+}
+
+struct device_statistics supervisor_device_statistics(const struct supervisor *supervisor) {
+    struct device_link *link = supervisor->device.link.block;
+    return link ? device_link_statistics(link) : (struct device_statistics){0};
 }
 
 void supervisor_end_device(struct supervisor *supervisor) {

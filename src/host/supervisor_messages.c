@@ -291,8 +291,10 @@ void supervisor_step_window(struct supervisor *supervisor) {
 
 static void answer_done(struct supervisor *supervisor, const struct message *message) {
     struct error error = {0};
+    struct picture_report report = message->body.report;
     viewer_detach(&supervisor->viewer);
-    bool ok = output_done(&supervisor->output, &message->body.report, &error);
+    report.rays.device = supervisor_device_statistics(supervisor);
+    bool ok = output_done(&supervisor->output, &report, &error);
     if (ok)
         settle(supervisor, supervisor->output.pictures);
     if (supervisor->finishing) { /* the tiles in progress were the last ones: the picture is complete */

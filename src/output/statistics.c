@@ -75,6 +75,20 @@ static void print_figures(FILE *stream, const struct picture_report *report,
         print(stream, &all[i]);
 }
 
+static void print_device_figures(FILE *stream, const struct device_statistics *device,
+                                 void (*print)(FILE *stream, const struct figure *figure)) {
+    const struct figure all[] = {
+        {"kernels_seconds", "its kernels", FIGURE_SECONDS, device->kernels_seconds, 0},
+        {"device_start_seconds", "its start", FIGURE_SECONDS, device->start_seconds, 0},
+        {"device_rate", "in a trial, a second", FIGURE_COUNT, 0, (uint64_t)(device->rate > 0 ? device->rate : 0)},
+        {"launches", "launches", FIGURE_COUNT, 0, device->launches},
+        {"lanes", "lanes of an order", FIGURE_COUNT, 0, device->lanes},
+        {"device_bytes", "its memory", FIGURE_BYTES, 0, device->bytes},
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        print(stream, &all[i]);
+}
+
 static void print_text(FILE *stream, const struct figure *figure) {
     switch (figure->form) {
     case FIGURE_COUNT:
@@ -106,6 +120,10 @@ void statistics_print_text(FILE *stream, const char *name, const struct picture_
     print_figures(stream, report, print_text);
     (void)fprintf(stream, "  %-20s %14" PRIu32 " x %" PRIu32 " x %" PRIu32 "\n", "voxels of the scene",
                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2]);
+    if (report->rays.device.name[0]) {
+        (void)fprintf(stream, "  %-20s %s\n", "device", report->rays.device.name);
+        print_device_figures(stream, &report->rays.device, print_text);
+    }
     if (report->rays.render_seconds > 0)
         (void)fprintf(stream, "  %-20s %14.0f\n", "rays per second",
                       (double)all_rays(&report->rays) / report->rays.render_seconds);
@@ -117,6 +135,11 @@ void statistics_print_json(FILE *stream, const char *name, const struct picture_
     text_print_json(stream, name);
     (void)fprintf(stream, ",\"width\":%" PRIu32 ",\"height\":%" PRIu32, request->width, request->height);
     print_figures(stream, report, print_json);
+    if (report->rays.device.name[0]) {
+        (void)fputs(",\"device\":", stream);
+        text_print_json(stream, report->rays.device.name);
+        print_device_figures(stream, &report->rays.device, print_json);
+    }
     (void)fprintf(stream, ",\"grid_cells\":[%" PRIu32 ",%" PRIu32 ",%" PRIu32 "]}\n", report->grid_cells[0],
                   report->grid_cells[1], report->grid_cells[2]);
     (void)fflush(stream);

@@ -2,6 +2,8 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
+#include "base/clock.h"
+#include "base/random.h"
 #include "math/elementary.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
@@ -164,6 +166,52 @@ static bool find_glow(struct path_tracer *tracer, const struct world *world, str
            glow_build(&tracer->glow, &world->media.all[first], world->local_media_count + 1, &tracer->arena, error);
 }
 
+/* --- devices --- */
+
+struct measurement {
+    const struct path_tracer *tracer;
+    struct renderer *renderer;
+    double end; /* seconds of the clock */
+    _Atomic uint64_t samples;
+};
+
+/* Samples of pixels all over the picture until the time is over; the counts of the worker stay. */
+static void try_samples(void *context, uint32_t item, int worker_index) {
+    struct measurement *measured = context;
+    struct renderer *renderer = measured->renderer;
+    const struct film *film = renderer->job->film;
+    struct worker *worker = &renderer->workers[worker_index];
+    struct batch *batch = &worker->batch;
+    const struct integrator_state state = worker->state;
+    const struct geom_scratch geom = worker->scratch.geom;
+    const uint64_t camera_rays = worker->camera_rays;
+    for (uint32_t k = 0; clock_now() < measured->end && !pool_cancelled(renderer->pool); k++) {
+        for (batch->count = 0; batch->count < PACKET_RAYS; batch->count++) {
+            const uint64_t number = random_mix((uint64_t)item << 40 | (uint64_t)k << 8 | batch->count);
+            const uint32_t x = film->x0 + (uint32_t)(number % film->width);
+            const uint32_t y = film->y0 + (uint32_t)(number / film->width % film->height);
+            batch->positions[batch->count] =
+                path_sample_position(measured->tracer, renderer->job, x, y, renderer->pass.begin);
+        }
+        renderer_sample_batch(renderer, worker);
+        atomic_fetch_add(&measured->samples, batch->count);
+    }
+    worker->state = state;
+    worker->camera_rays = camera_rays;
+    worker->scratch.geom.shape_tests = geom.shape_tests;
+    worker->scratch.geom.box_tests = geom.box_tests;
+    worker->scratch.geom.cost = geom.cost;
+}
+
+static struct path_estimate estimate(const struct path_tracer *tracer, struct renderer *renderer) {
+    static const double seconds = 0.1;
+    struct measurement measured = {tracer, renderer, clock_now() + seconds, 0};
+    const struct film *film = renderer->job->film;
+    (void)pool_run(renderer->pool, (uint32_t)pool_workers(renderer->pool), try_samples, &measured);
+    return (struct path_estimate){(double)film->width * (double)film->height * tracer->samples,
+                                  (double)atomic_load(&measured.samples) / seconds};
+}
+
 /* If the job has a device, and it can render the scene, workers give their samples to it. */
 static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
     const struct path_device *device = renderer->job->device;
@@ -172,6 +220,11 @@ static bool begin_device(struct path_tracer *tracer, struct renderer *renderer, 
         device->leave(device->context, lacks);
     if (!device || renderer->roams || lacks)
         return true;
+    if (device->is_worth) {
+        const struct path_estimate threads = estimate(tracer, renderer);
+        if (!device->is_worth(device->context, &threads))
+            return true;
+    }
     struct bundle *scene = path_scene_bundle(tracer, renderer);
     if (!scene)
         return error_no_memory(error, "the scene for a device");

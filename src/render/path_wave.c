@@ -202,11 +202,11 @@ static void bundle_scene(struct bundle *bundle, void *path_scene) {
     BUNDLE(bundle, scene->renderer.job, 1, NULL); /* the root */
 }
 
-struct path_order path_scene_trial(const struct path_scene *scene) {
-    enum { SIDE = 8 };
+struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side, uint32_t samples) {
     const uint32_t width = scene->job.width, height = scene->job.height;
-    const uint32_t x = width > SIDE ? (width - SIDE) / 2 : 0, y = height > SIDE ? (height - SIDE) / 2 : 0;
-    return (struct path_order){x, y, x + (width < SIDE ? width : SIDE), y + (height < SIDE ? height : SIDE), 0, 2};
+    const uint32_t x = width > side ? (width - side) / 2 : 0, y = height > side ? (height - side) / 2 : 0;
+    return (struct path_order){x, y,      x + (width < side ? width : side), y + (height < side ? height : side),
+                               0, samples};
 }
 
 struct bundle *path_scene_bundle(const struct path_tracer *tracer, const struct renderer *renderer) {

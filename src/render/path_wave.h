@@ -51,16 +51,23 @@ bool path_wave_shadow(const struct path_scene *scene, struct path_lane *lane, st
 bool path_wave_add(const struct path_scene *scene, struct path_lane *lane, struct path_wave_state *state,
                    struct path_pixel *pixel);
 
-/* Two samples of a few pixels in the middle of the picture. */
-struct path_order path_scene_trial(const struct path_scene *scene);
+/* So many samples of pixels in the middle of the picture, in a square with at most that side. */
+struct path_order path_scene_trial(const struct path_scene *scene, uint32_t side, uint32_t samples);
 
 /* Whether a function of a texture was NaN or a density above its bound: a thread has to note where. */
 bool path_scene_met_fault(const struct path_scene *scene);
+
+/* The samples of the picture, and how many all threads make in a second: 0, not tried. */
+struct path_estimate {
+    double samples, rate;
+};
 
 /* Who makes the samples of rectangles in place of the threads of the render. */
 struct path_device {
     /* Or NULL; in place of `begin`: the scene has something that devices do not have, in words. */
     void (*leave)(void *context, const char *what);
+    /* Or NULL; before `begin`, with the estimate of a trial. False: threads make the picture. */
+    bool (*is_worth)(void *context, const struct path_estimate *threads);
     /* Before the first order. Errors end the render. */
     bool (*begin)(void *context, struct bundle *scene, struct error *error);
     /* pixels: row by row; where one has not all samples of the order afterwards, the thread makes them. Adds to

@@ -63,7 +63,8 @@ static const struct setting options_table[] = {
      0, 0, "cpu",
      "Who makes the samples of integrator path; gpu: a graphics card of NVIDIA beside the processor, or an error; "
      "auto: the "
-     "card, if there is one; emulate: a process of its own, in waves, as a card would; the picture is the same."},
+     "card, if more than 3 s of work are left to it and a trial says that it is quicker; emulate: a process of its "
+     "own, in waves, as a card would; the picture is the same."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-o", "FILE", "", NULL, FIELD(output), 0, 0, 0, "the script's",
      "Name of the picture:" PICTURE_FORMATS_HELP "; '-' is standard output; for several "
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "

@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "device/cuda.h"
 #include "device/emulation.h"
+#include "device/kernels_file.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -33,7 +34,14 @@ static struct {
     int until_error; /* calls; below 0: none */
     _Atomic int calls;
     bool is_wrong; /* in a bit of what it adds */
+    struct file_bytes kernels;
 } card = {.mutex = PTHREAD_MUTEX_INITIALIZER};
+
+/* What a file of kernels has. */
+#define PLAYED_MODULE(kernel) kernel " 8\nkernels\0"
+static const char played_kernels[] = "gray kernels\n" PLAYED_MODULE("kernel_lanes") PLAYED_MODULE("kernel_begin")
+    PLAYED_MODULE("kernel_extend") PLAYED_MODULE("kernel_shade") PLAYED_MODULE("kernel_shadow")
+        PLAYED_MODULE("kernel_add") PLAYED_MODULE("kernel_finish");
 
 static void reset_card(void) {
     for (int i = 0; i < card.block_count; i++)
@@ -44,6 +52,7 @@ static void reset_card(void) {
     card.capability = 9;
     card.until_error = -1;
     card.is_wrong = false;
+    card.kernels = (struct file_bytes){(const uint8_t *)played_kernels, sizeof played_kernels - 1};
 }
 
 /* What every call begins with. */
@@ -241,7 +250,7 @@ static bool begin_service(void *context, struct bundle *scene, struct error *err
     void *bytes = mem_alloc_aligned(64, size);
     CHECK(bytes && here.begin(here.context, scene, error));
     bundle_write(scene, bytes);
-    service->cuda = cuda_create(&played, "kernels", 2, &service->error);
+    service->cuda = cuda_create(&played, &card.kernels, 2, &service->error);
     if (service->cuda &&
         !cuda_open_scene(service->cuda, bytes, size, emulation_scene(service->emulation), &here, &service->error)) {
         cuda_destroy(service->cuda);
@@ -262,7 +271,7 @@ static bool make_by_card(void *context, const struct path_order *order, struct p
 /* Renders with the card, and compares with the threads; reason: why the card was not used, or was lost. */
 static void check_picture(struct stage *s, const float *floats, size_t size, char *reason, size_t room) {
     struct service service = {s->pool, emulation_create(s->pool, 0, 0), NULL, {0}};
-    const struct path_device device = {NULL, begin_service, make_by_card, &service};
+    const struct path_device device = {.begin = begin_service, .make = make_by_card, .context = &service};
     struct render_job job = stage_job(s, WIDTH, HEIGHT);
     job.device = &device;
     for (uint32_t i = 0; i < film_tile_count(job.film); i++)
@@ -331,9 +340,31 @@ TEST(a_card_with_other_bits_or_too_little_memory_or_too_old_is_refused_with_the_
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK(strstr(reason, "it has 3 MB of memory free, and "));
     reset_card();
+    card.kernels.size -= 20;
+    check_picture(&s, floats, size, reason, sizeof reason);
+    CHECK_TEXT(reason,
+               "the kernels for a card are not complete: there is no kernel_finish; make gpu writes them again");
+    reset_card();
     card.capability = 6;
     check_picture(&s, floats, size, reason, sizeof reason);
     CHECK(strstr(reason, "played card (capability 6.0, driver 12.4); gray needs capability 7.0"));
     mem_free(floats);
     stage_end(&s);
+}
+
+TEST(a_file_of_kernels_that_was_cut_has_those_that_are_complete) {
+    for (size_t size = 0; size < sizeof played_kernels; size++) {
+        uint8_t *bytes = mem_alloc(size + 1);
+        memcpy(bytes, played_kernels, size);
+        const struct file_bytes kernels = {bytes, size};
+        size_t end = sizeof "gray kernels\n" - 1;
+        for (size_t i = 0; i < sizeof kernel_names / sizeof *kernel_names; i++) {
+            const char *found = kernels_file_find(&kernels, kernel_names[i]);
+            end += strlen(kernel_names[i]) + sizeof " 8\nkernels" - 1 + 1;
+            CHECK((found != NULL) == (size >= end));
+            CHECK(!found || strcmp(found, "kernels") == 0);
+        }
+        CHECK(!kernels_file_find(&kernels, "kernel") && !kernels_file_find(&kernels, "kernels"));
+        mem_free(bytes);
+    }
 }

@@ -5,6 +5,7 @@
 #define device_link_was_ready device_link_was_ready_here
 #define device_link_refuse device_link_refuse_here
 #define device_link_reason device_link_reason_here
+#define device_link_statistics device_link_statistics_here
 #define device_client_wait device_client_wait_here
 #define device_client_make device_client_make_here
 #include "device/device_link.c"
@@ -43,7 +44,7 @@ static bool keep_scene(void *context, struct bundle *scene, struct error *error)
 }
 
 static void begin_server(struct stage *s, struct server *server) {
-    const struct path_device receiver = {NULL, keep_scene, NULL, server};
+    const struct path_device receiver = {.begin = keep_scene, .context = server};
     stage_begin(s, 1);
     s->settings.integrator = INTEGRATOR_PATH;
     s->settings.path_samples = 4;

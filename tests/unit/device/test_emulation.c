@@ -91,7 +91,7 @@ static void check_scene(struct stage *s) {
     for (int i = 0; i < 4; i++) {
         struct emulation *emulation = emulation_create(s->pool, waves[i], 0);
         struct loser loser = {emulation_device(emulation), 0};
-        const struct path_device losing = {NULL, begin_losing, make_losing, &loser};
+        const struct path_device losing = {.begin = begin_losing, .make = make_losing, .context = &loser};
         render_with(s, i < 3 ? &loser.inner : &losing, &device);
         CHECK(same(&threads, &device));
         CHECK((loser.lost > 0) == (i == 3));
@@ -162,7 +162,7 @@ TEST(pixels_whose_queries_outgrow_the_memory_of_a_device_are_made_by_threads) {
     keep(&s.film, &threads);
     struct emulation *emulation = emulation_create(s.pool, 0, 1);
     struct counter counter = {.inner = emulation_device(emulation)};
-    const struct path_device counting = {NULL, begin_counting, make_counting, &counter};
+    const struct path_device counting = {.begin = begin_counting, .make = make_counting, .context = &counter};
     render_with(&s, &counting, &device);
     CHECK(same(&threads, &device));
     CHECK(counter.whole > 0 && counter.left > 0);
@@ -220,7 +220,7 @@ TEST(no_word_of_the_bundle_of_a_scene_is_an_address_of_the_process) {
     begin_scene(&s);
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-    const struct path_device device = {NULL, find_addresses, NULL, &words};
+    const struct path_device device = {.begin = find_addresses, .context = &words};
     job.device = &device;
     CHECK(!render_run(&job, s.pool, &s.statistics, &s.error));
     CHECK(words.begun && words.count > 5);

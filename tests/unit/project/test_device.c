@@ -19,15 +19,19 @@ static void scan(const char *what, const char *says) {
     free(output);
 }
 
+/* Before a script; make test-gpu says gpu. */
+#define DEVICE "other=${GRAY_TEST_DEVICE:-emulate}; "
+
 /* Every scene, as threads make it and as a device process makes it. */
 static void compare(const char *scenes, const char *options) {
     char line[4096], *root = realpath(".", NULL);
     (void)snprintf(line, sizeof line,
-                   "bad=0; for scene in $(cd '%s' && echo %s); do rm -f *.pfm; for device in cpu emulate; do "
+                   DEVICE
+                   "bad=0; for scene in $(cd '%s' && echo %s); do rm -f *.pfm; for device in cpu $other; do "
                    "$gray -q %s --allow-read '%s' --device $device -o $device-%%02d.pfm '%s'/$scene "
                    ">$device.out 2>$device.txt || { bad=1; cat $device.txt; }; done; "
-                   "cmp cpu.txt emulate.txt || bad=1; n=0; for picture in cpu-*.pfm; do n=$((n + 1)); "
-                   "cmp $picture emulate-${picture#cpu-} || { bad=1; echo $scene; }; done; done; echo $n; exit $bad",
+                   "cmp cpu.txt $other.txt || bad=1; n=0; for picture in cpu-*.pfm; do n=$((n + 1)); "
+                   "cmp $picture $other-${picture#cpu-} || { bad=1; echo $scene; }; done; done; echo $n; exit $bad",
                    root, scenes, options, root, root);
     free(root);
     test_shell(line, 0, "");
@@ -38,6 +42,11 @@ TEST(a_device_process_gives_the_bytes_of_threads_in_twenty_scenes) {
     test_skip("too slow in this build; the release build renders them");
 #endif
     compare("data/path/*.lua tests/pictures/*.lua", "--integrator path --size 32x24 --spp 3");
+}
+
+TEST_LONG(a_device_process_gives_the_bytes_of_threads_in_every_scene) {
+    compare("data/[0-9]*.lua data/[lmprs][ieowy][^ao]*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua data/gallery/*.lua",
+            "--integrator path --size 24x18 --spp 2");
 }
 
 TEST(a_device_process_gives_the_bytes_of_threads_in_every_kind_of_render) {
@@ -53,18 +62,18 @@ TEST(parts_frames_and_resumed_pictures_are_the_same_with_and_without_a_device) {
     char *root = realpath(".", NULL), line[4096];
     (void)snprintf(
         line, sizeof line,
-        "scene='%s/data/path/table.lua'; set -- -q --integrator path --size 70x50 --spp 6 --allow-read '%s'; "
-        "$gray \"$@\" -o whole.png $scene && $gray \"$@\" --shard 1/2 --device emulate -o x.png $scene && "
-        "$gray \"$@\" --shard 2/2 -o x.png $scene && $gray merge -q x.png.*.part -o x.png && "
-        "cmp whole.png x.png && "
-        "printf \"gr.frames(2, function(f) return { node = gr.sphere {}, file = 'f.png', width = 40, "
-        "height = 30, eye = { f, 0, 5 }, target = { 0, 0, 0 }, fov = 40, integrator = 'path', "
-        "spp = 4, background = { .5, .6, .7 } } end)\" >f.lua && "
-        "$gray -q -o 'a%%d.png' f.lua && $gray -q --device emulate -o 'b%%d.png' f.lua && "
-        "cmp a1.png b1.png && cmp a2.png b2.png && "
-        "{ timeout -s KILL .3 $gray \"$@\" --spp 150 --device emulate --checkpoint 0.05 -o y.png $scene; "
-        "$gray \"$@\" --spp 150 --resume -o y.png $scene && $gray \"$@\" --spp 150 -o z.png $scene && "
-        "cmp y.png z.png; }",
+        DEVICE "scene='%s/data/path/table.lua'; set -- -q --integrator path --size 70x50 --spp 6 --allow-read '%s'; "
+               "$gray \"$@\" -o whole.png $scene && $gray \"$@\" --shard 1/2 --device $other -o x.png $scene && "
+               "$gray \"$@\" --shard 2/2 -o x.png $scene && $gray merge -q x.png.*.part -o x.png && "
+               "cmp whole.png x.png && "
+               "printf \"gr.frames(2, function(f) return { node = gr.sphere {}, file = 'f.png', width = 40, "
+               "height = 30, eye = { f, 0, 5 }, target = { 0, 0, 0 }, fov = 40, integrator = 'path', "
+               "spp = 4, background = { .5, .6, .7 } } end)\" >f.lua && "
+               "$gray -q -o 'a%%d.png' f.lua && $gray -q --device $other -o 'b%%d.png' f.lua && "
+               "cmp a1.png b1.png && cmp a2.png b2.png && "
+               "{ timeout -s KILL .3 $gray \"$@\" --spp 150 --device $other --checkpoint 0.05 -o y.png $scene; "
+               "$gray \"$@\" --spp 150 --resume -o y.png $scene && $gray \"$@\" --spp 150 -o z.png $scene && "
+               "cmp y.png z.png; }",
         root, root);
     free(root);
     test_shell(line, 0, "");
@@ -77,8 +86,9 @@ TEST(a_fault_of_a_function_has_its_warning_with_a_device) {
         "    eye = { 0, 0, 5 }, target = { 0, 0, 0 }, fov = 40, integrator = 'path', spp = 4, background = { .5, .6, "
         ".7 } }\n";
     test_write_file(test_path("scene.lua"), scene, sizeof scene - 1);
-    test_shell("for device in cpu emulate; do $gray --device $device -o $device.pfm scene.lua 2>$device.txt; done; "
-               "cmp cpu.pfm emulate.pfm && cmp cpu.txt emulate.txt && cat cpu.txt",
+    test_shell(DEVICE
+               "for device in cpu $other; do $gray --device $device -o $device.pfm scene.lua 2>$device.txt; done; "
+               "cmp cpu.pfm $other.pfm && cmp cpu.txt $other.txt && cat cpu.txt",
                0, "NaN");
 }
 
@@ -96,13 +106,14 @@ static void kill_at(const char *sleeps) {
     char line[2048];
     (void)snprintf(
         line, sizeof line,
+        DEVICE
         "$gray -q -o whole.pfm scene.lua && for seconds in %s; do "
-        "$gray --device emulate -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
+        "$gray --device $other -o killed.pfm --force scene.lua 2>killed.txt & process=$!; "
         "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; sleep $seconds; "
         "kill -9 $(pgrep -P $process | tail -n +2); wait $process || exit 1; "
         "grep -q 'the device process was killed (signal 9, Killed); the processor goes on' killed.txt || exit 2; "
         "cmp whole.pfm killed.pfm || exit 3; done; "
-        "$gray -q --device emulate -o killed.pfm --force scene.lua & process=$!; "
+        "$gray -q --device $other -o killed.pfm --force scene.lua & process=$!; "
         "await \"[ \\$(pgrep -P $process | wc -l) -ge 2 ]\"; device=$(pgrep -P $process | tail -n +2); "
         "kill -TERM $process; wait $process; [ $? -ge 128 ] && ! kill -0 $device",
         sleeps);
@@ -157,7 +168,11 @@ TEST(a_card_that_is_not_there_is_an_error_with_gpu_and_a_line_with_auto) {
         "sort -u | cc -shared -o lib/libcuda.so.1 -x c - && try --device gpu; "
         "echo 'gray kernels of yesterday' >gray-kernels; try --device gpu; "
         "{ echo gray kernels $(cd '%s' && tools/device_scan.sh digest); echo text; } >gray-kernels; try --device gpu; "
-        "name=auto; GRAY_DEVICE=auto try; ls *.png; cmp cpu.png auto.png",
+        "name=auto; GRAY_DEVICE=auto try; ls *.png; cmp cpu.png auto.png; "
+        "for size in '16x12 --spp 20' '320x240 --spp 60000'; do LD_LIBRARY_PATH=$PWD/lib ./own --verbose --device "
+        "auto --integrator path "
+        "--size $size --time-limit .1 -o auto.png --force $scene 2>&1 | grep 'processor renders' | "
+        "sed 's/about [0-9.]* s/about N s/'; done",
         root, root, root, root);
     free(root);
     test_shell(line, 0,
@@ -166,5 +181,7 @@ TEST(a_card_that_is_not_there_is_an_error_with_gpu_and_a_line_with_auto) {
                "directory; make gpu writes them\n"
                "--device gpu: gray-kernels was made from other sources than this program; make gpu writes it again\n"
                "--device gpu: the card cannot be used: init: no card\n"
-               "auto.png\ncpu.png\n");
+               "auto.png\ncpu.png\n"
+               "gray: the processor renders: it needs about N s\n"
+               "gray: the processor renders: the card cannot be used: init: no card\n");
 }
